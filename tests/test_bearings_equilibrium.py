@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.bounds import Ranges
-from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing

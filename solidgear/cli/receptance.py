@@ -17,6 +17,7 @@ from solidgear.cli.train import (
     MatchedAt,
     MaxFrequency,
     PinionRung,
+    Point,
     Reduction,
     TrainFile,
     end_of,
@@ -45,6 +46,7 @@ def receptance(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
@@ -55,11 +57,11 @@ def receptance(
     from solidgear.studies.train.modes import unpublished_lines
     from solidgear.studies.train.receptance import receptance as run
 
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point)
     ends = end_of("--from", from_), end_of("--to", to)
     mixes = [(pinion, gear), *map(mix, against or [])]
-    unpublished, cautions = shop.train.unpublished(), shop.contact.cautions
-    title = f"{shop.train.title or shop.train.name}: {to} for a unit force on {from_}"
+    unpublished, cautions = shop.train.unpublished(), shop.cautions
+    title = f"{shop.train.called}: {to} for a unit force on {from_}"
     with held(out):
         found = [
             run(shop, *pair, *ends, max_frequency, damping, matched_at or 0.0) for pair in mixes

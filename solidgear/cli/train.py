@@ -48,6 +48,13 @@ LocalHarmonics = Annotated[
         "2,3; by default as local_harmonics in the table mesh of the file says.",
     ),
 ]
+Point = Annotated[
+    str | None,
+    typer.Option(
+        "--point",
+        help="Operating point, by its name or number in the file; the first by default.",
+    ),
+]
 MOST_KEPT = 200
 
 
@@ -57,6 +64,7 @@ def workshop(
     kept: int,
     max_frequency: float | None,
     local_harmonics: str | None = None,
+    point: str | None = None,
 ):
     """Workshop of a train, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
@@ -68,6 +76,10 @@ def workshop(
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     loaded = load_train(path)
+    if point is not None:
+        from solidgear.studies.train.operation import at_point
+
+        loaded = at_point(loaded, point)
     if local_harmonics is not None:
         mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(local_harmonics))
         loaded = loaded.with_changes(mesh=mesh)
@@ -135,6 +147,7 @@ def system_modes(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
@@ -142,7 +155,7 @@ def system_modes(
     from solidgear.report.train_tables import modes
     from solidgear.studies.train.modes import train_modes
 
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     found = train_modes(shop, pinion, gear, max_frequency)
@@ -226,6 +239,7 @@ def response(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
@@ -237,7 +251,7 @@ def response(
     from solidgear.studies.train.orders import order_map
     from solidgear.studies.train.respond import respond
 
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point)
     mixes = [(pinion, gear), *map(mix, against or [])]
     forces = _forces(force)
     with held(out):
@@ -247,7 +261,7 @@ def response(
         ]
         unpublished = shop.train.unpublished()
         notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
-        title = shop.train.title or shop.train.name
+        title = shop.train.called
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
         # a force on a port has no order of the mesh
         kind = (damping, matched_at or 0.0)

@@ -15,6 +15,7 @@ from solidgear.cli.train import (
     Kept,
     LocalHarmonics,
     MaxFrequency,
+    Point,
     Reduction,
     TrainFile,
     mix,
@@ -37,13 +38,16 @@ def judge_system(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
     """Comparison of a train with further mixes and reductions, and no folder unless asked for."""
     more = [mix(text) for text in against or []]
     how = max_frequency, more, reduction, kept
-    _judged(train, out, as_json, *how, renders=True, local=local_harmonics, units=units)
+    _judged(
+        train, out, as_json, *how, renders=True, local=local_harmonics, units=units, point=point
+    )
 
 
 def compare_train(
@@ -77,6 +81,7 @@ def _judged(
     renders: bool = False,
     local: str | None = None,
     units: str = UNITS,
+    point: str | None = None,
 ) -> None:
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
@@ -84,7 +89,7 @@ def _judged(
     from solidgear.studies.train.comparison import compare_train as run
     from solidgear.studies.train.modes import unpublished_lines
 
-    shop = workshop(train, reduction, kept, max_frequency, local)
+    shop = workshop(train, reduction, kept, max_frequency, local, point)
     with held(out) if out else nullcontext(), Progress(quiet=as_json) as progress:
         found = run(shop, max_frequency, more, progress)
         results = found.results()

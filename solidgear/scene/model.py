@@ -217,7 +217,8 @@ class Scene(Displayed, Model):
         Parameters
         ----------
         **changes
-            Fields by name; a new `material` also replaces the old default in the segments.
+            Fields by name; a new `material` also replaces the old default in the segments, and under
+            a new `load` bearings of catalogue data wait for their stiffness again.
 
         Returns
         -------
@@ -233,6 +234,8 @@ class Scene(Displayed, Model):
             changes["segments"] = tuple(
                 s.with_changes(material=swap.get(s.material, s.material)) for s in self.segments
             )
+        if changes.get("load", self.load) != self.load and "bearings" not in changes:
+            changes["bearings"] = tuple(b.unsettled for b in self.bearings)
         return super().with_changes(**changes)
 
     def with_attachment(self, attachment: str) -> Scene:

@@ -92,11 +92,11 @@ class OperatingPoint(Model):
 
     @property
     def label(self) -> str:
-        """Name, or the torque and the speed in its place."""
-        if self.name:
-            return self.name
-        speed = "" if self.speed is None else f", {self.speed * 30 / pi:.4g} rpm"
-        return f"{self.torque:.6g} N m{speed}"
+        """Name, torque and speed."""
+        told = f"{self.torque:.6g} N m on the {self.of}"
+        if self.speed is not None:
+            told += f", {self.speed * 30 / pi:.4g} rpm"
+        return f"{self.name} ({told})" if self.name else told
 
     @property
     def gravity(self) -> tuple[float, float, float]:

@@ -214,6 +214,15 @@ class Bearing(Placed):
             )
         return self
 
+    @property
+    def unsettled(self) -> Bearing:
+        """The same bearing without the stiffness that catalogue data have under the load of its
+        shaft; as it is where that load has no part in it.
+        """
+        data = self.catalogue
+        waits = data is not None and data.load is None and data.displacement is None
+        return self.with_changes(matrix=None) if waits else self
+
     def attached(self, attachment: str) -> Bearing:
         """The same bearing with its seat attached in another way; one on a face as it is."""
         return self if self.face else self.with_changes(attachment=attachment)

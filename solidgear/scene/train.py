@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isclose, pi
 
+import numpy as np
 from pydantic import model_validator
 
 from solidgear.errors import SceneError, listed, nearest
@@ -162,6 +163,24 @@ class Train(Model):
                         path=("operation", k, "speed"),
                     )
                     break
+
+    @property
+    def called(self) -> str:
+        """Title, or name, and the operating point at which it is looked at."""
+        where = f" at {self.point.label}" if self.point is not None else ""
+        return (self.title or self.name) + where
+
+    @property
+    def unloaded(self) -> tuple[str, ...]:
+        """Bearings of catalogue data that carry nothing at the operating point, as ``side.name``."""
+        if self.point is None:
+            return ()
+        return tuple(
+            f"{side}.{b.name}"
+            for side in SIDES
+            for b in self.member(side).scene.bearings
+            if b.catalogue is not None and b.matrix is not None and not np.any(b.matrix)
+        )
 
     @property
     def point(self) -> OperatingPoint | None:

@@ -94,10 +94,10 @@ def load_train(path: str | os.PathLike) -> Train:
     train = train_file.load_train(path, _shaft_of_train)
     if not train.operation:
         return train
-    from solidgear.studies.train.operation import at_first_point
+    from solidgear.studies.train.operation import at_point
 
     with explained(path):
-        return at_first_point(train)
+        return at_point(train)
 
 
 def _shaft_of_train(path: str | os.PathLike, alone: bool) -> Scene:

@@ -16,8 +16,9 @@ import solidgear as sg
 from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
 from solidgear.studies.train.local import local_give
-from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.respond import Drive
+from solidgear.studies.train.shaft import JUDGE
 from validation.common import ROOT, results_folder, show, write_rows
 
 LOWEST, MIDDLE, HIGHEST = 100.0, 1000.0, 4000.0

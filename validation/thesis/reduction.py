@@ -15,7 +15,8 @@ import numpy as np
 import solidgear as sg
 from solidgear.reduction.superelement import Superelement, Truncation, assemble
 from solidgear.scene.train import SIDES, Train
-from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.shaft import JUDGE
 from validation.common import ROOT, results_folder, show, write_rows
 
 HIGHEST, REFERENCE = 4000.0, 160

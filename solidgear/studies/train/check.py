@@ -20,7 +20,7 @@ from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
 from solidgear.studies.guards.notice import slip_in_units
 from solidgear.studies.train.local import undriven
-from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import (
     RESOLVED,
     free_motions,
@@ -28,6 +28,7 @@ from solidgear.studies.train.modes import (
     unpublished_lines,
     wrench_lines,
 )
+from solidgear.studies.train.shaft import JUDGE
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
@@ -83,7 +84,7 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
         light.take(side, JUDGE, probe.rung(JUDGE).body)
     faults: list[str] = []
     facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
-    cautions = [*workshop.contact.cautions, *_units(workshop)]
+    cautions = [*workshop.cautions, *_units(workshop)]
     cautions += [*_losses(train), *_error(train, limit)]
     try:
         facts += _system(light, limit)

@@ -126,7 +126,7 @@ def described(workshop: Workshop) -> dict[str, Any]:
     """A train as plain data: what the file gives, and what its mesh comes to."""
     train, met = workshop.train, workshop.contact
     out: dict[str, Any] = {
-        "title": train.title or train.name,
+        "title": train.called,
         "name": train.name,
         "source": train.source,
         "ratio": train.ratio,

@@ -35,6 +35,9 @@ WITHOUT_POSITION = "the place of the gear, without gear_position under [mesh],"
 TURNED = 0.2
 #: the mesh point may lie outside the head by this share of its radius and of its length
 OUTSIDE_RADIUS, OUTSIDE_LENGTH = 0.02, 0.5
+#: a [load] of a scene that is this far off the line of action is told, rad: beyond what friction and
+#: another pressure angle make
+LOAD_ASIDE = np.radians(20.0)
 #: which of the pinion's data geometry needs
 GEOMETRY = ("hand", "loaded_side", "pitch_radius", "pitch_angle", "spiral_angle", "face_width")
 #: pressure angle to judge a given line with, where the file has none
@@ -112,6 +115,7 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     for side, vector in zip(("pinion", "gear"), found):
         _on_the_head(train, side, vector.point)
     cautions += _levers(train, *found)
+    cautions += [line for side in SIDES for line in _scene_load(train, side, found)]
     stiffness = mesh.stiffness
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
@@ -273,6 +277,40 @@ def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
             f"from {1e3 * port.lo:.1f} to {1e3 * port.hi:.1f} mm",
             path=path,
         )
+
+
+def _scene_load(train: Train, side: str, found: tuple[MeshVector, MeshVector]) -> list[str]:
+    """Tell of bearings that settled under a [load] which is no force of the teeth; a load that pulls
+    the teeth apart is refused.
+    """
+    member = train.member(side)
+    scene = member.scene
+    waiting = any(b.unsettled is not b for b in scene.bearings)
+    if train.operation or scene.load is None or not waiting or member.scene_load == "added":
+        return []
+    force = np.array(scene.load.six[:3])
+    if not force.any():
+        return []
+    vector = _in_scene(member.apex, found[SIDES.index(side)])
+    teeth = vector.normal if side == "pinion" else -vector.normal
+    along = float(force @ teeth / np.linalg.norm(force))
+    told = (
+        f"the [load] of the {side}'s scene, ({', '.join(f'{v:.0f}' for v in force)}) N, under which "
+        f"its bearings settle"
+    )
+    way = "give the train an [operation] with its torque, and the mesh force follows"
+    if along < 0:
+        raise SceneError(
+            f"{told}, pulls the teeth apart: they push the {side} along "
+            f'({", ".join(f"{v:.3f}" for v in teeth)}); {way}, or write scene_load = "added" '
+            f"under [{side}] if it does not come from the teeth",
+            path=(side, "scene"),
+        )
+    if along > cos(LOAD_ASIDE):
+        return []
+    return [
+        f"{told}, lies {np.degrees(np.arccos(along)):.0f} degrees off their line of action; {way}"
+    ]
 
 
 def _levers(train: Train, pinion: MeshVector, gear: MeshVector) -> list[str]:

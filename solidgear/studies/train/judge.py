@@ -20,10 +20,11 @@ from solidgear.ladder.registry import LADDER
 from solidgear.scene.train import SIDES
 from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.meshes import mesh_bars
-from solidgear.studies.train.models import JUDGE, LUMPED, Workshop, checked_rung
+from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import driven, mode_names
 from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
 from solidgear.studies.train.respond import Drive, TrainResponse, respond
+from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung
 
 #: models of one shaft that are mixed, cheapest first
 MIXED = (*LADDER.of(BEAM), JUDGE)
@@ -220,7 +221,7 @@ def judge_train(
     progress("how sure the judge's meshes are")
     ordered = sorted(told, key=lambda m: (m.unknowns, m.seconds))
     return Verdict(
-        workshop.train.title or workshop.train.name,
+        workshop.train.called,
         highest,
         ask.tolerance,
         ask.decibels,
@@ -228,7 +229,7 @@ def judge_train(
         judge.bar(),
         tuple(judge.responses.values()),
         workshop.train.unpublished(),
-        (*workshop.contact.cautions, *local_lines(workshop, judge.system)),
+        (*workshop.cautions, *local_lines(workshop, judge.system)),
     )
 
 

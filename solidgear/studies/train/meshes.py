@@ -16,7 +16,8 @@ from solidgear.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.scene.coned import coned
 from solidgear.scene.train import SIDES
-from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.shaft import JUDGE
 from solidgear.system.system import System
 
 #: modes above those asked for that are looked at: the gap to the highest one counts, and near modes

@@ -1,14 +1,4 @@
-"""Each shaft of a train at any rung, and the system that any two of them make.
-
-A rung of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
-or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
-(``lumped/euler``), with one of these masses:
-
-- ``lumped``: Guyan's, of all six motions;
-- ``lumped-bending``: Guyan's in bending, the total mass along the shaft (Hua 2010, equation 55);
-- ``lumped-matched``: the mode-matched pair in bending, the total mass along the shaft;
-- ``lumped-old``: total mass and inertia.
-"""
+"""Each shaft of a train at any model, and the system that any two of them make."""
 
 from __future__ import annotations
 
@@ -22,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, listed, nearest, show
+from solidgear.frames import shift
 from solidgear.ladder import build
-from solidgear.ladder.registry import LADDER
 from solidgear.reduction.condensed import condensed_shaft
 from solidgear.reduction.craig_bampton import craig_bampton
 from solidgear.reduction.effective_mass import synthesise
@@ -33,69 +23,17 @@ from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
 from solidgear.studies.train.contact import Contact, contact
 from solidgear.studies.train.local import TEETH, local_teeth
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
 from solidgear.system.system import System
 
-RIGID = "rigid"
-LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
-#: body that lumped models come from unless one is named, and the judge of a system
-JUDGE = LADDER.judges[0]
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz; the bound tells
 KEPT = 24
 #: a mesh for systems: frequencies move by some 1e-5 against order 5
 MESH: dict[str, dict] = {JUDGE: {"order": 4}}
-
-
-def checked_rung(name: str) -> tuple[str, str]:
-    """Kind of a shaft's model, and the body it rests on (empty for a body of its own).
-
-    Raises
-    ------
-    SolidgearError
-        For a model that there is not.
-    """
-    kind, _, body = name.partition("/")
-    known = [*LADDER.bodies, RIGID, *LUMPED]
-    if kind not in known:
-        raise SolidgearError(
-            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
-            f"use one of {', '.join(known)}"
-        )
-    if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
-        raise SolidgearError(
-            f"model {show(name, 40)}: write a lumped model and the body it comes from, "
-            f"such as lumped/{JUDGE}"
-        )
-    if kind in LADDER.bodies:
-        return kind, ""
-    return kind, body or JUDGE
-
-
-@dataclass(frozen=True, eq=False)
-class ShaftModel:
-    """One shaft at one rung, a part of a system.
-
-    Attributes
-    ----------
-    side, rung : str
-    part : Part
-    body : Body
-        What the part was made of.
-    unknowns : int
-        Of the body's mesh.
-    seconds : float
-        To build and reduce it.
-    """
-
-    side: str
-    rung: str
-    part: Part
-    body: Body
-    unknowns: int
-    seconds: float
 
 
 @dataclass(eq=False)
@@ -258,6 +196,16 @@ class Workshop:
             out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
         return out
 
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What does not fit together but can be solved, and bearings without load."""
+        lost = [
+            f"bearing {end} carries nothing at {self.train.point.label}: it has no stiffness there"
+            for end in self.train.unloaded
+            if self.train.point is not None
+        ]
+        return (*self.contact.cautions, *lost)
+
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
 
@@ -408,7 +356,5 @@ class Workshop:
 
 def _mass_about(body: Body, y: float) -> np.ndarray:
     """(6, 6) rigid mass about a point of the axis."""
-    from solidgear.frames import shift
-
     back = shift([0.0, -y, 0.0])
     return back.T @ body.mass_matrix() @ back

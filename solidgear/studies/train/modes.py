@@ -12,8 +12,9 @@ from solidgear.scene.train import SIDES
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.local import local_lines, undriven, waves_of
 from solidgear.studies.train.meshes import mesh_bars
-from solidgear.studies.train.models import JUDGE, Workshop
+from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
+from solidgear.studies.train.shaft import JUDGE
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -241,7 +242,7 @@ def train_modes(
             have = tuple(waves_of(system.parts[side]))
             still[side] = undriven(workshop.shaft(side, rung).body, limit, have)
     return TrainModes(
-        workshop.train.title or workshop.train.name,
+        workshop.train.called,
         pinion,
         gear,
         workshop.reduction,
@@ -254,7 +255,7 @@ def train_modes(
         free_motions(workshop, system),
         wrench_lines(workshop.contact),
         workshop.train.unpublished(),
-        workshop.contact.cautions,
+        workshop.cautions,
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
     )

@@ -22,7 +22,7 @@ import numpy as np
 from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_TOLD, Choice, made_of, mounted
-from solidgear.errors import SceneError, SolidgearError
+from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES, Train
@@ -331,16 +331,52 @@ def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:
     return (tangent + tangent.T) / 2
 
 
-def at_first_point(train: Train) -> Train:
-    """A train as read, with all its points, and its bearings settled at the first of them.
+def at_point(train: Train, word: str | int | None = None) -> Train:
+    """A train with its bearings settled at one of its operating points.
 
     Parameters
     ----------
     train : Train
+    word : str or int, optional
+        Name of the point, or its number counted from one; by default the first, and the train keeps
+        the others.
 
     Returns
     -------
     Train
+
+    Raises
+    ------
+    SolidgearError
+        If it has no such point, or nothing holds a shaft there.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_straddle.toml")
+    >>> points = ({"torque": 100.0, "name": "drive"}, {"torque": "-30 N*m", "name": "coast"})
+    >>> at_point(train.with_changes(operation=points), "coast").point.torque
+    -30.0
     """
-    state = Operating(Workshop(train)).at(train.operation[0])
-    return settled(train, state).with_changes(operation=train.operation)
+    point = train.operation[0] if word is None and train.operation else named_point(train, word)
+    found = settled(train, Operating(Workshop(train)).at(point))
+    return found if word is not None else found.with_changes(operation=train.operation)
+
+
+def named_point(train: Train, word: str | int | None) -> OperatingPoint:
+    """Operating point of a train by its name or its number, counted from one.
+
+    Raises
+    ------
+    SolidgearError
+        If it has no such point.
+    """
+    if not train.operation:
+        raise SolidgearError(
+            f"{train.name} has no operating point; write [operation] with a torque in its file"
+        )
+    for k, point in enumerate(train.operation, start=1):
+        if word in (point.name, k, str(k)) and word != "":
+            return point
+    known = [f"{k}" + f" {p.name!r}" * bool(p.name) for k, p in enumerate(train.operation, start=1)]
+    raise SolidgearError(f"no operating point {word!r}; there are {listed(known)}")

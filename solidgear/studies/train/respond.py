@@ -355,7 +355,7 @@ def respond(
         found[there] = drive.mesh(order * hz[there], order)[1]
         columns[f"mesh force, order {order} [N]"] = found
     columns |= told
-    cautions = [*workshop.contact.cautions, *local_lines(workshop, drive.system)]
+    cautions = [*workshop.cautions, *local_lines(workshop, drive.system)]
     if damping == "literal":
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))

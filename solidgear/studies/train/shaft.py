@@ -1,0 +1,74 @@
+"""Models of one shaft of a train.
+
+A rung of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
+or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
+(``lumped/euler``), with one of these masses:
+
+- ``lumped``: Guyan's, of all six motions;
+- ``lumped-bending``: Guyan's in bending, the total mass along the shaft (Hua 2010, equation 55);
+- ``lumped-matched``: the mode-matched pair in bending, the total mass along the shaft;
+- ``lumped-old``: total mass and inertia.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.ladder.registry import LADDER
+from solidgear.system.parts import Part
+
+RIGID = "rigid"
+LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
+#: body that lumped models come from unless one is named, and the judge of a system
+JUDGE = LADDER.judges[0]
+
+
+def checked_rung(name: str) -> tuple[str, str]:
+    """Kind of a shaft's model, and the body it rests on (empty for a body of its own).
+
+    Raises
+    ------
+    SolidgearError
+        For a model that there is not.
+    """
+    kind, _, body = name.partition("/")
+    known = [*LADDER.bodies, RIGID, *LUMPED]
+    if kind not in known:
+        raise SolidgearError(
+            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
+            f"use one of {', '.join(known)}"
+        )
+    if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
+        raise SolidgearError(
+            f"model {show(name, 40)}: write a lumped model and the body it comes from, "
+            f"such as lumped/{JUDGE}"
+        )
+    if kind in LADDER.bodies:
+        return kind, ""
+    return kind, body or JUDGE
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftModel:
+    """One shaft at one rung, a part of a system.
+
+    Attributes
+    ----------
+    side, rung : str
+    part : Part
+    body : Body
+        What the part was made of.
+    unknowns : int
+        Of the body's mesh.
+    seconds : float
+        To build and reduce it.
+    """
+
+    side: str
+    rung: str
+    part: Part
+    body: Body
+    unknowns: int
+    seconds: float
