@@ -177,11 +177,7 @@ class Workshop:
                 raise SolidgearError(
                     f"no bearing {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
                 )
-        out = copy(self)
-        # bodies are free of their bearings; what is condensed on them is not
-        kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
-        out._made, out.scenes, out.bars = kept, {}, {}
-        out._flanks = {}
+        out = self._on_other_bearings()
         for side, scene in self.scenes.items():
             bearings = [
                 bearing.with_changes(
@@ -194,6 +190,23 @@ class Workshop:
                 for bearing in scene.bearings
             ]
             out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return out
+
+    def with_train(self, train: Train) -> Workshop:
+        """The same shafts in a train that differs in bearings, mesh or operating point alone; bodies
+        and their reductions are kept.
+        """
+        out = self._on_other_bearings()
+        out.train, out.contact = train, contact(train)
+        out.scenes = {side: train.shaft(side) for side in SIDES}
+        out._flanks = {train.point is not None and train.point.coast: out}
+        return out
+
+    def _on_other_bearings(self) -> Workshop:
+        out = copy(self)
+        # bodies are free of their bearings; what is condensed on them is not
+        kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
+        out._made, out.scenes, out.bars, out._flanks = kept, {}, {}, {}
         return out
 
     @property

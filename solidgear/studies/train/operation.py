@@ -28,6 +28,7 @@ from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES, Train
 from solidgear.studies.train.models import Workshop
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
+from solidgear.system.port_forces import port_forces
 from solidgear.system.system import System
 
 #: model of both shafts on which bearings settle: loads hang little on how shoulders are modelled
@@ -53,6 +54,8 @@ class OperatingState:
         Without the bearings, in whose coordinates the equilibrium is told.
     made : dict of str to Catalogued
         Bearings of catalogue data, by ``side.name``.
+    outside : dict of str to (6,) ndarray
+        Loads from outside on ports of parts: torques of both rotors and other forces.
     notes : tuple of str
         What is to be said of it, one sentence each.
     """
@@ -64,11 +67,28 @@ class OperatingState:
     equilibrium: SystemEquilibrium
     system: System = field(repr=False)
     made: dict[str, Catalogued] = field(repr=False)
+    outside: dict[str, np.ndarray] = field(repr=False)
     notes: tuple[str, ...] = ()
+
+    @property
+    def coordinates(self) -> np.ndarray:
+        """(N,) coordinates of the system."""
+        return self.equilibrium.coordinates
 
     def motion(self, end: str) -> np.ndarray:
         """Motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its scene."""
-        return self.system.motion(end) @ self.equilibrium.coordinates
+        return self.system.motion(end) @ self.coordinates
+
+    def forces(self) -> dict[str, np.ndarray]:
+        """Force (6,) of everything but weight on each port: teeth, springs, bearings, and loads from
+        outside, N and N m, in the axes of its scene.
+        """
+        out = port_forces(self.system, self.coordinates)
+        for end, six in self.outside.items():
+            out[end] = out.get(end, np.zeros(6)) + six
+        for end, six in self.equilibrium.load.items():
+            out[end] = out.get(end, np.zeros(6)) - six
+        return out
 
 
 class Operating:
@@ -175,9 +195,8 @@ class Operating:
             raise SolidgearError(f"at {point.label}: {error}") from None
         found = _engine_still(found, held.system, shop.train)
         notes += list(_told(found, held.system, point))
-        return OperatingState(
-            point, self.pinion, self.gear, force, found, held.system, self.made, tuple(notes)
-        )
+        own = self.pinion, self.gear, force, found, held.system, self.made, loads
+        return OperatingState(point, *own, tuple(notes))
 
     def _loads(
         self, shop: Workshop, point: OperatingPoint, force: float

@@ -1,0 +1,372 @@
+r"""Deflection and misalignment of a train at an operating point, by any model, with error bars.
+
+A quantity a'q of the state at rest has a bar where a shaft is a harmonic solid: its flexibility at
+the ports lies between F and F + M (:mod:`solidgear.bounds.harmonic`), so that with the forces f on
+the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
+tangents,
+
+    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts
+
+(Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
+exact in their own theory: their bar is none, and what they miss is told by the harmonic solid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+
+from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.bounds.safety import LOCAL
+from solidgear.errors import SolidgearError
+from solidgear.judge.deviations import WITHIN, gap_verdict
+from solidgear.scene.coned import coned
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.train import SIDES
+from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
+from solidgear.studies.train.misalignment import misalignment
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.operation import Operating, OperatingState, settled
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID
+from solidgear.system.port_forces import port_forces
+from solidgear.system.system import System
+
+#: models that a deflection is solved with, the cheapest first
+MODELS = (RIGID, "euler", "timoshenko", JUDGE)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number of a deflected train.
+
+    Attributes
+    ----------
+    name, unit, meaning : str
+    value : float
+        SI.
+    bar : float or None
+        That meshes leave in it, at most, SI; None where it has none to tell.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: float
+    bar: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class TrainDeflection:
+    """A train at rest at one operating point, by one model of each shaft.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    pinion, gear : str
+        Models.
+    mesh_force : float
+        N, along the line of action.
+    misalignment : tuple of Measured
+    displacement : dict of str to tuple of Measured
+        Of the lumped point of each side, six components; rotations about the axis are against the
+        pinion's spring port.
+    shafts : tuple of ShaftDeflection
+    notes : tuple of str
+    seconds : float
+        To settle, once bodies are there.
+    """
+
+    point: OperatingPoint
+    pinion: str
+    gear: str
+    mesh_force: float
+    misalignment: tuple[Measured, ...]
+    displacement: dict[str, tuple[Measured, ...]]
+    shafts: tuple[ShaftDeflection, ...]
+    notes: tuple[str, ...]
+    seconds: float
+
+    def as_dict(self) -> dict:
+        """Plain data in SI that JSON can hold."""
+        return {
+            "point": self.point.model_dump(mode="json"),
+            "pinion": self.pinion,
+            "gear": self.gear,
+            "mesh_force": self.mesh_force,
+            "misalignment": {m.name: _plain(m) for m in self.misalignment},
+            "displacement": {
+                side: {m.name: _plain(m) for m in six} for side, six in self.displacement.items()
+            },
+            "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
+            "notes": list(self.notes),
+            "seconds": self.seconds,
+        }
+
+
+def _plain(one: Measured) -> dict:
+    return {"value": one.value, "bar": one.bar, "unit": one.unit.split()[0]}
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A model of both shafts against the judge, for the misalignment.
+
+    Attributes
+    ----------
+    model : str
+    verdict : str
+        ``within``, ``open`` or ``beyond`` the tolerance.
+    worst : str
+        Number that is farthest off, relative to the size of its kind.
+    gap : float
+        By so much, relative.
+    """
+
+    model: str
+    verdict: str
+    worst: str
+    gap: float
+
+
+@dataclass(frozen=True, eq=False)
+class Deflections:
+    """A train at one operating point, by several models.
+
+    Attributes
+    ----------
+    title : str
+    tolerance : float
+        Of the misalignment, relative.
+    found : tuple of TrainDeflection
+        The judge last.
+    standings : tuple of Standing
+    cautions : tuple of str
+    """
+
+    title: str
+    tolerance: float
+    found: tuple[TrainDeflection, ...]
+    standings: tuple[Standing, ...]
+    cautions: tuple[str, ...]
+
+    @property
+    def judge(self) -> TrainDeflection:
+        """The finest model that was solved."""
+        return self.found[-1]
+
+    @property
+    def cheapest(self) -> Standing | None:
+        """The cheapest model within the tolerance; None where none but the judge is."""
+        return next((one for one in self.standings if one.verdict == WITHIN), None)
+
+    def verdict(self) -> str:
+        """Sentence on the cheapest model for the misalignment."""
+        asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
+        if self.cheapest is None:
+            return f"No cheaper model is known to hold {asked}: use {self.judge.pinion}."
+        one = self.cheapest
+        return (
+            f"Cheapest model that holds {asked}: {one.model} "
+            f"({100 * one.gap:.2g} % off in {one.worst})."
+        )
+
+    def as_dict(self) -> dict:
+        """Plain data in SI that JSON can hold."""
+        return {
+            "train": self.title,
+            "tolerance": self.tolerance,
+            "verdict": self.verdict(),
+            "models": {one.pinion: one.as_dict() for one in self.found},
+            "standings": [vars(one) for one in self.standings],
+            "cautions": list(self.cautions),
+        }
+
+
+def deflect_train(
+    workshop: Workshop,
+    point: OperatingPoint,
+    models: Sequence[str] = MODELS,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Deflections:
+    """Deflection and misalignment of a train at an operating point by several models.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    point : OperatingPoint
+    models : sequence of str
+        Of both shafts, the finest last.
+    progress : callable, optional
+        Told each model.
+
+    Returns
+    -------
+    Deflections
+
+    Raises
+    ------
+    SolidgearError
+        For a lumped model, which has no bearings of its own, or a shaft that nothing holds.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
+    >>> found = deflect_train(shop, OperatingPoint(torque=200.0), ("rigid", "timoshenko"))
+    >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
+    (['E', 'P', 'G', 'shaft angle'], 3)
+    """
+    found = []
+    for model in models:
+        progress(model)
+        found.append(deflection(workshop, point, model, model))
+    standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
+    title = workshop.train.title or workshop.train.name
+    return Deflections(
+        title, workshop.train.ask.tolerance, tuple(found), standings, workshop.contact.cautions
+    )
+
+
+def deflection(
+    workshop: Workshop, point: OperatingPoint, pinion: str, gear: str
+) -> TrainDeflection:
+    """Deflection of a train at an operating point by one model of each shaft.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    point : OperatingPoint
+    pinion, gear : str
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`deflect_train`.
+    """
+    rungs = {"pinion": pinion, "gear": gear}
+    for rung in rungs.values():
+        if rung.partition("/")[0] in LUMPED:
+            raise SolidgearError(
+                f"a {rung} shaft has its bearings condensed into it, and no places of their own; "
+                f"use one of {', '.join(MODELS)}"
+            )
+    bodies = {side: workshop.shaft(side, rung).body for side, rung in rungs.items()}
+    start = perf_counter()
+    state = Operating(workshop, pinion, gear).at(point)
+    seconds = perf_counter() - start
+    system = state.system
+    bars = _Bars(workshop, state, rungs)
+    measures = misalignment(workshop.on_flank(point.coast), system)
+    told = tuple(
+        Measured(m.name, m.unit, m.meaning, float(m.row @ state.coordinates), bars.of(m.row))
+        for m in measures
+    )
+    shafts = tuple(
+        shaft_deflection(
+            side,
+            rung,
+            workshop.scenes[side],
+            system,
+            state.equilibrium,
+            None if rung.partition("/")[0] == RIGID else bodies[side],
+            state.made,
+        )
+        for side, rung in rungs.items()
+    )
+    moved = {side: _six(workshop, side, state, bars) for side in SIDES}
+    return TrainDeflection(
+        point, pinion, gear, state.mesh_force, told, moved, shafts, state.notes, seconds
+    )
+
+
+def _six(workshop: Workshop, side: str, state: OperatingState, bars: _Bars) -> tuple[Measured, ...]:
+    """Motion of the lumped point of a shaft."""
+    end = f"{side}.{workshop.scenes[side].port.name}"
+    names = ("x", "y", "z", "thx", "thy", "thz")
+    units = ("m moved",) * 3 + ("rad",) * 3
+    rows = state.system.motion(end)
+    return tuple(
+        Measured(name, unit, f"of {end}", float(row @ state.coordinates), bars.of(row))
+        for name, unit, row in zip(names, units, rows)
+    )
+
+
+class _Bars:
+    """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
+
+    def __init__(self, workshop: Workshop, state: OperatingState, rungs: dict[str, str]):
+        self.workshop, self.state = workshop, state
+        self.sides = [side for side in SIDES if rungs[side] == JUDGE]
+        self.bounds: dict[str, HarmonicBounds] = {}
+        if not self.sides or workshop.train.mesh.local_harmonics:
+            return
+        shop = workshop.with_train(settled(workshop.train, state))
+        self.tangent: System = shop.system(*(rungs[side] for side in SIDES))
+        for side in self.sides:
+            body = workshop.shaft(side, JUDGE).body
+            self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)
+        self.rest = self._ports(state.forces())
+
+    def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """(6 p,) forces on the ports of every harmonic shaft."""
+        out = {}
+        for side, bounds in self.bounds.items():
+            out[side] = np.zeros(6 * len(bounds.body.ports))
+            for end, six in forces.items():
+                part, _, port = end.partition(".")
+                if part == side:
+                    at = 6 * bounds.body.port_index(port)
+                    out[side][at : at + 6] += six
+        return out
+
+    def of(self, row: np.ndarray) -> float | None:
+        """Bar of ``row @ coordinates``; None where there is none, and where the number grows as the
+        train turns.
+        """
+        if not self.bounds:
+            return None
+        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
+        if turns > 1e-9 * np.linalg.norm(row):
+            return None
+        adjoint = port_forces(self.tangent, self.tangent.static(row))
+        own = self._ports(_with_load(adjoint, self.tangent, row))
+        total = 0.0
+        for side, bounds in self.bounds.items():
+            f, g = self.rest[side], own[side]
+            two, one = (
+                float(np.sqrt(max(f @ m @ f, 0.0) * max(g @ m @ g, 0.0)))
+                for m in (bounds.more, bounds.less)
+            )
+            total += LOCAL * with_tail(two, one)
+        return total
+
+
+def _with_load(
+    forces: dict[str, np.ndarray], system: System, row: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Forces of links with the unit load that a row of coordinates stands for, on the ports that it
+    is made of.
+    """
+    out = dict(forces)
+    ends = [f"{side}.{port}" for side in SIDES for port in system.parts[side].ports]
+    rows = np.vstack([system.motion(end) for end in ends])
+    loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
+    for end, six in zip(ends, loads.reshape(-1, 6)):
+        out[end] = out.get(end, np.zeros(6)) + six
+    return out
+
+
+def _standing(one: TrainDeflection, judge: TrainDeflection, tolerance: float) -> Standing:
+    """A model against the judge: lengths against the largest length, angles against the largest."""
+    worst, gap, bar = "", 0.0, 0.0
+    for unit in dict.fromkeys(m.unit for m in judge.misalignment):
+        pairs = [(m, j) for m, j in zip(one.misalignment, judge.misalignment) if j.unit == unit]
+        scale = float(np.linalg.norm([j.value for _, j in pairs]))
+        for mine, theirs in pairs:
+            off = (mine.value - theirs.value) / scale if scale else 0.0
+            if abs(off) >= abs(gap):
+                worst, gap, bar = mine.name, off, (theirs.bar or 0.0) / (scale or 1.0)
+    return Standing(one.pinion, gap_verdict(gap, bar, tolerance), worst, gap)

@@ -1,0 +1,141 @@
+r"""Misalignment of a gear pair: how both gears lie to each other once shafts and bearings give.
+
+Both gears are taken as rigid where they are attached to their shafts; what one moves against the
+other, apart from turning about its own axis, is four numbers.  They are linear in the motions of
+the two lumped points, and told as rows on the coordinates of a system, so that the same rows serve
+every model, every load and every error bar.
+
+Bevel pairs, with unit vectors ``e_p``, ``e_g`` along the axes from the pitch apex to the back of
+each gear and ``v = e_p x e_g / |e_p x e_g|``, the relative motion ``d = d_p - d_g`` at the
+crossing point and the relative rotation ``t = t_p - t_g``::
+
+    E      v . d                       offset of the axes
+    P, G   d in the plane = P e_p - G e_g: each gear away from its apex along its own axis
+    angle  - v . t                     growth of the shaft angle
+
+(E, P, G and the shaft angle alpha of the Gleason contact pattern machines; Coleman, Gear Design
+and Manufacturing, AGMA 229; signs are those of the formulas above, not of a machine.)
+
+Parallel pairs, with e along the axes, n the line of action in the transverse plane: the slope of one
+axis against the other, ``t x e``, in the plane of action, ``n . (t x e)``, and across it; and over
+the face width b the equivalent misalignment ``f_sh = b n . (t x e)`` (ISO 6336-1, 7.5.2: component
+of the equivalent misalignment by deformations of shafts).  Positive where the flanks open towards
+larger y of the pinion's scene.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.reduction.superelement import PortMotion
+from solidgear.scene.train import SIDES
+from solidgear.studies.train.models import Workshop
+from solidgear.system.system import System
+
+#: axes whose angle has a sine below this are parallel
+PARALLEL = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Measure:
+    """One number that tells how two gears lie to each other.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        ``m moved`` or ``rad``.
+    meaning : str
+        In a few words.
+    row : (N,) ndarray
+        On the coordinates of a system.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    row: np.ndarray
+
+
+def misalignment(workshop: Workshop, system: System) -> list[Measure]:
+    """Misalignment of the gears of a train.
+
+    Parameters
+    ----------
+    workshop : Workshop
+    system : System
+        Of its shafts.
+
+    Returns
+    -------
+    list of Measure
+        Of bevel pairs E, P, G and the shaft angle, of parallel ones the slopes in and across the
+        plane of action and, where the face width is known, f_sh.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
+    >>> [m.name for m in misalignment(shop, shop.system("euler", "rigid"))]
+    ['E', 'P', 'G', 'shaft angle']
+    """
+    ports = [system.port(f"{s}.{workshop.scenes[s].port.name}") for s in SIDES]
+    along = [_from_apex(workshop, side, port) for side, port in zip(SIDES, ports)]
+    if np.linalg.norm(np.cross(*along)) < PARALLEL:
+        return _parallel(workshop, ports)
+    return _bevel(ports, along)
+
+
+def _from_apex(workshop: Workshop, side: str, port: PortMotion) -> np.ndarray:
+    """Direction of a gear's axis away from its pitch apex, in the axes of the system."""
+    sign = 1.0 if workshop.train.member(side).apex == "start" else -1.0
+    return sign * port.axes[:, 1]
+
+
+def _seen(port: PortMotion, point: np.ndarray) -> np.ndarray:
+    """(6, N) motion of a port carried rigidly to a point, in the axes of the system."""
+    return port.seen_from(PortMotion(port.rows, point, np.eye(3)))
+
+
+def _nearest(ports: list[PortMotion], along: list[np.ndarray]) -> list[np.ndarray]:
+    """Points of both axes that are nearest to each other: one where they cross."""
+    pinion, gear = ports
+    steps = np.column_stack([along[0], -along[1]])
+    t, *_ = np.linalg.lstsq(steps, gear.point - pinion.point, rcond=None)
+    return [pinion.point + t[0] * along[0], gear.point + t[1] * along[1]]
+
+
+def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
+    here, there = (_seen(port, at) for port, at in zip(ports, _nearest(ports, along)))
+    moved, turned = here[:3] - there[:3], here[3:] - there[3:]
+    across = np.cross(*along)
+    across = across / np.linalg.norm(across)
+    axial = np.linalg.pinv(np.column_stack([along[0], -along[1]])) @ moved
+    return [
+        Measure("E", "m moved", "offset of the axes", across @ moved),
+        Measure("P", "m moved", "pinion along its axis, away from the apex", axial[0]),
+        Measure("G", "m moved", "gear along its axis, away from the apex", axial[1]),
+        Measure("shaft angle", "rad", "growth of the angle of the axes", -across @ turned),
+    ]
+
+
+def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
+    axis = np.array([0.0, 1.0, 0.0])
+    normal = workshop.contact.pinion.normal * [1.0, 0.0, 1.0]
+    normal = normal / np.linalg.norm(normal)
+    here, there = (_seen(port, ports[0].point) for port in ports)
+    slope = np.cross(here[3:] - there[3:], axis, axisa=0).T
+    out = [
+        Measure("slope in plane", "rad", "of the axes, in the plane of action", normal @ slope),
+        Measure("slope across", "rad", "of the axes, across it", np.cross(axis, normal) @ slope),
+    ]
+    widths = [workshop.train.member(side).face_width for side in SIDES]
+    known = [width for width in widths if width is not None]
+    if known:
+        meaning = (
+            f"equivalent misalignment over {1e3 * min(known):g} mm of face, in the plane of action"
+        )
+        out.append(Measure("f_sh", "m moved", meaning, min(known) * out[0].row))
+    return out
