@@ -28,6 +28,7 @@ from solidgear.cli import (
     answer,
     bearing,
     chart,
+    deflect,
     files,
     receptance,
     solve,

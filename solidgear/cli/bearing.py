@@ -55,7 +55,7 @@ def bearing(
 ) -> None:
     """Bearings of catalogue data: stiffness at load, load of every element, angles, pressure."""
     from solidgear.scene.file import load as read
-    from solidgear.studies.bearing_study import bearing_facts, bearing_range, with_load
+    from solidgear.studies.bearing_study import bearing_facts, bearing_range
     from solidgear.studies.loading import explained, shaft
 
     if out is not None:
@@ -65,10 +65,7 @@ def bearing(
     ranges = _ranges(load_range, preload_range)
     loaded = read(scene)
     if load is not None:
-        try:
-            loaded = with_load(loaded, _components(load), name)
-        except SceneError as error:
-            raise SolidgearError(f"--load {show(load)}: {error}") from None
+        loaded = loaded_by(loaded, load, name)
     with explained(scene):
         body = shaft(loaded)
         facts = [fact for fact in bearing_facts(loaded, body) if name in (None, fact.name)]
@@ -89,6 +86,29 @@ def bearing(
         _print_range(found)
     if out is not None:
         say(f"Chart: {out}")
+
+
+def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
+    """A scene under a load of the command line, on its port or on one of its bearings.
+
+    Parameters
+    ----------
+    scene : Scene
+    load : str
+        Such as ``x=2 kN, z=-500 N``.
+    bearing : str, optional
+
+    Raises
+    ------
+    SolidgearError
+        Of components that are none.
+    """
+    from solidgear.studies.bearing_study import with_load
+
+    try:
+        return with_load(scene, _components(load), bearing)
+    except SceneError as error:
+        raise SolidgearError(f"--load {show(load)}: {error}") from None
 
 
 def _components(text: str) -> dict[str, str | float]:

@@ -57,7 +57,7 @@ def write_response(
     peaks = [
         {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
     ]
-    files = _write(folder, tables, {"title": title, "responses": peaks, **notes}, charts)
+    files = write_data(folder, tables, {"title": title, "responses": peaks, **notes}, charts)
     if train is None:
         return files
     page = write_sheet(
@@ -116,7 +116,7 @@ def write_receptance(
     )
     charts: dict[str, Make] = {"receptance": partial(receptance_chart, found, title, teeth, shown)}
     data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
-    files = _write(folder, {"receptance": table}, data, charts)
+    files = write_data(folder, {"receptance": table}, data, charts)
     if train is None:
         return files
     page = write_sheet(
@@ -139,13 +139,23 @@ def _plain(one: Any) -> dict[str, Any]:
     return {"pinion": one.pinion, "gear": one.gear, "damping": one.damping, "peaks": peaks}
 
 
-def _write(
-    folder: Path, tables: Mapping[str, Table], data: Mapping[str, Any], charts: Mapping[str, Make]
+def write_data(
+    folder: Path,
+    tables: Mapping[str, Table],
+    data: Mapping[str, Any],
+    charts: Mapping[str, Make],
+    name: str = "",
 ) -> list[Path]:
-    """Tables as CSV and charts, by their names, and the data, by that of the first table."""
+    """Write tables as CSV and charts, by their names, and the data, by that of the first table or
+    another.
+
+    Returns
+    -------
+    list of Path
+    """
     folder.mkdir(parents=True, exist_ok=True)
     first, *others = [table.write(folder / f"{name}.csv") for name, table in tables.items()]
-    files = [first, first.with_suffix(".json"), *others]
+    files = [first, first.with_name(f"{name or first.stem}.json"), *others]
     with whole(files[1]) as half:
         half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
     for name, make in charts.items():

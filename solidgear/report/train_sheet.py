@@ -18,6 +18,9 @@ WORDS = {
         "frequencies they meet. Colour: the mesh force along an order that the transmission "
         "error has."
     ),
+    "deflection": (
+        "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
 }
 

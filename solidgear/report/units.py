@@ -42,7 +42,8 @@ class Units:
         The choice in a few words.
     of : mapping of str to (str, float)
         SI unit -> its name here, and how many of it make one of SI; those left out stay as they
-        are. ``m moved`` is a metre of motion, which is read finer than one of length.
+        are. ``m moved`` is a metre of motion, which is read finer than one of length; ``rad moved``
+        is the like of angles.
     exponents : bool
         Whether numbers carry exponents (multiples of three) or all their digits.
     """
@@ -156,13 +157,14 @@ ENGINEERING = Units(
         "m/(N m)": ("µm/(N m)", 1e6),
         "m": ("mm", 1e3),
         "m moved": ("µm", 1e6),
+        "rad moved": ("µrad", 1e6),
         "Pa": ("GPa", 1e-9),
     },
 )
 SI = Units(
     "si",
     "N/m, m/N, N m/rad; lengths in mm",
-    {"m": ("mm", 1e3), "m moved": ("m", 1.0)},
+    {"m": ("mm", 1e3), "m moved": ("m", 1.0), "rad moved": ("rad", 1.0)},
     exponents=True,
 )
 US = Units(
@@ -178,6 +180,7 @@ US = Units(
         "m/(N m)": ("µin/(lbf in)", 1e6 * POUND),
         "m": ("in", 1 / INCH),
         "m moved": ("µin", 1e6 / INCH),
+        "rad moved": ("µrad", 1e6),
         "kg m²": ("lb in²", 1 / (POUND_MASS * INCH**2)),
         "N m": ("lbf in", 1 / (POUND * INCH)),
         "Pa": ("ksi", 1e-3 * INCH**2 / POUND),

@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
+from solidgear.bearings.solved import made_of, mounted
 from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.frames import shift
+from solidgear.ladder import build
+from solidgear.ladder.registry import LADDER
+from solidgear.reduction.rubin import rubin
 from solidgear.scene import Scene
 from solidgear.solve.naming import Projection
-from solidgear.system.equilibrium import SystemEquilibrium
+from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium
 from solidgear.system.system import System
 
 #: stations of a deflection line
 STATIONS = 81
+#: models of a shaft, the cheapest first
+MODELS = ("euler", "timoshenko", LADDER.judges[0])
+#: the one part of a system that is one shaft
+SHAFT = "shaft"
+#: modes kept of a body whose statics alone are asked for
+FEW = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +148,108 @@ class ShaftDeflection:
         }
 
 
+@dataclass(frozen=True, eq=False)
+class SceneDeflection:
+    """A shaft at rest under the load of its scene, by several models.
+
+    Attributes
+    ----------
+    title : str
+    load : (6,) ndarray
+        At the lumped point, N and N m.
+    shafts : tuple of ShaftDeflection
+        One a model, the finest last.
+    """
+
+    title: str
+    load: np.ndarray
+    shafts: tuple[ShaftDeflection, ...]
+
+    def as_dict(self) -> dict:
+        """Plain data in SI that JSON can hold."""
+        return {
+            "scene": self.title,
+            "load": self.load.tolist(),
+            "models": {shaft.model: shaft.as_dict() for shaft in self.shafts},
+        }
+
+
+def deflect_scene(
+    scene: Scene,
+    models: Sequence[str] = MODELS,
+    progress: Callable[[str], None] = lambda text: None,
+) -> SceneDeflection:
+    """Deflection of a shaft under the [load] of its scene, by several models.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bearings of catalogue data need no stiffness yet.
+    models : sequence of str
+        The finest last.
+    progress : callable, optional
+        Told each model.
+
+    Returns
+    -------
+    SceneDeflection
+
+    Raises
+    ------
+    SolidgearError
+        For a scene without load, or one that nothing holds against it.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> found = deflect_scene(sg.load("geometry/gearbox_catalogue.toml"), ["timoshenko"])
+    >>> round(sum(float(b.load[2]) for b in found.shafts[0].bearings), 6)
+    1400.0
+    """
+    if scene.load is None:
+        raise SolidgearError(
+            f"{scene.name}: there is no load; write [load] with forces at the port, such as "
+            'z = "2 kN", or give --load'
+        )
+    load = np.array(scene.load.six)
+    made = {f"{SHAFT}.{name}": one for name, one in made_of(scene).items()}
+    seats = seats_of(SHAFT, scene, made)
+    shafts = []
+    for model in models:
+        progress(model)
+        body = build(scene, model)
+        system = System({SHAFT: rubin(body, n=FEW)})
+        found = OnBearings(system, (seats,)).equilibrium(
+            system.load({f"{SHAFT}.{scene.port.name}": load})
+        )
+        shafts.append(shaft_deflection(SHAFT, model, scene, system, found, body, made))
+    return SceneDeflection(scene.title or scene.name, load, tuple(shafts))
+
+
+def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
+    """Bearings of a shaft as a system rests on them; free stations left out.
+
+    Parameters
+    ----------
+    part : str
+        Name of the shaft in the system.
+    scene : Scene
+    made : mapping of str to Catalogued
+        Bearings of catalogue data, by ``part.name``.
+    """
+    own = {b.name: made[f"{part}.{b.name}"] for b in scene.bearings if b.catalogue is not None}
+    holding = [one for one in mounted(scene, own) if _holds(one)]
+    places = {b.name: b.y for b in scene.bearings}
+    around = scene.housing or scene.housing_axial
+    return Seats(part, tuple(holding), tuple(places[one.port] for one in holding), around)
+
+
+def _holds(one: Mounted) -> bool:
+    """False for a free station, whose stiffness is zero."""
+    stiffness = getattr(one.bearing, "stiffness", None)
+    return stiffness is None or bool(np.any(stiffness))
+
+
 def shaft_deflection(
     part: str,
     model: str,
@@ -183,8 +298,6 @@ def _rigid_line(
     system: System, part: str, scene: Scene, coordinates: np.ndarray, stations: np.ndarray
 ) -> np.ndarray:
     """(s, 6) motions along a rigid shaft."""
-    from solidgear.frames import shift
-
     motion = system.motion(f"{part}.{scene.port.name}") @ coordinates
     return np.array([shift((0.0, y - scene.port.y, 0.0)) @ motion for y in stations])
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene import Scene
     from solidgear.scene.body_file import BodyTable
+    from solidgear.scene.operation import OperatingPoint
     from solidgear.scene.recognised import Recognised
     from solidgear.scene.train import Train
 
@@ -63,7 +64,7 @@ def load(path: str | os.PathLike) -> Scene:
     return read(path, scene).scene
 
 
-def load_train(path: str | os.PathLike) -> Train:
+def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> Train:
     """Read a train file; the shafts it names lie relative to it, and the stiffness of their
     catalogue bearings is worked out: at the first operating point of the train, or, without any, at
     the load of each shaft's own file.
@@ -72,6 +73,8 @@ def load_train(path: str | os.PathLike) -> Train:
     ----------
     path : str or path
         A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+    point : OperatingPoint, optional
+        At which bearings settle, in place of the points of the file.
 
     Returns
     -------
@@ -91,18 +94,17 @@ def load_train(path: str | os.PathLike) -> Train:
     """
     from solidgear.scene import train_file
 
-    train = train_file.load_train(path, _shaft_of_train)
-    if not train.operation:
+    def shaft(of: str | os.PathLike, alone: bool) -> Scene:
+        """Scene of a shaft: settled by itself, or to be settled with its train."""
+        return load(of) if alone and point is None else file.load(of, _part)
+
+    train = train_file.load_train(path, shaft)
+    if point is None and not train.operation:
         return train
     from solidgear.studies.train.operation import at_point
 
     with explained(path):
-        return at_point(train)
-
-
-def _shaft_of_train(path: str | os.PathLike, alone: bool) -> Scene:
-    """Scene of a shaft: settled by itself, or to be settled with its train."""
-    return load(path) if alone else file.load(path, _part)
+        return at_point(train if point is None else train.with_changes(operation=(point,)))
 
 
 def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:

@@ -14,11 +14,13 @@ exact in their own theory: their bar is none, and what they miss is told by the 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 
+from solidgear.bearings.catalogued import End
+from solidgear.bearings.solved import AS_TOLD, Choice
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.errors import SolidgearError
@@ -49,6 +51,8 @@ class Measured:
         SI.
     bar : float or None
         That meshes leave in it, at most, SI; None where it has none to tell.
+    open : (float, float) or None
+        Least and largest value by what the data of its bearings leave open; None where nothing is.
     """
 
     name: str
@@ -56,6 +60,7 @@ class Measured:
     meaning: str
     value: float
     bar: float | None
+    open: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +112,7 @@ class TrainDeflection:
 
 
 def _plain(one: Measured) -> dict:
-    return {"value": one.value, "bar": one.bar, "unit": one.unit.split()[0]}
+    return {"value": one.value, "bar": one.bar, "open": one.open, "unit": one.unit.split()[0]}
 
 
 @dataclass(frozen=True)
@@ -223,6 +228,8 @@ def deflect_train(
     for model in models:
         progress(model)
         found.append(deflection(workshop, point, model, model))
+    progress("what the data of bearings leave open")
+    found[-1] = _with_ranges(workshop, found[-1])
     standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
     title = workshop.train.title or workshop.train.name
     return Deflections(
@@ -282,11 +289,40 @@ def deflection(
     )
 
 
+def _with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
+    """The same with the ranges of its misalignment over estimated insides and clearance classes."""
+    values = [[m.value for m in found.misalignment]]
+    for choice in _open_choices(workshop):
+        state = Operating(workshop, found.pinion, found.gear, choice).at(found.point)
+        measures = misalignment(workshop.on_flank(found.point.coast), state.system)
+        values.append([float(m.row @ state.coordinates) for m in measures])
+    if len(values) == 1:
+        return found
+    low, high = np.min(values, axis=0), np.max(values, axis=0)
+    told = [replace(m, open=(float(a), float(b))) for m, a, b in zip(found.misalignment, low, high)]
+    return replace(found, misalignment=tuple(told))
+
+
+def _open_choices(workshop: Workshop) -> list[Choice]:
+    """Corners of what catalogue data leave open: estimated insides, and classes of clearance."""
+    data = [
+        b.catalogue
+        for side in SIDES
+        for b in workshop.train.member(side).scene.bearings
+        if b.catalogue is not None
+    ]
+    estimated = any(d.estimated for d in data)
+    ends: tuple[End, ...] = ("softer", "stiffer") if estimated else ("middle",)
+    shares = (0.0, 1.0) if any(isinstance(d.clearance, str) for d in data) else (0.5,)
+    choices = [Choice(end=end, clearance=share) for end in ends for share in shares]
+    return [choice for choice in choices if choice != AS_TOLD]
+
+
 def _six(workshop: Workshop, side: str, state: OperatingState, bars: _Bars) -> tuple[Measured, ...]:
     """Motion of the lumped point of a shaft."""
     end = f"{side}.{workshop.scenes[side].port.name}"
     names = ("x", "y", "z", "thx", "thy", "thz")
-    units = ("m moved",) * 3 + ("rad",) * 3
+    units = ("m moved",) * 3 + ("rad moved",) * 3
     rows = state.system.motion(end)
     return tuple(
         Measured(name, unit, f"of {end}", float(row @ state.coordinates), bars.of(row))
@@ -304,7 +340,7 @@ class _Bars:
         if not self.sides or workshop.train.mesh.local_harmonics:
             return
         shop = workshop.with_train(settled(workshop.train, state))
-        self.tangent: System = shop.system(*(rungs[side] for side in SIDES))
+        self.tangent: System = shop.system(rungs["pinion"], rungs["gear"])
         for side in self.sides:
             body = workshop.shaft(side, JUDGE).body
             self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)

@@ -29,6 +29,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.frames import cross_matrix
 from solidgear.reduction.superelement import PortMotion
 from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
@@ -46,7 +47,7 @@ class Measure:
     ----------
     name : str
     unit : str
-        ``m moved`` or ``rad``.
+        ``m moved`` or ``rad moved``.
     meaning : str
         In a few words.
     row : (N,) ndarray
@@ -83,7 +84,7 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
     """
     ports = [system.port(f"{s}.{workshop.scenes[s].port.name}") for s in SIDES]
     along = [_from_apex(workshop, side, port) for side, port in zip(SIDES, ports)]
-    if np.linalg.norm(np.cross(*along)) < PARALLEL:
+    if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
         return _parallel(workshop, ports)
     return _bevel(ports, along)
 
@@ -110,14 +111,14 @@ def _nearest(ports: list[PortMotion], along: list[np.ndarray]) -> list[np.ndarra
 def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
     here, there = (_seen(port, at) for port, at in zip(ports, _nearest(ports, along)))
     moved, turned = here[:3] - there[:3], here[3:] - there[3:]
-    across = np.cross(*along)
+    across = np.cross(along[0], along[1])
     across = across / np.linalg.norm(across)
     axial = np.linalg.pinv(np.column_stack([along[0], -along[1]])) @ moved
     return [
         Measure("E", "m moved", "offset of the axes", across @ moved),
         Measure("P", "m moved", "pinion along its axis, away from the apex", axial[0]),
         Measure("G", "m moved", "gear along its axis, away from the apex", axial[1]),
-        Measure("shaft angle", "rad", "growth of the angle of the axes", -across @ turned),
+        Measure("shaft angle", "rad moved", "growth of the angle of the axes", -across @ turned),
     ]
 
 
@@ -126,10 +127,12 @@ def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
     normal = workshop.contact.pinion.normal * [1.0, 0.0, 1.0]
     normal = normal / np.linalg.norm(normal)
     here, there = (_seen(port, ports[0].point) for port in ports)
-    slope = np.cross(here[3:] - there[3:], axis, axisa=0).T
+    slope = -cross_matrix(axis) @ (here[3:] - there[3:])
     out = [
-        Measure("slope in plane", "rad", "of the axes, in the plane of action", normal @ slope),
-        Measure("slope across", "rad", "of the axes, across it", np.cross(axis, normal) @ slope),
+        Measure(
+            "in plane", "rad moved", "slope of the axes in the plane of action", normal @ slope
+        ),
+        Measure("across", "rad moved", "slope across it", np.cross(axis, normal) @ slope),
     ]
     widths = [workshop.train.member(side).face_width for side in SIDES]
     known = [width for width in widths if width is not None]

@@ -19,13 +19,13 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
-from solidgear.bearings.solved import AS_TOLD, Choice, made_of, mounted
+from solidgear.bearings.solved import AS_TOLD, Choice, made_of
 from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES, Train
+from solidgear.studies.deflection import seats_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
 from solidgear.system.port_forces import port_forces
@@ -141,15 +141,7 @@ class Operating:
 
     @cached_property
     def _seats(self) -> tuple[Seats, ...]:
-        return tuple(self._of_shaft(side) for side in SIDES)
-
-    def _of_shaft(self, side: str) -> Seats:
-        scene = self.workshop.scenes[side]
-        made = {b.name: self.made[f"{side}.{b.name}"] for b in scene.bearings if b.catalogue}
-        holding = [one for one in mounted(scene, made) if _holds(one)]
-        places = {b.name: b.y for b in scene.bearings}
-        around = scene.housing or scene.housing_axial
-        return Seats(side, tuple(holding), tuple(places[one.port] for one in holding), around)
+        return tuple(seats_of(side, self.workshop.scenes[side], self.made) for side in SIDES)
 
     @cached_property
     def _flanks(self) -> dict[bool, tuple[Workshop, OnBearings]]:
@@ -282,12 +274,6 @@ def _force_on(workshop: Workshop, side: str, force: float) -> np.ndarray:
 
 def _newtons(force: np.ndarray) -> str:
     return ", ".join(f"{v:.0f}" for v in force)
-
-
-def _holds(one: Mounted) -> bool:
-    """False for a free station, whose stiffness is zero."""
-    stiffness = getattr(one.bearing, "stiffness", None)
-    return stiffness is None or bool(np.any(stiffness))
 
 
 def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:

@@ -1,0 +1,159 @@
+"""Tables of a shaft or a train at rest under load, from its record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from math import degrees
+from typing import Any
+
+from solidgear.report.table import Cell, Column, Table, quantity, word
+from solidgear.report.units import ENGINEERING, Units
+
+DOFS = ("x", "y", "z", "thx", "thy", "thz")
+SI_OF = ("m moved",) * 3 + ("rad moved",) * 3
+#: per cent; no smaller error bar is shown
+LEAST = 0.01
+LOAD_OF = ("N",) * 3 + ("N m",) * 3
+
+
+def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
+    """Misalignment by every model, with its bar and what bearings leave open.
+
+    Parameters
+    ----------
+    found : Deflections
+    units : Units, optional
+    """
+    judge = found.judge
+    columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
+    columns += [Column(one.pinion, partial(_of, one, units)) for one in found.found]
+    columns.append(Column("error bar", _bar))
+    if any(m.open is not None for m in judge.misalignment):
+        columns.append(Column("left open", lambda m: _range(m, units)))
+    meant = "; ".join(f"{m.name}: {m.meaning}" for m in judge.misalignment)
+    note = (
+        f"{meant}. Error bar: what the mesh of the last model leaves, by local problems; models "
+        "differ by what their theory leaves out."
+    )
+    if any(m.open is not None for m in judge.misalignment):
+        note += " Left open: by estimated insides and classes of clearance of the bearings."
+    return Table("Misalignment", columns, judge.misalignment, note)
+
+
+def _of(one: Any, units: Units, measured: Any) -> str:
+    value = next(m.value for m in one.misalignment if m.name == measured.name)
+    return units.number(value, measured.unit, 3)
+
+
+def _bar(measured: Any) -> str | None:
+    if measured.bar is None or not measured.value:
+        return None
+    share = 100 * measured.bar / abs(measured.value)
+    return f"± {max(share, LEAST):.2g} %"
+
+
+def _range(measured: Any, units: Units) -> str | None:
+    if measured.open is None:
+        return None
+    low, high = (units.number(v, measured.unit, 3) for v in measured.open)
+    return f"{low} to {high}"
+
+
+def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
+    """Motion of every lumped point and bearing.
+
+    Parameters
+    ----------
+    shafts : sequence of ShaftDeflection
+    units : Units, optional
+    """
+    rows = [(f"{s.name}.{name}", six) for s in shafts for name, six in s.ports.items()]
+    columns = [word("place", lambda row: row[0]), *_six(units, lambda row: row[1])]
+    note = "From where nothing is loaded, in the axes of each shaft's scene, y along it."
+    return Table("Displacements", columns, rows, note)
+
+
+def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
+    """Motion of one place by every model.
+
+    Parameters
+    ----------
+    shafts : sequence of ShaftDeflection
+        One a model.
+    port : str
+    units : Units, optional
+    """
+    columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
+    return Table(f"Motion of {port}", columns, shafts)
+
+
+def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
+    """Columns of the six components of a motion."""
+
+    def one(k: int, item: Any) -> float:
+        return float(of(item)[k])
+
+    return [
+        quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in enumerate(zip(DOFS, SI_OF))
+    ]
+
+
+def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
+    """Load of every bearing, and how those of catalogue data carry it.
+
+    Parameters
+    ----------
+    shafts : sequence of ShaftDeflection
+    units : Units, optional
+    """
+    rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
+    inside = [row for row in rows if row[1].rows]
+    name = word("bearing", lambda row: row[0])
+    loads = [
+        name,
+        quantity("radial", "N", units, lambda row: row[1].radial, 4),
+        Column("towards, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
+        quantity("axial", "N", units, lambda row: float(row[1].load[1]), 4),
+        quantity("moment", "N m", units, lambda row: row[1].moment, 4),
+    ]
+    note = "Load of the shaft on the bearing; its direction counts from x towards z."
+    out = [Table("Bearing loads", loads, rows, note)]
+    if inside:
+        carried = [
+            name,
+            word("loaded", lambda row: _elements(row[1])),
+            quantity("largest", "N", units, lambda row: _largest(row[1]), 4),
+            quantity("pressure", "Pa", units, lambda row: row[1].pressure, 4),
+            quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
+        ]
+        note = (
+            "Elements that carry, row by row; largest load of one; largest pressure at both rings, by "
+            "Hertz or lamina by lamina; "
+            "radial clearance once mounted and warm."
+        )
+        out.append(Table("Inside the bearings", carried, inside, note))
+    return out
+
+
+def _elements(bearing: Any) -> str | Cell | None:
+    if not bearing.rows:
+        return None
+    told = ", ".join(f"{n} of {len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
+    return told if any(bearing.loaded) else Cell("none", "bad")
+
+
+def _largest(bearing: Any) -> float | None:
+    return max((float(row.load.max()) for row in bearing.rows), default=None)
+
+
+def line(shaft: Any) -> Table:
+    """Deflection line of a shaft in SI, for other programs.
+
+    Parameters
+    ----------
+    shaft : ShaftDeflection
+    """
+    heads = ["y [m]", *(f"{d} [{si.split()[0]}]" for d, si in zip(DOFS, SI_OF))]
+    rows = [[float(y), *map(float, six)] for y, six in zip(shaft.stations, shaft.line)]
+    return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in heads], rows)
