@@ -246,7 +246,9 @@ def test_catalogue_bearings_settle_in_their_housing():
     for bearing in scene.bearings:
         out = two.motion[bearing.name] - two.relative[bearing.name]
         assert out[2] == pytest.approx(h[0] + (bearing.y - around.y) * h[1], rel=1e-6)
-        assert out[3] == pytest.approx(h[1], rel=1e-6) and abs(out[0]) < 1e-15  # m; rounding of 1e-5
+        assert (
+            out[3] == pytest.approx(h[1], rel=1e-6) and abs(out[0]) < 1e-15
+        )  # m; rounding of 1e-5
 
 
 def test_a_sweep_over_the_housing(shaft, tmp_path):

@@ -1,6 +1,7 @@
 """check on a train: the guards of both shafts, and what concerns the system."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +9,7 @@ import solidgear as sg
 from solidgear.studies.train import check as checked
 from solidgear.studies.train.check import check_train
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.slips import slip_of_mesh, slips
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"
@@ -106,3 +108,47 @@ def test_options_of_one_shaft_are_refused():
     done = command("check", AXLE, "--set", "order=3")
     assert done.exit_code != 0
     assert "--set is for one shaft" in str(done.exception) + done.output
+
+
+def test_commands_tell_a_slip_above_their_table_in_the_words_of_check(tmp_path):
+    text = open(AXLE, encoding="utf-8").read().replace('"2.5e8 N/m"', '"2.5e8 N/mm"')
+    for name in ("pinion_overhung", "gear_shaft"):
+        text = text.replace(f'"{name}.toml"', f'"{Path("geometry", name).absolute()}.toml"')
+    file = tmp_path / "slip.toml"
+    file.write_text(text)
+    sentence = slip_of_mesh(Workshop(sg.load_train(file)))
+    assert sentence.startswith("probably a slip in units: mesh stiffness")
+    beams = [file, "--pinion", "euler", "--gear", "euler", "--max-frequency", "600"]
+    for words in (["system-modes", *beams], ["response", *beams, "--out", tmp_path / "out"]):
+        done = command(*words)
+        assert done.exit_code == 0, done.output
+        lines = done.output.splitlines()
+        said = lines.index(f"caution: {sentence}")
+        assert said < next(k for k, line in enumerate(lines) if "━" in line)
+        assert lines.count(f"caution: {sentence}") == 1
+    assert sentence in json.loads((tmp_path / "out" / "response.json").read_text())["cautions"]
+
+
+def test_a_slip_in_the_data_of_a_shaft_is_told_with_its_side():
+    gear = TRAIN.gear.scene
+    soft = [
+        b.with_changes(matrix=[[v / 1e6 for v in row] for row in b.matrix]) for b in gear.bearings
+    ]
+    scene = gear.with_changes(bearings=tuple(soft))
+    odd = TRAIN.with_changes(gear=TRAIN.gear.with_changes(scene=scene))
+    (sentence,) = slips(Workshop(odd))
+    assert sentence.startswith("gear: probably a slip in units: ")
+
+
+def test_a_shaft_takes_options_of_its_model():
+    words = ["system-modes", AXLE, "--pinion", "euler", "--gear", "lumped/euler", "--json"]
+    words += ["--max-frequency", "500"]
+    usual = json.loads(command(*words).output)["unknowns"]
+    fine = json.loads(command(*words, "--set", "gear.elements=200").output)["unknowns"]
+    assert fine["pinion"] == usual["pinion"] and fine["gear"] > 2 * usual["gear"]
+    for wrong, said in (
+        ("elements=3", "write SIDE.key=value, such as --set pinion.order=3; sides: pinion, gear"),
+        ("pinion.order=3", "euler: there is no such option"),
+    ):
+        done = command(*words, "--set", wrong)
+        assert done.exit_code != 0 and said in str(done.exception) + done.output

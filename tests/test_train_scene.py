@@ -88,6 +88,94 @@ GIVEN = (
     "line_of_action = [{}]\n"
     'point = ["{} mm", "0 mm", "0 mm"]\ngear_position = [-0.05499494, -0.17676944, 0.0]'
 )
+
+
+def parallel(tmp_path, pinion="", gear="", mesh=""):
+    """The contact of a pair on parallel shafts, with keys added to its tables; 14 and 45 teeth, 67 mm
+    and 0.478 rad on the pinion.
+    """
+    changes = (
+        ("[gear]\n", f"[gear]\n{gear}\n"),
+        ("[pinion]\n", f"[pinion]\n{pinion}\n"),
+        ("[mesh]\n", f"[mesh]\n{mesh}\n"),
+    )
+    return contact(load_train(written(tmp_path, *PARALLEL, *changes)))
+
+
+@pytest.mark.parametrize(
+    "key, agrees, told, refused",
+    [
+        ("pitch_radius", '"215.36 mm"', '"218 mm"', '"21.5 mm"'),
+        ("pitch_angle", "0", "0.02", "0.3"),
+        ("spiral_angle", '"0.478 rad"', '"0.50 rad"', '"18 deg"'),
+        ("face_width", '"60 mm"', '"40 mm"', None),
+    ],
+)
+def test_numbers_of_the_gear_agree_with_the_pinion_or_it_is_told(
+    tmp_path, key, agrees, told, refused
+):
+    before = parallel(tmp_path).cautions
+    assert parallel(tmp_path, gear=f"{key} = {agrees}").cautions == before
+    more = parallel(tmp_path, gear=f"{key} = {told}").cautions
+    assert len(more) == len(before) + 1 and f"{key} of the gear" in more[0]
+    if refused is not None:
+        with pytest.raises(sg.SceneError, match=f"gear.{key}: "):
+            parallel(tmp_path, gear=f"{key} = {refused}")
+
+
+def test_numbers_of_the_gear_refuse_nothing_where_the_line_is_given(tmp_path):
+    given = GIVEN.format(NORMAL, -54.99494)
+    changes = (LINE, given), ("[gear]\n", '[gear]\npitch_radius = "100 mm"\n')
+    found = contact(load_train(written(tmp_path, *changes)))
+    assert any("pitch_radius of the gear: is 1.493 times" in line for line in found.cautions)
+
+
+def test_the_right_flank_is_right_of_a_tooth_with_its_tip_up_seen_from_the_apex(tmp_path):
+    along, tip = np.array([0.0, 1.0, 0.0]), np.array([-1.0, 0.0, 0.0])  # the pinion meshes at -x
+    right = np.cross(along, tip)
+    old = 'loaded_side = "concave"'
+    for word, sign in (("right", -1), ("left", 1)):
+        change = old, f'loaded_side = "{word}"'
+        changes = *PARALLEL, change, ('loaded_side = "convex"', "# ")
+        push = contact(load_train(written(tmp_path, *changes))).pinion.normal
+        assert np.sign(push @ right) == sign, word  # a force on a flank points into the tooth
+
+
+def test_words_of_bevel_flanks_mean_the_flanks_of_helical_ones(tmp_path):
+    # left-handed teeth, seen from the apex, lean to the left: their concave flank faces there
+    for word, same in (("left", "concave"), ("right", "convex")):
+        found = []
+        for side in (word, same):
+            bare = 'loaded_side = "convex"', "# "
+            changes = bare, ('loaded_side = "concave"', f'loaded_side = "{side}"')
+            train = load_train(written(tmp_path, *PARALLEL, *changes))
+            found.append(contact(train).pinion.vector)
+            assert train.pinion.flank == word
+        assert np.array_equal(*found)
+
+
+def test_spur_gears_need_no_hand_where_the_flank_is_named(tmp_path):
+    changes = [
+        *PARALLEL,
+        ('loaded_side = "concave"', 'loaded_side = "left"'),
+        ('hand = "left"', "# "),
+        ('hand = "right"', "# "),
+        ('loaded_side = "convex"', "# "),
+        ('spiral_angle = "0.478 rad"', "spiral_angle = 0"),
+    ]
+    push = contact(load_train(written(tmp_path, *changes))).pinion.normal
+    assert push[1] == 0 and push[2] == pytest.approx(np.cos(np.radians(25)))
+
+
+def test_left_and_right_flanks_are_of_parallel_shafts_and_touch_their_own(tmp_path):
+    left = 'loaded_side = "concave"', 'loaded_side = "left"'
+    with pytest.raises(sg.SceneError, match="pinion.loaded_side = .left.: left and right flanks"):
+        load_train(written(tmp_path, left))
+    with pytest.raises(sg.SceneError, match="is the right flank, and the left one is loaded on"):
+        right = 'loaded_side = "convex"', 'loaded_side = "right"'
+        load_train(written(tmp_path, *PARALLEL, left, right))
+
+
 NORMAL = "0.23183445, 0.5465063, 0.80472583"
 # file text to replace, by what, and what the sentence must hold
 BAD = {
@@ -266,7 +354,7 @@ def test_a_wheel_that_is_a_rigid_mass_needs_its_pitch_radius():
 
     train = spur_train()
     bare = train.with_changes(gear=train.gear.with_changes(pitch_radius=None))
-    with pytest.raises(sg.SceneError, match="off the gear, whose largest radius is 150.0 mm"):
+    with pytest.raises(sg.SceneError, match="gear.pitch_radius: is missing.* a rigid head"):
         Workshop(bare)
 
 

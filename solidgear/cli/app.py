@@ -170,17 +170,20 @@ def options(pairs: list[str] | None) -> dict:
     return out
 
 
-def options_by_model(pairs: list[str] | None, models: Collection[str]) -> dict[str, dict]:
-    """Builder options per model from ``MODEL.key=value`` texts."""
-    out: dict[str, dict] = {}
+def options_by_name(
+    pairs: list[str] | None, names: Collection[str], what: str, example: str
+) -> dict[str, dict]:
+    """Builder options by the names of models or of shafts, from ``NAME.key=value`` texts."""
+    out: dict[str, list[str]] = {}
     for pair in pairs or []:
-        model, dot, rest = pair.partition(".")
-        if not dot or model not in models:
+        name, dot, rest = pair.partition(".")
+        if not dot or name not in names:
             raise SolidgearError(
-                f"--set {pair}: write MODEL.key=value, such as --set solid.around=32; models: {', '.join(models)}"
+                f"--set {pair}: write {what.upper()}.key=value, such as --set {example}; "
+                f"{what}s: {', '.join(names)}"
             )
-        out.setdefault(model, {}).update(options([rest]))
-    return out
+        out.setdefault(name, []).append(rest)
+    return {name: options(own) for name, own in out.items()}
 
 
 def _value(text: str):

@@ -26,7 +26,7 @@ from solidgear.cli.app import (
     build_body,
     caution,
     command,
-    options_by_model,
+    options_by_name,
     say,
     with_engine,
 )
@@ -104,7 +104,7 @@ def compare(
     loaded = load(scene)
     wanted = tuple(m.strip() for m in models.split(",") if m.strip())
     check_models(wanted)
-    chosen = options_by_model(settings, LADDER.bodies)
+    chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
     with held(out):

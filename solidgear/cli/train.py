@@ -3,12 +3,31 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import FIDELITY, UNITS, JsonFlag, UnitsOption, caution, command, say
+from solidgear.cli.app import (
+    FIDELITY,
+    UNITS,
+    JsonFlag,
+    UnitsOption,
+    caution,
+    command,
+    say,
+)
+from solidgear.cli.at_speed import (
+    Asked,
+    Fit,
+    Measured,
+    OfOption,
+    SpeedOption,
+    Within,
+    say_at_speed,
+)
+from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
 
@@ -65,6 +84,7 @@ def workshop(
     max_frequency: float | None,
     local_harmonics: str | None = None,
     point: str | None = None,
+    settings: Mapping[str | tuple[str, str], Mapping] | None = None,
 ):
     """Workshop of a train, once the options that all commands share are sound."""
     from solidgear.scene.toml_file import parse
@@ -84,7 +104,7 @@ def workshop(
         mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(local_harmonics))
         loaded = loaded.with_changes(mesh=mesh)
     try:
-        return Workshop(loaded, reduction, kept)
+        return Workshop(loaded, reduction, kept, settings or {})
     except SceneError as error:  # what the mesh of a sound file cannot be
         raise error.located(parse(str(path)), where=str(path)) from None
 
@@ -147,6 +167,7 @@ def system_modes(
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    settings: ShaftSettings = None,
     point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
@@ -154,10 +175,13 @@ def system_modes(
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.report.train_tables import modes
     from solidgear.studies.train.modes import train_modes
+    from solidgear.studies.train.slips import slips
 
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point)
+    own = of_shafts(settings, pinion, gear)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point, own)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
+    said = slips(shop)
     found = train_modes(shop, pinion, gear, max_frequency)
     if units != UNITS and turn is None:
         raise SolidgearError(
@@ -166,11 +190,13 @@ def system_modes(
         )
     drawn = _drawn(shop, pinion, gear, pictures, mode, found) if pictures else []
     if turn is not None:
-        drawn += _turned(shop, found, turn, max_frequency, units)
+        drawn += _turned(shop, found, turn, max_frequency, units, said)
     if as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
+        cautions = {"cautions": [*said, *found.cautions]}
+        print(json.dumps(found.as_dict() | cautions, allow_nan=False))
         return
-    say(*found.heading(), modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
+    say(*found.heading(), *map(caution, said))
+    say(modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
 
 
 def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
@@ -184,7 +210,9 @@ def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None
     return lines + sorted({one.reason for one in done if not one.ok})
 
 
-def _turned(shop, found, path: Path, max_frequency: float | None, units: str) -> list[str]:
+def _turned(
+    shop, found, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
+) -> list[str]:
     """Write the page in which modes can be turned; what is to be said of it."""
     from solidgear.report import train_tables
     from solidgear.report.train_sheet import write_sheet
@@ -208,7 +236,7 @@ def _turned(shop, found, path: Path, max_frequency: float | None, units: str) ->
         ],
         viewer=viewer_fragment([models], still=still, first=first),
         notes=found.notes(),
-        cautions=found.cautions,
+        cautions=[*slips, *found.cautions],
     )
     return [*filter(None, [said]), f"Written: {path}"]
 
@@ -236,9 +264,15 @@ def response(
         int | None,
         typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
     ] = None,
+    speed: SpeedOption = None,
+    of: OfOption = "pinion",
+    measured: Measured = None,
+    fit_speed: Fit = None,
+    within: Within = None,
     reduction: Reduction = "rubin",
     kept: Kept = 24,
     local_harmonics: LocalHarmonics = None,
+    settings: ShaftSettings = None,
     point: Point = None,
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
@@ -247,11 +281,14 @@ def response(
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
     from solidgear.studies.train.comparison import described
-    from solidgear.studies.train.modes import unpublished_lines
+    from solidgear.studies.train.modes import train_modes, unpublished_lines
     from solidgear.studies.train.orders import order_map
     from solidgear.studies.train.respond import respond
+    from solidgear.studies.train.slips import slips
 
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point)
+    own = of_shafts(settings, pinion, gear)
+    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point, own)
+    asked = Asked(shop.train, speed, of, measured, fit_speed, within)
     mixes = [(pinion, gear), *map(mix, against or [])]
     forces = _forces(force)
     with held(out):
@@ -260,20 +297,27 @@ def response(
             for pair in mixes
         ]
         unpublished = shop.train.unpublished()
-        notes = {"damping": damping, "unpublished": unpublished, "cautions": found[0].cautions}
+        said = slips(shop)
+        cautions = [*said, *found[0].cautions]
+        notes = {"damping": damping, "unpublished": unpublished, "cautions": cautions}
         title = shop.train.called
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
         # a force on a port has no order of the mesh
         kind = (damping, matched_at or 0.0)
         lines = None if forces else order_map(shop, pinion, gear, max_frequency, *kind, orders)
+        modes = lines.modes if lines else train_modes(shop, pinion, gear, max_frequency).modes
+        there = asked.found(modes)
         told = described(shop)
-        files = write_response(out, found, title, teeth, band, notes, lines, told, units)
+        files = write_response(out, found, title, teeth, band, notes, lines, told, units, there)
     if as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     say(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", soft_wrap=False)
+    say(*map(caution, said))
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
     print_peaks(tops, "mesh force", "N", teeth, units)
+    if there is not None:
+        say_at_speed(there)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from solidgear.machine.whole_file import whole
-from solidgear.report import train_tables
+from solidgear.report import speed_tables, train_tables
+from solidgear.report.measured_chart import measured_chart
 from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import WIDE, Make
 from solidgear.report.table import Column, Table
@@ -32,10 +33,13 @@ def write_response(
     orders: Any = None,
     train: Mapping[str, Any] | None = None,
     units: str | Units = ENGINEERING,
+    speed: Any = None,
 ) -> list[Path]:
     """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
     ``response.json`` with peaks and what else is told, and ``orders`` as table and charts; with
-    `train`, what is known of it as plain data, also the page ``response.html``.
+    `train`, what is known of it as plain data, also the page ``response.html``; with `speed`, an
+    :class:`solidgear.studies.train.at_speed.AtSpeed`, ``lines.csv``, and of a measured spectrum
+    ``peaks.csv`` and the chart ``measured``.
 
     Charts and page are in `units`, all else in SI.
 
@@ -54,6 +58,17 @@ def write_response(
         tables["orders"] = crossings(orders)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)
         told.append(train_tables.crossings([vars(c) for c in orders.crossings], shown))
+    remarks: list[str] = []
+    if speed is not None:
+        tables["lines"] = speed_tables.all_lines(speed.lines)
+        found = [speed_tables.coincidences(speed), speed_tables.first_lines(speed.lines)]
+        remarks, notes = speed.notes(), {**notes, "at_speed": speed.as_dict()}
+        if speed.spectrum is not None:
+            tables["peaks"] = speed_tables.measured_file(speed)
+            make = partial(measured_chart, speed, first, title, shown)
+            charts = {"measured": make, **charts}
+            found = [speed_tables.measured(speed), *found]
+        told = [*found, *told]
     peaks = [
         {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
     ]
@@ -66,7 +81,8 @@ def write_response(
         f"Steady response, {first.damping} losses; tables of {label(first)}.",
         [*told, train_tables.facts(train, shown)],
         charts=charts,
-        cautions=first.cautions,
+        notes=remarks,
+        cautions=notes.get("cautions", ()),
     )
     return [page, *files]
 

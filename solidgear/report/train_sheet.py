@@ -21,6 +21,10 @@ WORDS = {
     "deflection": (
         "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
     ),
+    "measured": (
+        "The measured spectrum with the orders that its peaks are at this speed, above the computed "
+        "mesh force over the same frequencies. Grey lines: natural frequencies."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
 }
 

@@ -17,7 +17,7 @@ from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation, operation_problems
 from solidgear.scene.stations import Bearing
-from solidgear.scene.train_tables import Losses, Member, Mesh, Rotor, TrainAsk
+from solidgear.scene.train_tables import FLANKS, Losses, Member, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
 
 SIDES = ("pinion", "gear")
@@ -96,6 +96,7 @@ class Train(Model):
                 f"both wheels are {hands[0]}-handed and cannot mesh; a {pair} has one of each",
                 path=("gear", "hand"),
             )
+        yield from self._flanks()
         ratio = self.gear.teeth / self.pinion.teeth
         given = self.mesh.ratio
         if given is not None and not isclose(given, ratio, rel_tol=RATIO_TYPED):
@@ -104,6 +105,24 @@ class Train(Model):
                 "correct it or leave it out",
                 path=("mesh", "ratio"),
             )
+
+    def _flanks(self) -> Iterator[SceneError]:
+        """Left and right flanks are those of cylindrical gears, and touch their own kind."""
+        named = [side for side in SIDES if self.member(side).loaded_side in FLANKS]
+        if named and self.mesh.shaft_angle:
+            yield SceneError(
+                "left and right flanks are words of parallel shafts (ISO 21771); of a bevel gear "
+                "write concave or convex",
+                path=(named[0], "loaded_side"),
+            )
+        elif named and None not in (self.pinion.flank, self.gear.flank):
+            if self.pinion.flank != self.gear.flank:
+                yield SceneError(
+                    f"is the {self.gear.flank} flank, and the {self.pinion.flank} one is loaded on "
+                    "the pinion: seen from one side, left flanks touch left ones; correct one of "
+                    "the two, or leave that of the gear out",
+                    path=("gear", "loaded_side"),
+                )
 
     def _springs(self) -> Iterator[SceneError]:
         for rotor, side in (("engine", "pinion"), ("load", "gear")):

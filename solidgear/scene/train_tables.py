@@ -38,6 +38,8 @@ FIRST_HARMONIC, LAST_HARMONIC = 2, 32
 Vector = Annotated[
     tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
 ]
+#: of cylindrical gears (ISO 21771)
+FLANKS = ("left", "right")
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
 
 
@@ -67,7 +69,9 @@ class Member(Model):
     scene : Scene
     teeth : int
     hand : {'left', 'right'} or None
-    loaded_side : {'concave', 'convex'} or None
+    loaded_side : {'concave', 'convex', 'left', 'right'} or None
+        Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
+        of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771).
     pitch_radius, face_width : float or None
         At the heel and along the cone, m.
     pitch_angle, spiral_angle : float or None
@@ -83,7 +87,7 @@ class Member(Model):
     scene: Scene
     teeth: Teeth
     hand: Literal["left", "right"] | None = None
-    loaded_side: Literal["concave", "convex"] | None = None
+    loaded_side: Literal["concave", "convex", "left", "right"] | None = None
     pitch_radius: PositiveLength | None = None
     face_width: PositiveLength | None = None
     pitch_angle: PitchAngle | None = None
@@ -91,6 +95,19 @@ class Member(Model):
     apex: Literal["start", "end"] = "start"
     head: HeadInertia | None = None
     scene_load: Literal["added", "replaced"] | None = None
+
+    @property
+    def flank(self) -> str | None:
+        """The loaded flank of a cylindrical gear, ``left`` or ``right``; None where it is not told.
+
+        A concave flank faces the way the teeth lean: right-handed teeth, seen from the apex, to the
+        right.
+        """
+        if self.loaded_side in FLANKS or self.loaded_side is None:
+            return self.loaded_side
+        if self.hand is None:
+            return None
+        return self.hand if self.loaded_side == "concave" else FLANKS[self.hand == "left"]
 
 
 class TorsionSpringTable(Model):

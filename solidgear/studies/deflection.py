@@ -289,9 +289,16 @@ def shaft_deflection(
         stations = np.array([0.0, scene.length])
         line = _rigid_line(system, part, scene, found.coordinates, stations)
     else:
-        stations = np.linspace(0.0, scene.length, STATIONS)
+        stations = _stations(body, scene.length)
         line = Projection(body, stations)(system.expand(part, found.coordinates))
     return ShaftDeflection(part, model, stations, line, ports, bearings)
+
+
+def _stations(body: Body, length: float) -> np.ndarray:
+    """Places of a deflection line, m: the nodes of a beam, between which sections would be guessed."""
+    if any(block.sections is not None for block in body.blocks):
+        return np.linspace(0.0, length, STATIONS)
+    return np.unique(min((block.y for block in body.blocks), key=len))
 
 
 def _rigid_line(

@@ -65,7 +65,9 @@ def line_of_action(
     The concave flank faces the way its teeth lean, so a load on it pushes the other way: t = -s for
     the concave side and +s for the convex one.  Hence a loaded concave side drives the member away
     from the apex and a convex one pulls it in, whatever the hand; for a *given* direction of load,
-    changing the hand changes the sign of the spiral part.
+    changing the hand changes the sign of the spiral part.  Left and right flanks are those of a tooth
+    with its tip upwards, seen from the apex (ISO 21771: from the datum face): a load on the left one
+    turns the member about +y, t = +1.
 
     Parameters
     ----------
@@ -77,7 +79,7 @@ def line_of_action(
     pressure_angle : float
         phi, normal to the tooth, 0 to below pi/2, rad.
     hand : {"left", "right"}
-    loaded_side : {"concave", "convex"}
+    loaded_side : {"concave", "convex", "left", "right"}
     member : {"pinion", "gear"}
         On which side of its axis it meshes: pinion at -x, gear at +x.
 
@@ -93,7 +95,8 @@ def line_of_action(
 
     Notes
     -----
-    For a straight bevel gear the hand only settles, together with the side, which flank is loaded.
+    For straight teeth the hand only settles, together with a concave or convex side, which flank is
+    loaded.
 
     References
     ----------
@@ -112,7 +115,8 @@ def line_of_action(
     _angle("spiral_angle", spiral_angle)
     _angle("pressure_angle", pressure_angle)
     s = _SPIRAL[_word("hand", hand, _SPIRAL)]
-    t = -s if _word("loaded_side", loaded_side, ("concave", "convex")) == "concave" else s
+    turns = {"concave": -s, "convex": s, "left": 1.0, "right": -1.0}
+    t = turns[_word("loaded_side", loaded_side, turns)]
     side = _SIDE_OF_MESH[_word("member", member, _SIDE_OF_MESH)]
     along_tooth = -s * t * cos(pressure_angle) * sin(spiral_angle)
     axial = sin(pressure_angle) * sin(pitch_angle) + along_tooth * cos(pitch_angle)

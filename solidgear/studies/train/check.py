@@ -18,7 +18,6 @@ from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
-from solidgear.studies.guards.notice import slip_in_units
 from solidgear.studies.train.local import undriven
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import (
@@ -29,16 +28,10 @@ from solidgear.studies.train.modes import (
     wrench_lines,
 )
 from solidgear.studies.train.shaft import JUDGE
+from solidgear.studies.train.slips import slip_of_mesh
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
-#: what a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
-#: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
-#: some thousandths of the module at most, and 1e-5 of it is what no gear is ground to
-SOUND = {
-    "mesh stiffness over E r": (1e-3, 2.0),
-    "transmission error over 2 r / z": (1e-5, 0.05),
-}
 ALONE = (
     "guards judge each shaft alone; which of them needs the solid for modes and mesh force, and from "
     "which frequency on, is what solidgear compare says of a train"
@@ -84,7 +77,9 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
         light.take(side, JUDGE, probe.rung(JUDGE).body)
     faults: list[str] = []
     facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
-    cautions = [*workshop.cautions, *_units(workshop)]
+    cautions = [*workshop.cautions]
+    if sentence := slip_of_mesh(workshop):  # those of the shafts are told with their guards
+        cautions.append(sentence)
     cautions += [*_losses(train), *_error(train, limit)]
     try:
         facts += _system(light, limit)
@@ -122,22 +117,6 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
         f"shafts {loss.shafts:g}, bearings {loss.bearings:g}, mesh {loss.mesh:g}, "
         f"springs {loss.springs:g}"
     )
-
-
-def _units(workshop: Workshop) -> Iterator[str]:
-    """Orders of magnitude that a slip in units moves."""
-    train, met = workshop.train, workshop.contact
-    lever, teeth = abs(met.pinion.lever), train.pinion.teeth
-    stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
-    table = train.mesh.transmission_error
-    error = max((*table.orders, *table.amplitude), default=0.0)
-    values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
-    found = [(name, value, "") for name, value in zip(SOUND, values)]
-    if not error:
-        found.pop()  # told by itself
-    legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
-    if sentence := slip_in_units(found, SOUND, legend):
-        yield sentence
 
 
 def _losses(train: Train) -> Iterator[str]:

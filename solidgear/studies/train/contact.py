@@ -9,6 +9,8 @@ import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train_tables import FLANKS
+from solidgear.studies.train.own_numbers import compared
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
     MeshVector,
@@ -82,7 +84,7 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     Raises
     ------
     SceneError
-        For missing gear data, a line of action that is no unit vector or lies in the wrong frame,
+        For missing gear data, numbers of the gear that contradict those of the pinion, a line of action that is no unit vector or lies in the wrong frame,
         a mesh point off the gears, or lever arms that are not in the ratio of the teeth.
 
     Examples
@@ -92,7 +94,7 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     >>> round(abs(found.gear.lever / found.pinion.lever), 4), found.cautions[0][:43]
     (3.2143, 'the pitch angle of 0.391 rad is not that of')
     """
-    mesh, cautions = train.mesh, []
+    mesh, cautions = train.mesh, compared(train)
     wrench = None
     if mesh.contact_cells:
         wrench = contact_wrench(
@@ -154,6 +156,8 @@ def _in_scene(apex: str, vector: MeshVector) -> MeshVector:
 def _needs(train: Train, *keys: str, what: str) -> None:
     missing = [key for key in keys if getattr(train.pinion, key) is None]
     straight = not train.pinion.spiral_angle
+    if straight and train.pinion.loaded_side in FLANKS:
+        missing = [key for key in missing if key != "hand"]  # straight teeth have none
     words = dict.fromkeys(GEOMETRY, "")
     if straight and {"hand", "loaded_side"} & set(missing):
         both = ": of straight teeth both together say which flank is loaded"
@@ -169,8 +173,9 @@ def _of_teeth(train: Train, pressure_angle: float | None) -> np.ndarray:
     _needs(train, *GEOMETRY, what="a line of action from gear geometry")
     p = train.pinion
     assert p.pitch_angle is not None and p.spiral_angle is not None
-    assert p.hand is not None and p.loaded_side is not None and pressure_angle is not None
-    return line_of_action(p.pitch_angle, p.spiral_angle, pressure_angle, p.hand, p.loaded_side)
+    assert p.loaded_side is not None and pressure_angle is not None
+    hand = p.hand or "right"  # of straight teeth, whose flank is told by itself
+    return line_of_action(p.pitch_angle, p.spiral_angle, pressure_angle, hand, p.loaded_side)
 
 
 def _mean_radius(train: Train) -> float:
@@ -265,6 +270,14 @@ def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
     y = port.y + (point[1] if apex == "start" else -point[1])
     slack = OUTSIDE_LENGTH * (port.hi - port.lo)
     path = ("mesh", "point") if train.mesh.point is not None else ("mesh",)
+    member = train.member(side)
+    if radius > most * (1 + OUTSIDE_RADIUS) and member.head and not member.pitch_radius:
+        raise SceneError(
+            f"is missing; the mesh point lies {1e3 * radius:.1f} mm from the axis, beyond the "
+            f"segments of the shaft, whose largest radius is {1e3 * most:.1f} mm: a wheel that is a "
+            "rigid head needs it to say how far its teeth reach",
+            path=(side, "pitch_radius"),
+        )
     if radius > most * (1 + OUTSIDE_RADIUS):
         raise SceneError(
             f"the mesh point lies {1e3 * radius:.1f} mm from the axis of the {side}, off the "

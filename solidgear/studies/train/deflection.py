@@ -1,15 +1,4 @@
-r"""Deflection and misalignment of a train at an operating point, by any model, with error bars.
-
-A quantity a'q of the state at rest has a bar where a shaft is a harmonic solid: its flexibility at
-the ports lies between F and F + M (:mod:`solidgear.bounds.harmonic`), so that with the forces f on
-the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
-tangents,
-
-    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts
-
-(Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
-exact in their own theory: their bar is none, and what they miss is told by the harmonic solid.
-"""
+"""Deflection and misalignment of a train at an operating point, by any model, with error bars."""
 
 from __future__ import annotations
 
@@ -21,20 +10,16 @@ import numpy as np
 
 from solidgear.bearings.catalogued import End
 from solidgear.bearings.solved import AS_TOLD, Choice
-from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
-from solidgear.bounds.safety import LOCAL
 from solidgear.errors import SolidgearError
 from solidgear.judge.deviations import WITHIN, gap_verdict
-from solidgear.scene.coned import coned
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import Operating, OperatingState, settled
+from solidgear.studies.train.operation import Operating, OperatingState
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID
-from solidgear.system.port_forces import port_forces
-from solidgear.system.system import System
+from solidgear.studies.train.static_bars import StaticBars
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
@@ -265,7 +250,7 @@ def deflection(
     state = Operating(workshop, pinion, gear).at(point)
     seconds = perf_counter() - start
     system = state.system
-    bars = _Bars(workshop, state, rungs)
+    bars = StaticBars(workshop, state, rungs)
     measures = misalignment(workshop.on_flank(point.coast), system)
     told = tuple(
         Measured(m.name, m.unit, m.meaning, float(m.row @ state.coordinates), bars.of(m.row))
@@ -318,7 +303,9 @@ def _open_choices(workshop: Workshop) -> list[Choice]:
     return [choice for choice in choices if choice != AS_TOLD]
 
 
-def _six(workshop: Workshop, side: str, state: OperatingState, bars: _Bars) -> tuple[Measured, ...]:
+def _six(
+    workshop: Workshop, side: str, state: OperatingState, bars: StaticBars
+) -> tuple[Measured, ...]:
     """Motion of the lumped point of a shaft."""
     end = f"{side}.{workshop.scenes[side].port.name}"
     names = ("x", "y", "z", "thx", "thy", "thz")
@@ -328,71 +315,6 @@ def _six(workshop: Workshop, side: str, state: OperatingState, bars: _Bars) -> t
         Measured(name, unit, f"of {end}", float(row @ state.coordinates), bars.of(row))
         for name, unit, row in zip(names, units, rows)
     )
-
-
-class _Bars:
-    """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
-
-    def __init__(self, workshop: Workshop, state: OperatingState, rungs: dict[str, str]):
-        self.workshop, self.state = workshop, state
-        self.sides = [side for side in SIDES if rungs[side] == JUDGE]
-        self.bounds: dict[str, HarmonicBounds] = {}
-        if not self.sides or workshop.train.mesh.local_harmonics:
-            return
-        shop = workshop.with_train(settled(workshop.train, state))
-        self.tangent: System = shop.system(rungs["pinion"], rungs["gear"])
-        for side in self.sides:
-            body = workshop.shaft(side, JUDGE).body
-            self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)
-        self.rest = self._ports(state.forces())
-
-    def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """(6 p,) forces on the ports of every harmonic shaft."""
-        out = {}
-        for side, bounds in self.bounds.items():
-            out[side] = np.zeros(6 * len(bounds.body.ports))
-            for end, six in forces.items():
-                part, _, port = end.partition(".")
-                if part == side:
-                    at = 6 * bounds.body.port_index(port)
-                    out[side][at : at + 6] += six
-        return out
-
-    def of(self, row: np.ndarray) -> float | None:
-        """Bar of ``row @ coordinates``; None where there is none, and where the number grows as the
-        train turns.
-        """
-        if not self.bounds:
-            return None
-        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
-        if turns > 1e-9 * np.linalg.norm(row):
-            return None
-        adjoint = port_forces(self.tangent, self.tangent.static(row))
-        own = self._ports(_with_load(adjoint, self.tangent, row))
-        total = 0.0
-        for side, bounds in self.bounds.items():
-            f, g = self.rest[side], own[side]
-            two, one = (
-                float(np.sqrt(max(f @ m @ f, 0.0) * max(g @ m @ g, 0.0)))
-                for m in (bounds.more, bounds.less)
-            )
-            total += LOCAL * with_tail(two, one)
-        return total
-
-
-def _with_load(
-    forces: dict[str, np.ndarray], system: System, row: np.ndarray
-) -> dict[str, np.ndarray]:
-    """Forces of links with the unit load that a row of coordinates stands for, on the ports that it
-    is made of.
-    """
-    out = dict(forces)
-    ends = [f"{side}.{port}" for side in SIDES for port in system.parts[side].ports]
-    rows = np.vstack([system.motion(end) for end in ends])
-    loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
-    for end, six in zip(ends, loads.reshape(-1, 6)):
-        out[end] = out.get(end, np.zeros(6)) + six
-    return out
 
 
 def _standing(one: TrainDeflection, judge: TrainDeflection, tolerance: float) -> Standing:

@@ -25,6 +25,7 @@ from solidgear.studies.train.naming import driven, mode_names
 from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
 from solidgear.studies.train.respond import Drive, TrainResponse, respond
 from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung
+from solidgear.studies.train.slips import slips
 
 #: models of one shaft that are mixed, cheapest first
 MIXED = (*LADDER.of(BEAM), JUDGE)
@@ -229,7 +230,11 @@ def judge_train(
         judge.bar(),
         tuple(judge.responses.values()),
         workshop.train.unpublished(),
-        (*workshop.cautions, *local_lines(workshop, judge.system)),
+        (
+            *slips(workshop),
+            *workshop.cautions,
+            *local_lines(workshop, judge.system),
+        ),
     )
 
 

@@ -47,7 +47,8 @@ class Workshop:
     kept : int
         Modes of each shaft.
     settings : mapping
-        Builder options of rungs.
+        Builder options of rungs, by their names; of one shaft at a rung by (side, rung), before
+        those of the rung.
 
     Examples
     --------
@@ -61,7 +62,7 @@ class Workshop:
     train: Train
     reduction: str = "rubin"
     kept: int = KEPT
-    settings: Mapping[str, Mapping] = field(default_factory=dict)
+    settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
 
     def __post_init__(self):
         if self.reduction not in REDUCTIONS:
@@ -86,7 +87,9 @@ class Workshop:
                 self._made[side, rung] = self._from_body(side, rung, kind, base)
             else:
                 start = perf_counter()
-                body = build(self.scenes[side], rung, **self.settings.get(rung, MESH.get(rung, {})))
+                options = self.settings.get(rung, MESH.get(rung, {}))
+                own = self.settings.get((side, rung), {})
+                body = build(self.scenes[side], rung, **{**options, **own})
                 part = REDUCTIONS[self.reduction](body, n=self.kept)
                 seconds = perf_counter() - start
                 self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.studies.train.kinematics import MESH_ORDERS, of_mesh, of_shaft
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainMode, train_modes
 from solidgear.studies.train.respond import Drive
 
-#: orders of the mesh that are drawn, and at most
-MESH_ORDERS, MOST_ORDERS = 3, 20
-SHAFT_ORDERS = (1, 2)
+#: orders of the mesh at most, and those of shafts that are drawn
+MOST_ORDERS, SHAFT_ORDERS = 20, (1, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,20 +127,20 @@ def order_map(
     drive = Drive(workshop, pinion, gear, damping, matched_hz)
     highest = highest_hz or workshop.train.ask.max_frequency
     given = len(drive.error.orders) or 1
-    count = max(MESH_ORDERS, given) if mesh_orders is None else mesh_orders
+    count = max(*MESH_ORDERS, given) if mesh_orders is None else mesh_orders
     if not 1 <= count <= MOST_ORDERS:
         raise SolidgearError(f"{count} orders of the mesh; ask for 1 to {MOST_ORDERS}")
     teeth, top = workshop.train.pinion.teeth, 60 * highest / workshop.train.pinion.teeth
     hz = drive.grid(highest)
     lines = []
-    for order in range(1, count + 1):
-        own = OrderLine(f"mesh {order}", float(order * teeth))
-        if order <= given:
-            force = np.abs(drive.mesh(hz, order)[1])
+    for n, order in enumerate(of_mesh("mesh", float(teeth), range(1, count + 1)), start=1):
+        own = OrderLine(order.name, order.per_turn)
+        if n <= given:
+            force = np.abs(drive.mesh(hz, n)[1])
             own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
         lines.append(own)
     for side, turns in (("pinion", 1.0), ("gear", 1 / workshop.train.ratio)):
-        lines += [OrderLine(f"{side} {n}", n * turns) for n in shaft_orders]
+        lines += [OrderLine(o.name, o.per_turn) for o in of_shaft(side, turns, shaft_orders)]
     modes = train_modes(workshop, pinion, gear, highest).modes
     elastic = tuple(m for m in modes if 0 < m.frequency_hz <= highest)
     crossings = []

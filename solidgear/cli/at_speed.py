@@ -1,0 +1,142 @@
+"""Options of `response` that speak of one speed, and what is printed of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solidgear.cli.app import say
+from solidgear.errors import SceneError, SolidgearError, show
+
+if TYPE_CHECKING:
+    from solidgear.scene.train import Train
+    from solidgear.studies.train.at_speed import AtSpeed
+    from solidgear.studies.train.modes import TrainMode
+
+SpeedOption = Annotated[
+    str | None,
+    typer.Option(
+        "--speed",
+        help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, and '
+        "those near natural frequencies. By default that of the operating point.",
+    ),
+]
+OfOption = Annotated[str, typer.Option("--of", help="Whose speed it is: pinion or gear.")]
+Measured = Annotated[
+    Path | None,
+    typer.Option(
+        "--measured",
+        help="Spectrum at this speed (CSV: frequency in Hz, amplitude), laid over the computed "
+        "mesh force; every peak is told with its order.",
+    ),
+]
+Fit = Annotated[
+    float | None,
+    typer.Option(
+        "--fit-speed",
+        help="Fit the speed within this share, such as 0.03, to the mesh order in the spectrum.",
+    ),
+]
+Within = Annotated[
+    float | None,
+    typer.Option(
+        "--within", help="Share of a natural frequency within which an order is told; 0.05."
+    ),
+]
+#: rows of tables on a terminal
+MOST = 30
+
+
+class Asked:
+    """Options of one speed, checked before anything is solved.
+
+    Parameters
+    ----------
+    train : Train
+    speed, of, measured, fit, within
+        As given.
+
+    Raises
+    ------
+    SolidgearError
+        For a speed that is none, a spectrum that cannot be used, or options that need others.
+    """
+
+    def __init__(
+        self,
+        train: Train,
+        speed: str | None,
+        of: str,
+        measured: Path | None,
+        fit: float | None,
+        within: float | None,
+    ):
+        from solidgear.studies.spectrum import read_spectrum
+        from solidgear.studies.train.at_speed import NEAR, refuse_share
+
+        self.train, self.fit, self.within = train, fit, NEAR if within is None else within
+        self.turns, self.told = 0.0, ""
+        if speed is not None:
+            self.turns, self.told = _turns(train, speed, of), f"{speed} of the {of}"
+            if of != "pinion":
+                self.told += f", {60 * self.turns:.6g} rpm of the pinion"
+        elif train.point is not None and train.point.speed:
+            own = train.point.speed_of("pinion", train.ratio) or 0.0
+            self.turns, self.told = own / (2 * pi), train.point.label
+        else:
+            given_of = None if of == "pinion" else of
+            for option, given in (
+                ("--measured", measured),
+                ("--within", within),
+                ("--of", given_of),
+            ):
+                if given is not None:
+                    raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
+        refuse_share("--within", within)
+        refuse_share("--fit-speed", fit)
+        if fit is not None and measured is None:
+            raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
+        self.spectrum = read_spectrum(measured) if measured is not None else None
+
+    def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
+        """Orders at the speed; nothing without one."""
+        from solidgear.studies.train.at_speed import at_speed
+
+        if not self.turns:
+            return None
+        how = self.within, self.spectrum, self.fit
+        return at_speed(self.train, modes, self.turns, self.told, *how)
+
+
+def _turns(train: Train, text: str, of: str) -> float:
+    from solidgear.scene.units import quantity
+    from solidgear.studies.train.at_speed import turns_of_pinion
+
+    try:
+        speed = quantity(text, "speed")
+    except SceneError:
+        raise SolidgearError(
+            f'--speed {show(text, 40)}: write a number and a unit, such as "3000 rpm" or '
+            '"314 rad/s"'
+        ) from None
+    try:
+        return turns_of_pinion(train, speed, of)
+    except SolidgearError as error:
+        raise SolidgearError(f"--speed {show(text, 40)} --of {show(of, 40)}: {error}") from None
+
+
+def say_at_speed(found: AtSpeed) -> None:
+    """Print orders at a speed, those near natural frequencies, and measured peaks."""
+    from solidgear.report import speed_tables
+
+    say(speed_tables.first_lines(found.lines))
+    near = speed_tables.coincidences(found)
+    say(near if near else f"{near.title}: none.")
+    if found.spectrum is not None:
+        peaks = speed_tables.measured(found, MOST)
+        say(peaks if peaks else f"{peaks.title}: none stands out of the noise.")
+    say(*found.notes())

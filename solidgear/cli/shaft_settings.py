@@ -1,0 +1,45 @@
+"""Builder options of the two shafts of a train."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.cli.app import options_by_name
+from solidgear.ladder.registry import LADDER
+
+ShaftSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
+        "pinion.order=3, gear.elements=40; solidgear options lists them.",
+    ),
+]
+
+
+def of_shafts(
+    pairs: list[str] | None, pinion: str, gear: str
+) -> dict[str | tuple[str, str], dict[str, Any]]:
+    """Builder options of both shafts, by (side, model), from ``SIDE.key=value`` texts.
+
+    Parameters
+    ----------
+    pairs : list of str, optional
+    pinion, gear : str
+        Models; of a lumped or rigid one the options are those of the body it comes from.
+
+    Raises
+    ------
+    SolidgearError
+        For a model, an option or a value that there is not.
+    """
+    from solidgear.studies.train.shaft import checked_rung
+
+    out: dict[str | tuple[str, str], dict[str, Any]] = {}
+    given = options_by_name(pairs, ("pinion", "gear"), "side", "pinion.order=3")
+    for side, options in given.items():
+        kind, base = checked_rung({"pinion": pinion, "gear": gear}[side])
+        out[side, base or kind] = LADDER[base or kind].checked(options)
+    return out

@@ -1,0 +1,345 @@
+"""A train at one speed: its orders in Hz, those near natural frequencies, and whose the peaks of a
+measured spectrum are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.spectrum import Spectrum
+from solidgear.studies.train.kinematics import SLIP, Order, angles_of, settled_angles, train_orders
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import TrainMode
+from solidgear.studies.train.operation import Operating
+
+NOT_OURS = "not ours"
+#: share of a natural frequency within which an order is told
+NEAR = 0.05
+#: kinds of orders in the sequence in which they are told: those that excite most come first
+TOLD = ("mesh", "shaft", "sideband")
+ROLLING = (
+    "Orders without a bar come from the teeth alone. Those of bearings are of pure rolling; their bars "
+    f"hold {100 * SLIP:g} % of slip either way, and of an inside that is estimated both of its ends."
+)
+
+
+@dataclass(frozen=True)
+class Line:
+    """An order at the speed.
+
+    Attributes
+    ----------
+    kind, name, source : str
+        As of :class:`solidgear.studies.train.kinematics.Order`.
+    frequency_hz, low_hz, high_hz : float
+    """
+
+    kind: str
+    name: str
+    source: str
+    frequency_hz: float
+    low_hz: float
+    high_hz: float
+
+    @property
+    def exact(self) -> bool:
+        """True where teeth alone give it."""
+        return self.low_hz == self.high_hz
+
+
+@dataclass(frozen=True)
+class Coincidence:
+    """An order near a natural frequency.
+
+    Attributes
+    ----------
+    line, mode : str
+    line_hz, mode_hz : float
+    off : float
+        Of the order from the mode, as a share of the latter.
+    rpm : float
+        Speed of the pinion at which they meet.
+    """
+
+    line: str
+    mode: str
+    line_hz: float
+    mode_hz: float
+    off: float
+    rpm: float
+
+
+@dataclass(frozen=True)
+class MeasuredPeak:
+    """A peak of a measured spectrum.
+
+    Attributes
+    ----------
+    frequency_hz, amplitude, resolution_hz : float
+    line : Line or None
+        The nearest order within its bar and the resolution, lines of teeth before those of
+        bearings; None where there is none.
+    others : tuple of str
+        Further orders within their bars and the resolution.
+    """
+
+    frequency_hz: float
+    amplitude: float
+    resolution_hz: float
+    line: Line | None
+    others: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Name of its order, or ``not ours``."""
+        return NOT_OURS if self.line is None else self.line.name
+
+
+@dataclass(frozen=True, eq=False)
+class AtSpeed:
+    """Findings at one speed.
+
+    Attributes
+    ----------
+    rpm : float
+        Of the pinion.
+    told : str
+        Origin of the speed.
+    within : float
+        Share of a natural frequency within which orders are told.
+    lines : tuple of Line
+    modes : tuple of (str, float)
+        Natural frequencies looked at.
+    coincidences : tuple of Coincidence
+        Of the mesh, of shafts, of sidebands, of bearings; of each the nearest first.
+    spectrum : Spectrum or None
+    peaks : tuple of MeasuredPeak
+    covered : float or None
+        Share of the spectrum's range that lines cover with their bars and the resolution: of peaks
+        that are none of ours, so many are called so by chance.
+    """
+
+    rpm: float
+    told: str
+    within: float
+    lines: tuple[Line, ...]
+    modes: tuple[tuple[str, float], ...]
+    coincidences: tuple[Coincidence, ...]
+    spectrum: Spectrum | None = None
+    peaks: tuple[MeasuredPeak, ...] = ()
+    covered: float | None = None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data that JSON can hold."""
+        out: dict[str, Any] = {
+            "pinion_rpm": self.rpm,
+            "speed": self.told,
+            "within": self.within,
+            "lines": [asdict(line) for line in self.lines],
+            "coincidences": [asdict(one) for one in self.coincidences],
+        }
+        if self.spectrum is not None:
+            out["measured"] = {
+                "file": self.spectrum.name,
+                "what": self.spectrum.what,
+                "unit": self.spectrum.unit,
+                "peaks": [asdict(peak) for peak in self.peaks],
+                "covered": self.covered,
+            }
+        return out
+
+    def notes(self) -> list[str]:
+        """Sentences on where the numbers come from and how sure they are."""
+        out = [f"Speed: {self.told}."]
+        if not all(line.exact for line in self.lines):
+            out.append(ROLLING)
+        if self.spectrum is not None and self.covered is not None:
+            foreign = sum(peak.line is None for peak in self.peaks)
+            out.append(
+                f"{self.spectrum.name}: {len(self.peaks)} peaks stand out, {foreign} of them not "
+                f"ours; lines with their bars and the resolution cover {100 * self.covered:.2g} % "
+                "of its range, and of peaks from elsewhere that share falls on one by chance."
+            )
+            if not any(peak.line is not None and peak.line.kind == "mesh" for peak in self.peaks):
+                out.append(
+                    "No peak is an order of the mesh: check the speed and whose it is, or fit it."
+                )
+        return out
+
+
+def turns_of_pinion(train: Train, speed: float, of: str) -> float:
+    """Turns of the pinion in a second, from the speed of one shaft in rad/s.
+
+    Raises
+    ------
+    SolidgearError
+        For a speed that is not above zero, or a shaft that there is not.
+    """
+    if of not in SIDES:
+        raise SolidgearError(f"speed of {of!r}: a train has a {' and a '.join(SIDES)}")
+    if not speed > 0:
+        raise SolidgearError(
+            "the speed must be greater than zero: at rest there are no orders, and which way a shaft "
+            "turns does not change them"
+        )
+    return speed / (2 * np.pi) * (train.ratio if of == "gear" else 1.0)
+
+
+def refuse_share(name: str, share: float | None) -> None:
+    """Refuse a share that is none.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    if share is not None and not 0 < share < 1:
+        raise SolidgearError(f"{name} {share:g}: give a share between 0 and 1, such as 0.05")
+
+
+def at_speed(
+    train: Train,
+    modes: Iterable[TrainMode],
+    turns: float,
+    told: str,
+    within: float = NEAR,
+    spectrum: Spectrum | None = None,
+    fit: float | None = None,
+) -> AtSpeed:
+    """Orders of a train at a speed, against its natural frequencies and a measured spectrum.
+
+    Parameters
+    ----------
+    train : Train
+    modes : iterable of TrainMode
+    turns : float
+        Of the pinion in a second.
+    told : str
+        Origin of the speed, in words.
+    within : float
+        Share of a natural frequency.
+    spectrum : Spectrum, optional
+    fit : float, optional
+        Share of the speed within which it is fitted to the first order of the mesh in the spectrum.
+
+    Raises
+    ------
+    SolidgearError
+        For a share that is none, or a spectrum without a peak near the mesh order.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.studies.train.models import Workshop
+    >>> from solidgear.studies.train.modes import train_modes
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> modes = train_modes(shop, "timoshenko", "timoshenko", 1000.0).modes
+    >>> found = at_speed(shop.train, modes, 3210 / 60, "3210 rpm of the pinion")
+    >>> first = found.coincidences[0]
+    >>> first.line, first.mode, round(100 * first.off, 1)
+    ('mesh 1', 'gear bending 2', 4.6)
+    """
+    refuse_share("within", within)
+    refuse_share("fit", fit)
+    tops = spectrum.peaks() if spectrum is not None else []
+    if fit is not None:
+        turns, told = _fitted(tops, train.pinion.teeth, turns, fit, told)
+    lines = lines_at(train_orders(train, _angles(train)), turns)
+    known = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
+    met = _coincidences(lines, known, turns, within)
+    if spectrum is None:
+        return AtSpeed(60 * turns, told, within, lines, known, met)
+    peaks = tuple(explained(lines, *top) for top in tops)
+    covered = _covered(lines, spectrum)
+    return AtSpeed(60 * turns, told, within, lines, known, met, spectrum, peaks, covered)
+
+
+def lines_at(orders: Sequence[Order], turns: float) -> tuple[Line, ...]:
+    """Orders in Hz at a speed of the pinion in turns a second."""
+    return tuple(Line(o.kind, o.name, o.source, *o.at(turns)) for o in orders)
+
+
+def _angles(train: Train) -> dict[str, tuple[float, ...]]:
+    """Contact angles of all bearings where their stiffness is taken, by ``side.bearing``: at the
+    operating point of the train, or without one at the loads of the scenes.
+    """
+    if train.point is not None:
+        state = Operating(Workshop(train)).at(train.point)
+        return angles_of(state.made, state.equilibrium.relative)
+    return {
+        f"{side}.{name}": angles
+        for side in SIDES
+        for name, angles in settled_angles(train.member(side).scene).items()
+    }
+
+
+def _coincidences(
+    lines: Sequence[Line], modes: Sequence[tuple[str, float]], turns: float, within: float
+) -> tuple[Coincidence, ...]:
+    out = []
+    for line in lines:
+        rank = TOLD.index(line.kind) if line.kind in TOLD else len(TOLD)
+        for name, hz in modes:
+            off = line.frequency_hz / hz - 1
+            if abs(off) <= within:
+                rpm = 60 * turns * hz / line.frequency_hz
+                met = Coincidence(line.name, name, line.frequency_hz, hz, off, rpm)
+                out.append((rank, abs(off), met))
+    return tuple(met for *_, met in sorted(out, key=lambda one: one[:2]))
+
+
+def _fitted(
+    tops: Sequence[tuple[float, float, float]], teeth: int, turns: float, share: float, told: str
+) -> tuple[float, str]:
+    """Speed at which the largest peak near the first order of the mesh is that order."""
+    wanted = teeth * turns
+    near = [top for top in tops if abs(top[0] / wanted - 1) <= share]
+    if not near:
+        raise SolidgearError(
+            f"no peak of the spectrum lies within {100 * share:g} % of the first mesh order at "
+            f"{wanted:.6g} Hz; check the speed and whose it is, or fit within a larger share"
+        )
+    hz, _, resolution = max(near, key=lambda top: top[1])
+    off = 100 * (hz / wanted - 1)
+    return hz / teeth, (
+        f"{60 * hz / teeth:.6g} rpm of the pinion, fitted: the largest peak within "
+        f"{100 * share:g} % of the mesh order, {hz:.6g} Hz, is taken for it; {off:+.2f} % from "
+        f"{told}, and good to {100 * resolution / hz:.2g} %"
+    )
+
+
+def explained(
+    lines: Sequence[Line], hz: float, amplitude: float, resolution: float
+) -> MeasuredPeak:
+    """A peak and the orders that it may be.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    hz, amplitude, resolution : float
+
+    Returns
+    -------
+    MeasuredPeak
+    """
+    ours = [line for line in lines if line.low_hz - resolution <= hz <= line.high_hz + resolution]
+    # what teeth alone give lies within the resolution, where a wide bar holds almost anything
+    ours.sort(key=lambda line: (not line.exact, abs(line.frequency_hz - hz)))
+    if not ours:
+        return MeasuredPeak(hz, amplitude, resolution, None, ())
+    names = tuple(line.name for line in ours[1:])
+    return MeasuredPeak(hz, amplitude, resolution, ours[0], names)
+
+
+def _covered(lines: Sequence[Line], spectrum: Spectrum) -> float:
+    """Share of the lines of a spectrum on which a peak would be called ours."""
+    hz, resolution = spectrum.frequency_hz, spectrum.resolution_hz
+    ours = np.zeros(len(hz), bool)
+    for line in lines:
+        ours |= (hz >= line.low_hz - resolution) & (hz <= line.high_hz + resolution)
+    return float(resolution[ours].sum() / resolution.sum())

@@ -1,0 +1,54 @@
+"""Orders of magnitude in the data of a train that a slip in units leaves."""
+
+from __future__ import annotations
+
+from solidgear.ladder import build
+from solidgear.scene.train import SIDES
+from solidgear.studies.guards import Probe, data
+from solidgear.studies.guards.notice import slip_in_units
+from solidgear.studies.loading import SHAFT
+from solidgear.studies.train.models import Workshop
+
+#: what a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
+#: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
+#: some thousandths of the module at most, and 1e-5 of it is what no gear is ground to
+SOUND = {
+    "mesh stiffness over E r": (1e-3, 2.0),
+    "transmission error over 2 r / z": (1e-5, 0.05),
+}
+
+
+def slips(workshop: Workshop) -> tuple[str, ...]:
+    """Sentences on the mesh and on both shafts; none where every number is one that can be made.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_overhung.toml")
+    >>> slips(Workshop(train))
+    ()
+    >>> soft = train.with_changes(mesh=train.mesh.with_changes(stiffness=2.5e5))
+    >>> slips(Workshop(soft))[0][:62]
+    'probably a slip in units: mesh stiffness over E r is 2.73e-05,'
+    """
+    out = [sentence] if (sentence := slip_of_mesh(workshop)) else []
+    for side in SIDES:
+        scene = workshop.scenes[side].plain
+        probe = Probe(scene, build(scene, SHAFT))
+        out += [f"{side}: {notice.sentence}" for notice in data.units(probe)]
+    return tuple(out)
+
+
+def slip_of_mesh(workshop: Workshop) -> str:
+    """Sentence on the stiffness and the transmission error of the mesh; empty where both are sound."""
+    train, met = workshop.train, workshop.contact
+    lever, teeth = abs(met.pinion.lever), train.pinion.teeth
+    stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
+    table = train.mesh.transmission_error
+    error = max((*table.orders, *table.amplitude), default=0.0)
+    values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
+    found = [(name, value, "") for name, value in zip(SOUND, values)]
+    if not error:
+        found.pop()  # told by itself
+    legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
+    return slip_in_units(found, SOUND, legend)
