@@ -3,7 +3,7 @@
 It illustrates how to:
 
 * read a scene,
-* build it at one fidelity,
+* build it by one model,
 * condense it to its lumped point, and solve its modes on the bearings.
 """
 

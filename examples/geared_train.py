@@ -2,7 +2,7 @@
 
 It illustrates how to:
 
-* read a train of two shafts, and model each at a rung of its own,
+* read a train of two shafts, and give each a model of its own,
 * see named modes of the whole, with what is not published and how sure the reduction is,
 * ask for the dynamic mesh force at a frequency.
 

@@ -1,9 +1,9 @@
-"""How sure a solid is of itself: bands, from meshes each finer in everything that limits them.
+"""How sure a solid is of itself: error bars, from meshes each finer in everything that limits them.
 
 It illustrates how to:
 
 * study one model alone,
-* read the band of each quantity.
+* read the error bar of each quantity.
 """
 
 from pathlib import Path
@@ -17,12 +17,12 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 
 def main():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
-    rung = study(scene, "harmonic", evidence=False)
-    bands = rung.bands[SCENE]
+    found = study(scene, "harmonic", evidence=False)
+    bars = found.error_bars[SCENE]
     for name in ("C_zz", "C_thx", "bending 1"):
-        print(f"{name:10s} {rung.quantities[name]:.5g}, sure to {100 * bands[name].gci:.2g} %")
-    print(f"{len(rung.levels)} meshes, the last with {rung.body.size} unknowns")
-    return {name: band.gci for name, band in bands.items()}
+        print(f"{name:10s} {found.quantities[name]:.5g}, sure to {100 * bars[name].width:.2g} %")
+    print(f"{len(found.levels)} meshes, the last with {found.body.size} unknowns")
+    return {name: bar.width for name, bar in bars.items()}
 
 
 if __name__ == "__main__":

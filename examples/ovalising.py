@@ -13,11 +13,11 @@ def main():
     tube = sg.Segment.cylinder("tube", length=0.4, diameter=0.2, bore=0.19)
     scene = sg.Scene.from_parts([tube])
     found = {}
-    for fidelity in ("timoshenko", "harmonic"):
-        modes = sg.modes(sg.build(scene, fidelity), scene, n=6, count=True)
+    for model in ("timoshenko", "harmonic"):
+        modes = sg.modes(sg.build(scene, model), scene, n=6, count=True)
         first = next(m for m in modes.modes if m.frequency_hz > 0)
-        found[fidelity] = (first.name, first.frequency_hz)
-        print(f"{fidelity:11s} {first.name:18s} {first.frequency_hz:8.1f} Hz")
+        found[model] = (first.name, first.frequency_hz)
+        print(f"{model:11s} {first.name:18s} {first.frequency_hz:8.1f} Hz")
     counted = [f["family"] for f in modes.evidence["families"] if f["counted"]]
     print("counted:", ", ".join(counted))
     return found | {"counted": counted}

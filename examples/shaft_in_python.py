@@ -24,10 +24,10 @@ def main():
     formula = slender / (2 * math.pi)
 
     found = {"formula": formula}
-    for fidelity in ("euler", "timoshenko", "harmonic"):
-        modes = sg.modes(sg.build(scene, fidelity), scene, n=2)
-        found[fidelity] = modes.named("bending 1").frequency_hz
-        print(f"{fidelity:11s} {found[fidelity]:9.3f} Hz, {modes.evidence['rigid_modes']} at rest")
+    for model in ("euler", "timoshenko", "harmonic"):
+        modes = sg.modes(sg.build(scene, model), scene, n=2)
+        found[model] = modes.named("bending 1").frequency_hz
+        print(f"{model:11s} {found[model]:9.3f} Hz, {modes.evidence['rigid_modes']} at rest")
     print(f"{'formula':11s} {formula:9.3f} Hz")
     return found
 

@@ -89,7 +89,7 @@ class Quantity(Name):
 
     @property
     def is_frequency(self) -> bool:
-        """Whether it is the natural frequency of the mode of its name."""
+        """True where it is the natural frequency of the mode of its name."""
         return self.kind == FREQUENCY
 
     @property
@@ -112,8 +112,8 @@ class Quantity(Name):
 
     @property
     def is_coupling(self) -> bool:
-        """Whether row and column differ: such an entry passes through zero where symmetry wants it
-        to.
+        """True where row and column differ: such an entry passes through zero where symmetry wants
+        it to.
         """
         return self.row != self.column
 
@@ -139,7 +139,7 @@ class Quantity(Name):
 
     @property
     def repeats(self) -> bool:
-        """Whether it is another one over again: a compliance "between" a point and itself, which
+        """True where it is another one over again: a compliance "between" a point and itself, which
         stands there to relate others to.
 
         Examples

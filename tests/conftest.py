@@ -83,11 +83,11 @@ def builds_until(monkeypatch):
     def limit(count: int) -> list[dict]:
         real, calls = climb.build, []
 
-        def build(scene, rung, **options):
+        def build(scene, model, **options):
             calls.append(options)
             if len(calls) > count:
                 raise SolidgearError("12000 MB are needed, 3000 MB are free")
-            return real(scene, rung, **options)
+            return real(scene, model, **options)
 
         monkeypatch.setattr(climb, "build", build)
         return calls

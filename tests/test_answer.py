@@ -195,16 +195,16 @@ def test_a_coupling_stands_in_the_middle_of_its_bar(scenes, truth):
     )
     climb.run()
     value, *diagonal = climb.values()
-    band = climb.bands["C_z,thx"]
-    assert value.value == band.middle != band.values[-1]
-    assert abs(band.values[-1] / value.value - 1) > 1e-5
-    assert abs(band.values[-1] - value.value) <= value.bar * value.size < band.gci * value.size
+    bar = climb.error_bars["C_z,thx"]
+    assert value.value == bar.middle != bar.values[-1]
+    assert abs(bar.values[-1] / value.value - 1) > 1e-5
+    assert abs(bar.values[-1] - value.value) <= value.bar * value.size < bar.width * value.size
     # half of what Cauchy and Schwarz leave of its diagonal entries
     whole = (diagonal[0].bar * diagonal[1].bar) ** 0.5
     assert value.bar == pytest.approx(whole / 2, rel=1e-4)
     exact = truth("pinion_overhung")["C_z,thx"]
     assert abs(value.value - exact) <= value.bar * value.size
-    assert abs(value.value - exact) < abs(band.values[-1] - exact)
+    assert abs(value.value - exact) < abs(bar.values[-1] - exact)
 
 
 def test_what_holds_a_bar_back_is_named(two_meshes):
@@ -294,13 +294,13 @@ def test_a_finer_mesh_that_fails_leaves_the_answer_of_the_one_before(scenes, bui
     assert 1e-5 < found.bar < 0.1 and found.values[0].how == "local problems"
 
 
-def test_a_rung_that_cannot_be_built_is_passed_over(scenes, monkeypatch):
+def test_a_model_that_cannot_be_built_is_passed_over(scenes, monkeypatch):
     real = climbing.build
 
-    def build(scene, rung, **options):
-        if rung == "harmonic":
+    def build(scene, model, **options):
+        if model == "harmonic":
             raise sg.SolidgearError("a keyway is no body of revolution")
-        return real(scene, rung, **options)
+        return real(scene, model, **options)
 
     monkeypatch.setattr(climbing, "build", build)
     found = answer(scenes["shaft_stepped"], 0.3, "C_zz")

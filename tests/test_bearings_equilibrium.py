@@ -194,7 +194,7 @@ def test_the_report_tells_the_range_beside_the_models():
     found = sg.compare(sg.load(SCENE), ("timoshenko",))
     told = found.record.bearing_range
     (first,) = (b for b in told["bounds"] if b["mode"] == "bending 1")
-    own = found.rungs["timoshenko"].modes
+    own = found.solutions["timoshenko"].modes
     assert first["low"] < first["frequency_hz"] < first["high"]
     assert first["frequency_hz"] == pytest.approx(
         next(m.frequency_hz for m in own.modes if m.name == "bending 1"), rel=1e-2

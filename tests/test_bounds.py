@@ -23,7 +23,7 @@ from solidgear.bounds.harmonic import (
     with_tail,
 )
 from solidgear.bounds.safety import LOCAL
-from solidgear.judge.bars import Band
+from solidgear.judge.bars import ErrorBar
 from solidgear.judge.bounded import Statics, bounded
 from solidgear.judge.quantities import measure, size
 from solidgear.judge.solving import searched
@@ -96,7 +96,7 @@ class Solved:
     scene: Scene
     body: Body
     values: dict[str, float]
-    bars: dict[str, Band]
+    bars: dict[str, ErrorBar]
     bounds: HarmonicBounds
     fine: Body
     truth: dict[str, float]
@@ -129,7 +129,7 @@ def solved(name):
     judged = bounded(scene, body, supports, Statics(here, {}), found, MODES, {})
     bounds = harmonic_bounds(coned(scene), body, statics=True)
     values, exact = measure(here, found), measure(there, truth)
-    return Solved(scene, body, values, judged.bands, bounds, fine, exact)
+    return Solved(scene, body, values, judged.error_bars, bounds, fine, exact)
 
 
 def compliances(scene, *bodies):
@@ -149,23 +149,23 @@ def test_errors_are_within_bars_and_bars_hardly_wider(name):
     """Of compliances, stiffnesses with all else held, and frequencies."""
     one = solved(name)
     assert set(MODES) < set(one.bars) and {"C_zz", "K_thx", "C_thy", "K_x,thz"} < set(one.bars)
-    for q, band in one.bars.items():
+    for q, bar in one.bars.items():
         value, scale = one.values[q], size(one.truth, q)
         error = abs(value - one.truth[q]) / scale
-        assert error <= band.gci, q
+        assert error <= bar.width, q
         if q.diagonals is None and error > UNSEEN:
             # compliances from below, all else from above
             assert (value < one.truth[q]) == q.startswith("C_"), q
-            assert band.gci <= LOCAL * WIDEST * error, q
+            assert bar.width <= LOCAL * WIDEST * error, q
         elif q.diagonals is not None:
             # about the middle of what is open there is half as much on either side
-            assert abs(band.middle - one.truth[q]) <= band.about_middle * scale < band.gci * scale
+            assert abs(bar.middle - one.truth[q]) <= bar.about_middle * scale < bar.width * scale
 
 
 def test_a_plane_that_turns_as_a_whole_twists_exactly_and_says_so():
     one = solved("section tie")
     assert one.values["C_thy"] == pytest.approx(one.truth["C_thy"], rel=1e-10)
-    assert one.bars["C_thy"].gci < UNSEEN
+    assert one.bars["C_thy"].width < UNSEEN
 
 
 @pytest.mark.parametrize("name", SHAFTS)

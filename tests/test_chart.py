@@ -185,13 +185,13 @@ def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
     assert [len(marks(panel, "x")) for panel in panels(made)] == [0, 0, 1, 1]
 
 
-def test_points_below_the_band_stand_on_it(raced):
+def test_points_below_the_bar_stand_on_it(raced):
     panel = panels(raced)[0]
-    band = raced.reference["bands"]["C_zz"]
-    assert [row["y"] for row in marks(panel, "D")] == [band]
+    bar = raced.reference["bands"]["C_zz"]
+    assert [row["y"] for row in marks(panel, "D")] == [bar]
     for mark, rows, _ in panel.layers:
         if mark["type"] == "point" and mark["shape"] != SHAPES["*"]:
-            assert all(row["y"] >= band for row in rows)
+            assert all(row["y"] >= bar for row in rows)
 
 
 def test_beams_show_like_for_like_beside_their_own_error(raced):

@@ -105,7 +105,7 @@ def test_record_has_its_parts(results, overhung):
 @pytest.mark.parametrize("model", FIDELITIES)
 def test_model_record(results, found, model):
     record = results["models"][model]
-    assert record["dofs"] == found.rungs[model].body.size
+    assert record["dofs"] == found.solutions[model].body.size
     assert record["backend"] in ("superlu", "pardiso", "cholmod", "mumps")
     assert all(
         count["checked"] for count in record["evidence"]["mode_count"]
@@ -153,7 +153,7 @@ def test_modes_in_the_record(results, model):
     assert frequencies[-1] <= 10e3
 
 
-def test_bands_belong_to_the_solids(results):
+def test_bars_belong_to_the_solids(results):
     for model in ("euler", "timoshenko"):
         assert (
             results["models"][model]["band"] is None
@@ -161,11 +161,11 @@ def test_bands_belong_to_the_solids(results):
         )
     for model in ("harmonic", "solid"):
         record = results["models"][model]
-        band = record["band"]
+        bar = record["band"]
         other_plane = {q for q in ACROSS if "thy" not in q}  # nothing holds it against turning
-        assert set(band["each"]) == set(QUANTITIES) | other_plane
-        assert band["compliance"] == max(v for k, v in band["each"].items() if k.startswith("C_"))
-        assert all(0 < v < 1 for v in band["each"].values())
+        assert set(bar["each"]) == set(QUANTITIES) | other_plane
+        assert bar["compliance"] == max(v for k, v in bar["each"].items() if k.startswith("C_"))
+        assert all(0 < v < 1 for v in bar["each"].values())
         levels = record["convergence"]["levels"]
         # settings of the harmonic solid are one mesh, which tells its own error
         assert len(levels) == (3 if model == "solid" else 1)
@@ -174,13 +174,13 @@ def test_bands_belong_to_the_solids(results):
 
 
 @pytest.mark.parametrize("model", ["harmonic", "solid"])
-def test_band_holds_the_true_error(results, model):
+def test_bar_holds_the_true_error(results, model):
     record = results["models"][model]
     bending = next(m["frequency_hz"] for m in record["modes"] if m["name"] == "bending 1")
-    # what a band is for; even these light settings must not be surer of themselves than they may be
+    # what a bar is for; even these light settings must not be surer of themselves than they may be
     assert abs(record["stiffness"][2][2] / K_ZZ - 1) < record["band"]["each"]["K_zz"]
     assert abs(bending / FIRST_BENDING - 1) < record["band"]["each"]["bending 1"]
-    # and the band is of use: the harmonic one below a per cent in stiffness at 9000 unknowns
+    # and the bar is of use: the harmonic one below a per cent in stiffness at 9000 unknowns
     # (measured 0.23 %)
     if model == "harmonic":
         assert record["band"]["each"]["K_zz"] < 0.01
@@ -260,7 +260,7 @@ def test_deviations_can_be_recomputed(results):
             "resolved" if abs(row["relative"]) > row["band"] else "not resolved"
         )
         if row["attachment"] == "section":
-            continue  # its bands are not in the record
+            continue  # its bars are not in the record
         each = {m: results["models"][m]["band"] for m in (row["model"], "harmonic")}
         assert row["band"] == pytest.approx(
             sum(b["each"][row["quantity"]] for b in each.values() if b), rel=1e-12
@@ -269,7 +269,7 @@ def test_deviations_can_be_recomputed(results):
             assert row["value"] == results["models"][row["model"]]["stiffness"][2][2]
     # beams two ways, the 3D solid as tied, every quantity (none of them absent here)
     assert len(rows) == (2 + 2 + 1) * len(QUANTITIES)
-    # two solids at light settings: closer than the bands of the coarser one, which is not the same
+    # two solids at light settings: closer than the bars of the coarser one, which is not the same
     # as agreement
     assert all(
         r["verdict"] == "not resolved"
@@ -397,7 +397,7 @@ def test_a_model_that_fails_is_reported_and_the_others_go_on(overhung, monkeypat
         and models["solid"]["modes"] == []
     )
     assert (
-        list(found.rungs) == ["euler", "timoshenko", "harmonic"]
+        list(found.solutions) == ["euler", "timoshenko", "harmonic"]
         and found.results["complete"] is True
     )
     assert {r["model"] for r in found.results["deviations"]} == {"euler", "timoshenko"}
@@ -422,12 +422,12 @@ def test_a_model_that_runs_out_of_memory_is_reported(overhung, monkeypatch):
 def test_when_every_model_fails_there_is_still_a_report(overhung, monkeypatch, tmp_path):
     failing(monkeypatch, "euler", MeshError("nothing to mesh"))
     found = compare(overhung, ("euler",))
-    assert found.results["verdict"]["trust"] is None and found.rungs == {}
+    assert found.results["verdict"]["trust"] is None and found.solutions == {}
     found.write_report(tmp_path, renders=False)
     assert "No model could be solved." in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
-def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
+def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
     from solidgear.ladder import build
 
     def broken(scene, fidelity, **options):
@@ -440,8 +440,8 @@ def test_band_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
     ).results
     assert found["models"]["solid"]["band"] is None
-    assert "3D solid: band: too coarse to mesh" in found["warnings"]
-    assert "no band of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]
+    assert "3D solid: error bar: too coarse to mesh" in found["warnings"]
+    assert "no error bar of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]
     assert not found["models"]["solid"]["valid"]
 
 
@@ -460,7 +460,7 @@ def test_interrupt_keeps_what_is_there(overhung, tmp_path):
     stop = Interrupt("solid: refinement")
     found = compare(overhung, ("timoshenko", "harmonic", "solid"), settings=LIGHTEST, progress=stop)
     assert found.results["complete"] is False
-    assert list(found.results["models"]) == ["timoshenko", "harmonic"] == list(found.rungs)
+    assert list(found.results["models"]) == ["timoshenko", "harmonic"] == list(found.solutions)
     assert found.results["verdict"]["trust"] == "harmonic" and found.results["deviations"]
     # nothing but a word on the interruption comes after it
     assert len(stop.after) == 2 and "interrupted" in stop.after[1]
@@ -478,13 +478,15 @@ def test_interrupt_between_meshes_keeps_the_coarser_one(overhung):
     found = compare(overhung, ("harmonic", "solid"), settings=light, progress=stop)
     record = found.results["models"]["solid"]
     assert found.results["complete"] is False and len(record["convergence"]["levels"]) == 2
-    assert record["dofs"] == found.rungs["solid"].body.size
+    assert record["dofs"] == found.solutions["solid"].body.size
 
 
 def test_interrupt_before_the_first_result(overhung, tmp_path):
     found = compare(overhung, ("euler",), progress=Interrupt("euler: build"))
     assert (
-        found.results["complete"] is False and found.rungs == {} and found.results["models"] == {}
+        found.results["complete"] is False
+        and found.solutions == {}
+        and found.results["models"] == {}
     )
     found.write_report(tmp_path, renders=False)
     assert strict((tmp_path / "results.json").read_text())["complete"] is False
@@ -494,7 +496,7 @@ def test_interrupt_in_the_causes_keeps_every_model(overhung):
     found = compare(overhung, ("euler", "timoshenko"), progress=Interrupt("causes"))
     assert (
         found.results["complete"] is False
-        and list(found.rungs) == ["euler", "timoshenko"]
+        and list(found.solutions) == ["euler", "timoshenko"]
         and found.results["causes"] == []
     )
 
@@ -538,7 +540,7 @@ def test_vtu_holds_the_modes(folder, found):
 
     for model in FIDELITIES:
         mesh = meshio.read(folder / f"modes_{model}.vtu")
-        bending = found.rungs[model].modes.named("bending 1").frequency_hz
+        bending = found.solutions[model].modes.named("bending 1").frequency_hz
         assert (
             f"bending 1a ({bending:.2f} Hz)" in mesh.point_data
             and f"bending 1b ({bending:.2f} Hz)" in mesh.point_data
@@ -594,8 +596,8 @@ def test_free_cylinder(tmp_path):
         assert np.all(np.array(record["stiffness"]) == 0)  # nothing holds it: exactly
         assert all(v is None for row in record["compliance"] for v in row)
         assert sum(m["multiplicity"] for m in record["modes"] if m["frequency_hz"] == 0) == 6
-    band = results["models"]["harmonic"]["band"]
-    assert band["compliance"] is None and 0 < band["each"]["bending 1"] < 1e-3
+    bar = results["models"]["harmonic"]["band"]
+    assert bar["compliance"] is None and 0 < bar["each"]["bending 1"] < 1e-3
     assert {r["quantity"] for r in results["deviations"]} <= {
         "bending 1",
         "bending 2",
@@ -652,10 +654,10 @@ def test_names_of_components_are_those_of_the_frames():
     assert list(DOF_NAMES) == ORDER
 
 
-# --------------------------------------------------------------------------- the lumped rung
+# --------------------------------------------------------------------------- the lumped model
 @pytest.fixture(scope="module")
 def lumped(overhung):
-    """A comparison with the lumped rung, its syntheses asked for or not, each solved once."""
+    """A comparison with the lumped model, its syntheses asked for or not, each solved once."""
 
     @cache
     def found(asked: bool):
@@ -666,7 +668,7 @@ def lumped(overhung):
 
 
 @pytest.mark.long
-def test_lumped_rung_rests_on_a_body(lumped):
+def test_lumped_model_rests_on_a_body(lumped):
     found = lumped(False).results
     record = found["models"]["lumped"]
     assert (
@@ -733,7 +735,7 @@ def test_lumped_alone_has_nothing_to_rest_on(overhung):
         compare(overhung, ("lumped",))
 
 
-def test_a_free_shaft_has_no_lumped_rung():
+def test_a_free_shaft_has_no_lumped_model():
     free = scene_of("cylinder_free")
     found = compare(free, ("lumped", "timoshenko")).results
     assert (

@@ -40,11 +40,11 @@ def test_order_and_limit_are_recovered(order, sizes):
 @pytest.mark.parametrize("sizes", SIZES)
 @pytest.mark.parametrize("order", [1.0, 1.5, 2.0, 2.7, 3.0])
 @pytest.mark.parametrize("share", [0.05, -0.05])
-def test_band_is_the_true_error_times_the_factor(order, sizes, share):
+def test_bar_is_the_true_error_times_the_factor(order, sizes, share):
     values = manufactured(order, sizes, share=share)
     found = gci(values, sizes, expected=1.09, highest=4.0, cap=3.5)
     true_error = abs(values[2] - LIMIT) / abs(values[2])
-    # Roache's definition: with the right order the band is 1.25 times the error, up to rounding of
+    # Roache's definition: with the right order the bar is 1.25 times the error, up to rounding of
     # the differences
     assert found.gci == pytest.approx(1.25 * true_error, rel=1e-9)
 
@@ -63,7 +63,7 @@ def test_scaling_values_or_sizes_changes_nothing():
 # --------------------------------------------------------------------------- orders one should not believe
 @pytest.mark.parametrize("sizes", SIZES)
 @pytest.mark.parametrize("order", [2.3, 3.0, 3.9])
-def test_cap_widens_the_band(order, sizes):
+def test_cap_widens_the_bar(order, sizes):
     values = manufactured(order, sizes)
     capped = gci(values, sizes, expected=1.09, highest=4.0)
     free = gci(values, sizes, expected=1.09, highest=4.0, cap=99.0)
@@ -116,7 +116,7 @@ def test_edges_of_plausible(order, plausible):
 
 
 @pytest.mark.parametrize("sizes", SIZES)
-def test_oscillation_has_no_order_and_a_band_from_the_larger_change(sizes):
+def test_oscillation_has_no_order_and_a_bar_from_the_larger_change(sizes):
     values = [LIMIT * (1 + s * 0.05 * (h / sizes[0])) for s, h in zip((1, -1, 1), sizes)]
     found = gci(values, sizes, expected=1.0, highest=4.0)
     assert found.observed_order is None and not found.plausible and found.factor == 3.0
@@ -126,7 +126,7 @@ def test_oscillation_has_no_order_and_a_band_from_the_larger_change(sizes):
     assert found.gci > abs(values[2] - LIMIT) / values[2]
 
 
-def test_lull_before_a_jump_does_not_narrow_the_band():
+def test_lull_before_a_jump_does_not_narrow_the_bar():
     # the finer pair hardly moves, the coarser one moves the other way: the smaller change must not
     # be believed
     found = gci((1.0, 1.1, 1.0999), (4.0, 2.0, 1.0), expected=1.0, highest=4.0)
@@ -145,11 +145,11 @@ def test_divergence_has_no_order():
 def test_stalled_sequence_keeps_the_change_it_saw():
     found = gci((1.0, 1.5, 1.5), (4.0, 2.0, 1.0), expected=1.09, highest=4.0)
     assert found.observed_order is None and found.extrapolated == 1.5
-    # half a unit of 1.5 moved between the coarse two: the band says so, exactly
+    # half a unit of 1.5 moved between the coarse two: the bar says so, exactly
     assert found.gci == pytest.approx(1 / 3, rel=1e-15)
 
 
-def test_exact_sequence_has_no_band_to_speak_of():
+def test_exact_sequence_has_no_bar_to_speak_of():
     found = gci((LIMIT, LIMIT, LIMIT), (4.0, 2.0, 1.0), expected=1.09, highest=4.0)
     assert (
         found.gci == 0.0
@@ -178,7 +178,7 @@ def test_other_than_three_ever_finer_meshes_is_refused(values, sizes):
 
 
 def test_middle_value_of_zero():
-    # a coupling term may pass through zero between two meshes; the band itself is well defined:
+    # a coupling term may pass through zero between two meshes; the bar itself is well defined:
     # 1.25 * 1 / (2^p - 1), p = log2 3
     assert gci((3.0, 0.0, -1.0), (4.0, 2.0, 1.0), expected=1.09, highest=4.0).gci == pytest.approx(
         0.625, rel=1e-9

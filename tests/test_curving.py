@@ -9,7 +9,7 @@ from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
 from solidgear.meshing.closed_form import volume_of
-from solidgear.meshing.curving import volume_kept
+from solidgear.meshing.curving import volume_preserved
 from solidgear.meshing.quality import element_volumes
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.tetrahedra import tetrahedra
@@ -67,7 +67,7 @@ def test_a_wedge_of_a_cylinder():
         nodes = mesh.doflocs.copy()
         nodes[:, mesh.dofs.edge_dofs[0, arc]] = [0.0, 0.0, 1.0]
         true = replace(mesh, doflocs=nodes)
-        kept = volume_kept(true)
+        kept = volume_preserved(true)
         moved = np.abs(kept.doflocs - true.doflocs).max(axis=0)
         assert np.count_nonzero(moved > 1e-15) == 1
         sagitta, chord = 1 - np.cos(a), np.sin(a)

@@ -201,7 +201,7 @@ def test_every_mark_and_column_of_the_final_table_is_explained():
     # what the program prints explains nothing
     page = re.sub(r"(?ms)^```.*?^```", "", page)
     words = [*terminal.VALID.values(), terminal.NOT_RESOLVED, "ref.", "INCOMPLETE", "caution:"]
-    words += [head.split("\n")[0] for head in terminal.COLUMNS if head != "band\nC"] + ["band C"]
+    words += [head.split("\n")[0] for head in terminal.COLUMNS if head != "bar\nC"] + ["bar C"]
     assert [w for w in words if w not in page] == []
 
 

@@ -37,7 +37,7 @@ def test_the_table_holds_what_builders_take(model):
 
 
 def test_every_limit_has_a_reason():
-    for table in (rung.options for rung in LADDER):
+    for table in (model.options for model in LADDER):
         for name, option in table.items():
             limited = any(
                 limit is not None

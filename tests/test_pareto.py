@@ -18,7 +18,7 @@ from solidgear.judge.race.pareto import Race, Row, front
 from solidgear.judge.race.timing import answer, race, scaled_error
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-#: coarse, but enough to give a band
+#: coarse, but enough to give a bar
 COARSE = {"order": 3, "layers": 0, "edge_layers": 0}
 
 
@@ -41,7 +41,7 @@ def rows():
     ]
 
 
-def made(points, band=1e-4, **more):
+def made(points, bar=1e-4, **more):
     """A race of (seconds, unknowns, error) by hand."""
     table = [
         Row(
@@ -60,7 +60,7 @@ def made(points, band=1e-4, **more):
         for k, (s, u, e) in enumerate(points, start=1)
     ]
     return Race(
-        {}, {"values": {"C_zz": 1.0}, "bands": {"C_zz": band}, **more}, table, {}, 1, 10, 240.0
+        {}, {"values": {"C_zz": 1.0}, "bands": {"C_zz": bar}, **more}, table, {}, 1, 10, 240.0
     )
 
 
@@ -90,11 +90,11 @@ def test_front_is_what_nothing_beats():
     assert found == best
 
 
-def test_below_the_band_nothing_is_told_apart():
+def test_below_the_bar_nothing_is_told_apart():
     r = made([(1.0, 10, 1e-2), (2.0, 20, 9e-5), (3.0, 30, 1e-9)])
     assert [r.error(row, "C_zz") for row in r.rows] == [1e-2, 1e-4, 1e-4]
     assert [r.resolved(row, "C_zz") for row in r.rows] == [True, False, False]
-    # 1e-9 is luck: the cheaper of the two that reach the band is the one on the front
+    # 1e-9 is luck: the cheaper of the two that reach the bar is the one on the front
     assert r.front("C_zz") == r.rows[:2]
 
 
@@ -118,7 +118,7 @@ def test_a_cancellation_earns_no_place_on_the_front():
 
 
 def test_a_coarse_mesh_that_beats_its_own_refinement_was_lucky():
-    r = made([(1.0, 10, 2e-2), (2.0, 20, 1e-4), (3.0, 30, 1e-2), (4.0, 40, 2e-3)], band=1e-6)
+    r = made([(1.0, 10, 2e-2), (2.0, 20, 1e-4), (3.0, 30, 1e-2), (4.0, 40, 2e-3)], bar=1e-6)
     assert [r.sure_error(row, "C_zz") for row in r.rows] == [2e-2, 1e-2, 1e-2, 2e-3]
     assert [row.level for row in r.front("C_zz")] == [1, 2, 4]
     r.rows[1].series = "another"  # nothing finer is known of it
@@ -383,8 +383,8 @@ def test_a_free_shaft_is_charted_by_its_frequency_alone():
     assert list(found.rows[0].values) == ["bending 1"]
 
 
-def test_the_band_of_the_reference_holds_its_error(scene, monkeypatch):
-    """Against a solid with further layers and a higher order: a band that did not would be no
+def test_the_bar_of_the_reference_holds_its_error(scene, monkeypatch):
+    """Against a solid with further layers and a higher order: a bar that did not would be no
     floor.
     """
     monkeypatch.setattr(racing, "LIKE_FOR_LIKE", COARSE)

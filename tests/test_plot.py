@@ -9,7 +9,7 @@ from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
 from solidgear.report.charts import CHARTS
-from solidgear.report.panel import Axis, Panel, read_places, told
+from solidgear.report.panel import Axis, Panel, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, page_svg
 from solidgear.report.train_chart import receptance_chart, response_chart
 from solidgear.report.units import SYSTEMS
@@ -38,7 +38,7 @@ def panel_of(rows, **axes):
 
 def test_marks_stand_where_their_numbers_say_on_logarithmic_axes():
     rows = [
-        {"x": x, "y": y, "told": told(name, ("v", "1", ""))}
+        {"x": x, "y": y, "readout": readout(name, ("v", "1", ""))}
         for name, x, y in (("a", 1.0, 1e-3), ("b", 30.0, 0.5), ("c", 1000.0, 7e-2))
     ]
     for width in (WIDE, NARROW):
@@ -57,7 +57,9 @@ def test_marks_stand_where_their_numbers_say_on_logarithmic_axes():
 
 def test_what_is_no_number_or_has_no_logarithm_is_not_drawn():
     values = {"in": 1.0, "nan": np.nan, "none": None, "zero": 0.0, "below": -1.0}
-    rows = [{"x": 2.0, "y": y, "told": told(name, ("v", "1", ""))} for name, y in values.items()]
+    rows = [
+        {"x": 2.0, "y": y, "readout": readout(name, ("v", "1", ""))} for name, y in values.items()
+    ]
     assert [name for name, *_ in AT.findall(Chart([[panel_of(rows)]]).svg())] == ["in"]
 
 
@@ -86,7 +88,7 @@ def test_a_second_axis_above_leaves_the_one_below():
 
 def test_words_cannot_end_the_picture_or_begin_a_script():
     evil = '</text></svg><script>alert("x")</script>\\'
-    row = {"x": 2.0, "y": 0.5, "told": told(evil, (evil, evil, evil)), "text": evil}
+    row = {"x": 2.0, "y": 0.5, "readout": readout(evil, (evil, evil, evil)), "text": evil}
 
     def make(width):
         panel = panel_of([row])
@@ -96,7 +98,7 @@ def test_words_cannot_end_the_picture_or_begin_a_script():
 
     svg = page_svg("evil", make).decode()
     assert "<script" not in svg and svg.count("</svg>") == 2
-    assert set(words_of(svg)) == {row["told"]}
+    assert set(words_of(svg)) == {row["readout"]}
 
 
 def test_a_series_has_a_colour_and_a_shape_of_its_own(made_up_charts):

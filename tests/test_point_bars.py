@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.judge.bars import step_bands
+from solidgear.judge.bars import step_bars
 from solidgear.judge.quantities import (
     between,
     measure,
@@ -183,8 +183,8 @@ def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
 def test_effects_of_features_count_at_every_point():
     levels = [{C_ZZ: 1.0, C_ZZ.at("p"): 1.0}] * 2
     effect = {"C_zz": 0.2, "C_zz@p": 0.2}
-    found = step_bands(levels, {}, LADDER["corrected"].safety, effect=effect)
-    assert found["C_zz@p"].gci == found["C_zz"].gci > 0.01  # meshes that agree by accident
+    found = step_bars(levels, {}, LADDER["corrected"].safety, effect=effect)
+    assert found["C_zz@p"].width == found["C_zz"].width > 0.01  # meshes that agree by accident
 
 
 # --------------------------------------------------------------------------- where they are told
@@ -209,16 +209,16 @@ def test_planes_that_nothing_couples_stay_apart(settled, shaft):
 def test_judged_and_reported(shaft):
     asked = ["C_zz", "C_zz@pinion@wheel"]
     scene = shaft.with_changes(ask=sg.Ask(quantities=asked, tolerance=0.05))
-    rungs = {
+    solutions = {
         "timoshenko": study(scene, "timoshenko", evidence=False),
         "harmonic": study(scene, "harmonic", {"order": 3, "layers": 0}, evidence=False),
     }
-    record = recorded(scene, rungs, {}, [], {}, [], True)
+    record = recorded(scene, solutions, {}, [], {}, [], True)
     assert record.verdict.judged == ["C_zz", "C_zz@wheel@pinion"]
     said = "Compliances are judged at wheel, between wheel and pinion; not at pinion."
     assert said in record.verdict.sentences
     row = next(r for r in record.deviations if r.quantity == "C_zz@wheel@pinion")
-    solid, beam = (rungs[m].quantities for m in ("harmonic", "timoshenko"))
+    solid, beam = (solutions[m].quantities for m in ("harmonic", "timoshenko"))
     apart = beam["C_zz@wheel@pinion"] - solid["C_zz@wheel@pinion"]
     assert row.relative == pytest.approx(
         apart / (solid["C_zz"] * solid["C_zz@pinion"]) ** 0.5, rel=1e-9

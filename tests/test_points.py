@@ -266,11 +266,11 @@ def test_models_are_judged_at_every_point():
     gear = Port(name="gear", y=0.26, lo=0.23, hi=0.29, attachment="section")
     disc = Port(name="disc", y=0.605, lo=0.6, hi=0.61)
     scene = Scene.from_parts(parts, bearings=ends, port=gear, further_ports=(disc,))
-    rungs = {
+    solutions = {
         "timoshenko": study(scene, "timoshenko", evidence=False),
         "harmonic": study(scene, "harmonic", {"order": 4, "layers": 1}, evidence=False),
     }
-    record = recorded(scene, rungs, {}, [], {}, [], True)
+    record = recorded(scene, solutions, {}, [], {}, [], True)
     assert "C_thx@disc" in record.verdict.judged and record.verdict.trust == "harmonic"
     beam = record.models["timoshenko"]
     assert beam.valid is False and " at disc is " in beam.why_not
@@ -278,7 +278,7 @@ def test_models_are_judged_at_every_point():
     rows = [r for r in record.deviations if r.quantity == "C_zz@disc"]
     assert rows and all(r.band is not None for r in rows)
     asked = scene.with_changes(ask=sg.Ask(quantities=["C_zz"]))
-    only = recorded(asked, rungs, {}, [], {}, [], True)
+    only = recorded(asked, solutions, {}, [], {}, [], True)
     assert only.verdict.judged == ["C_zz"] and only.models["timoshenko"].valid
     assert "Compliances are judged at gear; not at disc." in only.verdict.sentences
     coupled = record.models["harmonic"].coupled

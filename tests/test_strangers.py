@@ -176,7 +176,7 @@ def test_an_ordinary_shaft_needs_no_large_mesh(name):
     judge = study(scene, "harmonic", evidence=False)
     # a judge must be surer than what it judges
     share = LADDER["harmonic"].share
-    assert judge.worst_band() <= scene.ask.tolerance / share and judge.body.size < 65_000
+    assert judge.worst_bar() <= scene.ask.tolerance / share and judge.body.size < 65_000
     third = LADDER["solid"].size(scene, {**HEXAHEDRA[2], "around": 8})
     assert third.unknowns < 75_000 and third.mb < 1200
 
@@ -188,8 +188,8 @@ def test_both_solids_meet_the_tolerance_and_each_other(name):
     harmonic, solid = (study(scene, model, evidence=False) for model in ("harmonic", "solid"))
     for q in ("C_zz", "C_thx", "C_yy", "bending 1"):
         gap = abs(solid.quantities[q] / harmonic.quantities[q] - 1)
-        band = solid.bands[SCENE][q].gci + harmonic.bands[SCENE][q].gci
-        assert gap <= band <= 2 * scene.ask.tolerance, q
+        bar = solid.error_bars[SCENE][q].width + harmonic.error_bars[SCENE][q].width
+        assert gap <= bar <= 2 * scene.ask.tolerance, q
 
 
 def test_a_lumped_model_without_the_first_bending_is_not_valid():
@@ -215,14 +215,14 @@ def test_a_lumped_model_without_the_first_bending_is_not_valid():
 
 
 def test_a_beam_that_cannot_be_made_says_nothing_of_the_other(monkeypatch):
-    real = Probe.rung
+    real = Probe.solution
 
-    def rung(probe, model):
+    def solution(probe, model):
         if model == "euler":
             raise sg.SolidgearError("an element is 5e-08 m long, and loses its digits")
         return real(probe, model)
 
-    monkeypatch.setattr(Probe, "rung", rung)
+    monkeypatch.setattr(Probe, "solution", solution)
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
     verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
     assert verdicts["euler"]["verdict"] == "will not hold"

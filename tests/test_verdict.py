@@ -1,4 +1,4 @@
-"""Which model to trust and which is the cheapest that will do, on rungs made by hand and on shafts."""
+"""Which model to trust and which is the cheapest that will do, on solutions made by hand and on shafts."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,7 +8,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.body.mode_names import ModeName
-from solidgear.judge.bars import Band
+from solidgear.judge.bars import ErrorBar
 from solidgear.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
 from solidgear.judge.quantities import JUDGED
 from solidgear.judge.record import GuardRecord, LevelRecord
@@ -58,17 +58,17 @@ def tied(c_zz=1.0, bending=100.0, **others):
     )
 
 
-def banded(size, names):
-    return {n: Band((1.0, 1.0), size, size, None, 1.0, 0.0, 1.0) for n in names}
+def barred(size, names):
+    return {n: ErrorBar((1.0, 1.0), size, size, None, 1.0, 0.0, 1.0) for n in names}
 
 
-def rung(c_zz=1.0, bending=100.0, *, model="beam", band=None, section=None, **others):
+def solution(c_zz=1.0, bending=100.0, *, model="beam", bar=None, section=None, **others):
     ties = {SCENE: tied(c_zz, bending, **others)}
     if section is not None:
         ties[SECTION] = tied(*section)
-    bands = {} if band is None else {tie: banded(band, t.quantities) for tie, t in ties.items()}
+    bars = {} if bar is None else {tie: barred(bar, t.quantities) for tie, t in ties.items()}
     meter = SimpleNamespace(seconds={"build": 1.0, "statics": 0.5, "modes": 0.5, "band": 100.0})
-    return Solution(model, ties, meter, bands=bands, levels=[LevelRecord()] * 3)
+    return Solution(model, ties, meter, error_bars=bars, levels=[LevelRecord()] * 3)
 
 
 def asking(tolerance, quantities=()):
@@ -77,10 +77,10 @@ def asking(tolerance, quantities=()):
     return SimpleNamespace(ask=ask, port=ports[0], ports=ports, further_ports=())
 
 
-def judged(rungs, tolerance, quantities=(), notices=()):
-    reference, _ = trusted(rungs, tolerance)
-    gaps = deviations(rungs, reference) if reference else []
-    return judge(asking(tolerance, quantities), rungs, gaps, notices)
+def judged(solutions, tolerance, quantities=(), notices=()):
+    reference, _ = trusted(solutions, tolerance)
+    gaps = deviations(solutions, reference) if reference else []
+    return judge(asking(tolerance, quantities), solutions, gaps, notices)
 
 
 def verdicts(gaps, model="solid"):
@@ -95,15 +95,15 @@ def verdicts(gaps, model="solid"):
         (-0.010, 0.006, 0.005, "not resolved"),
         (0.012, 0.006, 0.005, "resolved"),
         (-0.012, 0.006, 0.005, "resolved"),
-        (0.004, None, 0.005, "not resolved"),  # a beam has no band
+        (0.004, None, 0.005, "not resolved"),  # a beam has no bar
         (0.006, None, 0.005, "resolved"),
         (0.004, None, None, "no band"),
         (0.0, 0.0, 0.0, "not resolved"),
     ],
 )
-def test_a_gap_inside_the_summed_bands_is_not_resolved(relative, mine, theirs, verdict):
-    rungs = {"harmonic": rung(band=theirs), "solid": rung(c_zz=1 + relative, band=mine)}
-    (gap,) = [g for g in deviations(rungs, "harmonic") if g.quantity == "C_zz"]
+def test_a_gap_inside_the_summed_bars_is_not_resolved(relative, mine, theirs, verdict):
+    solutions = {"harmonic": solution(bar=theirs), "solid": solution(c_zz=1 + relative, bar=mine)}
+    (gap,) = [g for g in deviations(solutions, "harmonic") if g.quantity == "C_zz"]
     assert gap.verdict == verdict
     assert gap.relative == pytest.approx(relative, abs=1e-15)  # one subtraction
     known = [b for b in (mine, theirs) if b is not None]
@@ -112,11 +112,11 @@ def test_a_gap_inside_the_summed_bands_is_not_resolved(relative, mine, theirs, v
 
 
 def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
-    rungs = {
-        "timoshenko": rung(0.99, 99.0, section=(1.08, 94.0)),
-        "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.1, 95.0)),
+    solutions = {
+        "timoshenko": solution(0.99, 99.0, section=(1.08, 94.0)),
+        "harmonic": solution(1.0, 100.0, bar=1e-3, section=(1.1, 95.0)),
     }
-    gaps = deviations(rungs, "harmonic")
+    gaps = deviations(solutions, "harmonic")
     found = {(g.attachment, g.quantity): g.relative for g in gaps}
     # quotients of the numbers above
     assert found[(SCENE, "C_zz")] == pytest.approx(-0.01, rel=1e-12)
@@ -124,28 +124,31 @@ def test_every_model_is_held_as_the_scene_is_tied_and_like_for_like():
     assert found[(SECTION, "bending 1")] == pytest.approx(94 / 95 - 1, rel=1e-12)
     assert all(g.model == "timoshenko" for g in gaps)  # the reference is not held against itself
     # without its own section means a model has no like-for-like partner
-    rungs["timoshenko"].ties.pop(SECTION)
-    assert {g.attachment for g in deviations(rungs, "harmonic")} == {SCENE}
+    solutions["timoshenko"].ties.pop(SECTION)
+    assert {g.attachment for g in deviations(solutions, "harmonic")} == {SCENE}
 
 
 def test_a_coupling_is_told_against_the_mean_of_its_diagonal_entries():
     values = {"C_thx": 4.0, "C_z,thx": 1e-17}
-    rungs = {
-        "timoshenko": rung(**(values | {"C_z,thx": 0.02})),
-        "harmonic": rung(band=1e-3, **values),
+    solutions = {
+        "timoshenko": solution(**(values | {"C_z,thx": 0.02})),
+        "harmonic": solution(bar=1e-3, **values),
     }
-    (gap,) = [g for g in deviations(rungs, "harmonic") if g.quantity == "C_z,thx"]
+    (gap,) = [g for g in deviations(solutions, "harmonic") if g.quantity == "C_z,thx"]
     # 0.02 over the root of 1 times 4: symmetry makes the coupling itself zero
     assert gap.relative == pytest.approx(0.01, rel=1e-12)
 
 
 def test_quantities_that_one_side_lacks_are_left_out():
-    rungs = {"harmonic": rung(K_zz=5.0), "solid": rung()}
-    assert verdicts(deviations(rungs, "harmonic")) == {"C_zz": "no band", "bending 1": "no band"}
+    solutions = {"harmonic": solution(K_zz=5.0), "solid": solution()}
+    assert verdicts(deviations(solutions, "harmonic")) == {
+        "C_zz": "no band",
+        "bending 1": "no band",
+    }
 
 
 # --------------------------------------------------------------------------- judge
-def test_a_gap_counts_with_its_band():
+def test_a_gap_counts_with_its_bar():
     assert gap_verdict(0.04, 0.009, 0.05) == gap_verdict(-0.04, 0.009, 0.05) == WITHIN
     assert gap_verdict(0.045, 0.009, 0.05) == gap_verdict(-0.055, 0.009, 0.05) == OPEN
     assert gap_verdict(0.06, 0.009, 0.05) == BEYOND
@@ -156,8 +159,12 @@ def test_a_gap_counts_with_its_band():
     [(0.01, False, False), (0.05, False, True), (0.25, True, True)],
 )
 def test_tolerance_decides(tolerance, euler, timoshenko):
-    rungs = {"euler": rung(0.8), "timoshenko": rung(0.97), "harmonic": rung(1.0, band=1e-3)}
-    verdict, validity = judged(rungs, tolerance)
+    solutions = {
+        "euler": solution(0.8),
+        "timoshenko": solution(0.97),
+        "harmonic": solution(1.0, bar=1e-3),
+    }
+    verdict, validity = judged(solutions, tolerance)
     assert validity["euler"].valid is euler and validity["timoshenko"].valid is timoshenko
     assert validity["harmonic"].valid and validity["harmonic"].why_not is None
     assert verdict.cheapest == ("euler" if euler else "timoshenko" if timoshenko else "harmonic")
@@ -170,23 +177,23 @@ def test_tolerance_decides(tolerance, euler, timoshenko):
             assert "more than the" in why and not validity[model].open
 
 
-def test_what_the_bands_leave_open_is_not_valid():
+def test_what_the_bars_leave_open_is_not_valid():
     # 4.9 % off, known to within 0.2 %: that may be 5.1 %
-    rungs = {"timoshenko": rung(0.951), "harmonic": rung(1.0, band=2e-3)}
-    verdict, validity = judged(rungs, 0.05)
+    solutions = {"timoshenko": solution(0.951), "harmonic": solution(1.0, bar=2e-3)}
+    verdict, validity = judged(solutions, 0.05)
     assert not validity["timoshenko"].valid and validity["timoshenko"].open
     assert "may or may not be within" in validity["timoshenko"].why_not
     assert verdict.cheapest == "harmonic"
 
 
 def test_cheapest_does_not_depend_on_the_order_of_the_rungs():
-    rungs = {
-        "solid": rung(1.001, band=1e-3),
-        "harmonic": rung(1.0, band=1e-3),
-        "timoshenko": rung(0.99),
-        "euler": rung(0.5),
+    solutions = {
+        "solid": solution(1.001, bar=1e-3),
+        "harmonic": solution(1.0, bar=1e-3),
+        "timoshenko": solution(0.99),
+        "euler": solution(0.5),
     }
-    verdict, _ = judged(rungs, 0.05)
+    verdict, _ = judged(solutions, 0.05)
     assert verdict.cheapest == "timoshenko"
     # what it costs is building and solving it, not its evidence
     assert any(
@@ -205,8 +212,8 @@ def test_a_share_in_words_has_no_exponent():
 
 
 def test_worst_of_the_judged_numbers_is_named():
-    rungs = {"timoshenko": rung(0.93, 120.0), "harmonic": rung(band=1e-3)}
-    why = judged(rungs, 0.05)[1]["timoshenko"].why_not
+    solutions = {"timoshenko": solution(0.93, 120.0), "harmonic": solution(bar=1e-3)}
+    why = judged(solutions, 0.05)[1]["timoshenko"].why_not
     assert (
         why.startswith("bending 1") and "20 %" in why and "with the attachments of the scene" in why
     )
@@ -214,11 +221,11 @@ def test_worst_of_the_judged_numbers_is_named():
 
 def test_like_for_like_counts_too():
     # right with the scene's seats, wrong like for like: a cancellation
-    rungs = {
-        "timoshenko": rung(1.0, 100.0, section=(1.0, 100.0)),
-        "harmonic": rung(1.0, 100.0, band=1e-3, section=(1.2, 99.0)),
+    solutions = {
+        "timoshenko": solution(1.0, 100.0, section=(1.0, 100.0)),
+        "harmonic": solution(1.0, 100.0, bar=1e-3, section=(1.2, 99.0)),
     }
-    verdict, validity = judged(rungs, 0.05)
+    verdict, validity = judged(solutions, 0.05)
     assert (
         not validity["timoshenko"].valid
         and "like for like (section means everywhere)" in validity["timoshenko"].why_not
@@ -231,11 +238,11 @@ def test_like_for_like_counts_too():
 
 def test_the_tie_is_told_apart_from_the_beam():
     # 12 % off at seats that distort, 1 % like for like
-    rungs = {
-        "timoshenko": rung(0.88, section=(0.99, 100.0)),
-        "harmonic": rung(band=1e-3, section=(1.0, 100.0)),
+    solutions = {
+        "timoshenko": solution(0.88, section=(0.99, 100.0)),
+        "harmonic": solution(bar=1e-3, section=(1.0, 100.0)),
     }
-    verdict, validity = judged(rungs, 0.05)
+    verdict, validity = judged(solutions, 0.05)
     assert not validity["timoshenko"].valid
     assert any(
         "the tie, not the beam" in s and "12 %" in s and "1 %" in s for s in verdict.sentences
@@ -243,46 +250,52 @@ def test_the_tie_is_told_apart_from_the_beam():
 
 
 def test_only_what_is_asked_is_judged():
-    rungs = {"timoshenko": rung(0.8, 101.0), "harmonic": rung(band=1e-3)}
-    assert not judged(rungs, 0.05)[1]["timoshenko"].valid
-    verdict, validity = judged(rungs, 0.05, quantities=("bending 1",))
+    solutions = {"timoshenko": solution(0.8, 101.0), "harmonic": solution(bar=1e-3)}
+    assert not judged(solutions, 0.05)[1]["timoshenko"].valid
+    verdict, validity = judged(solutions, 0.05, quantities=("bending 1",))
     assert validity["timoshenko"].valid and verdict.judged == ["bending 1"]
 
 
 def test_stiffnesses_are_shown_but_not_judged():
-    rungs = {"timoshenko": rung(K_zz=2.0), "harmonic": rung(K_zz=1.0, band=1e-3)}
+    solutions = {"timoshenko": solution(K_zz=2.0), "harmonic": solution(K_zz=1.0, bar=1e-3)}
     assert "K_zz" not in JUDGED
-    assert any(g.quantity == "K_zz" and g.relative == 1.0 for g in deviations(rungs, "harmonic"))
-    assert judged(rungs, 0.05)[1]["timoshenko"].valid
+    assert any(
+        g.quantity == "K_zz" and g.relative == 1.0 for g in deviations(solutions, "harmonic")
+    )
+    assert judged(solutions, 0.05)[1]["timoshenko"].valid
 
 
-def test_solid_inside_the_bands_is_said_to_be_not_resolved():
+def test_solid_inside_the_bars_is_said_to_be_not_resolved():
     sentences = " ".join(
-        judged({"harmonic": rung(band=1e-3), "solid": rung(1.001, band=1e-3)}, 0.05)[0].sentences
+        judged({"harmonic": solution(bar=1e-3), "solid": solution(1.001, bar=1e-3)}, 0.05)[
+            0
+        ].sentences
     )
     assert "not resolved" in sentences and "agree" not in sentences
     sentences = " ".join(
-        judged({"harmonic": rung(band=1e-3), "solid": rung(1.01, band=1e-3)}, 0.05)[0].sentences
+        judged({"harmonic": solution(bar=1e-3), "solid": solution(1.01, bar=1e-3)}, 0.05)[
+            0
+        ].sentences
     )
-    assert "not resolved" not in sentences and "beyond the bands in C_zz" in sentences
+    assert "not resolved" not in sentences and "beyond the error bars in C_zz" in sentences
 
 
-def test_a_solid_without_bands_is_not_said_to_be_beyond_them():
-    """One mesh of a solid may err by all of its gap; of several quantities some may have a band."""
-    alone = rung(1.01)
-    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": alone}, 0.05)[0].sentences)
-    assert "beyond" not in said and "inside the bands" not in said
-    assert "within 1 % of it in every judged number; it has no bands of its own" in said
-    half = rung(1.01, 101.0, band=1e-3)
-    del half.bands[SCENE]["bending 1"]
-    said = " ".join(judged({"harmonic": rung(band=1e-3), "solid": half}, 0.05)[0].sentences)
-    assert "beyond the bands in C_zz; of bending 1 it has no band of its own" in said
+def test_a_solid_without_bars_is_not_said_to_be_beyond_them():
+    """One mesh of a solid may err by all of its gap; of several quantities some may have a bar."""
+    alone = solution(1.01)
+    said = " ".join(judged({"harmonic": solution(bar=1e-3), "solid": alone}, 0.05)[0].sentences)
+    assert "beyond" not in said and "inside the error bars" not in said
+    assert "within 1 % of it in every judged number; it has no error bars of its own" in said
+    half = solution(1.01, 101.0, bar=1e-3)
+    del half.error_bars[SCENE]["bending 1"]
+    said = " ".join(judged({"harmonic": solution(bar=1e-3), "solid": half}, 0.05)[0].sentences)
+    assert "beyond the error bars in C_zz; of bending 1 it has no error bar of its own" in said
 
 
 # --------------------------------------------------------------------------- no evidence, no verdict
 def test_beams_alone_are_not_judged():
-    for rungs in ({"euler": rung(0.9)}, {"euler": rung(0.9), "timoshenko": rung()}):
-        verdict, validity = judged(rungs, 0.05)
+    for solutions in ({"euler": solution(0.9)}, {"euler": solution(0.9), "timoshenko": solution()}):
+        verdict, validity = judged(solutions, 0.05)
         assert verdict.trust is verdict.cheapest is None
         assert verdict.sentences == [
             "Not judged: no solid was run, and a beam cannot judge itself."
@@ -290,11 +303,13 @@ def test_beams_alone_are_not_judged():
         assert all(not v.valid and v.open for v in validity.values())
 
 
-def test_a_solid_without_a_band_judges_nobody():
-    lost = rung()
+def test_a_solid_without_a_bar_judges_nobody():
+    lost = solution()
     lost.failed["finer mesh"] = "9 MB are free"
-    verdict, validity = judged({"timoshenko": rung(), "harmonic": lost}, 0.05)
-    assert verdict.trust is None and "no band of its own (9 MB are free)" in verdict.sentences[0]
+    verdict, validity = judged({"timoshenko": solution(), "harmonic": lost}, 0.05)
+    assert (
+        verdict.trust is None and "no error bar of its own (9 MB are free)" in verdict.sentences[0]
+    )
     assert (
         not validity["timoshenko"].valid
         and validity["timoshenko"].open
@@ -302,9 +317,9 @@ def test_a_solid_without_a_band_judges_nobody():
     )
 
 
-@pytest.mark.parametrize("band", [0.06, 6.0])
-def test_a_band_above_the_tolerance_is_never_valid(band):
-    verdict, validity = judged({"timoshenko": rung(), "harmonic": rung(band=band)}, 0.05)
+@pytest.mark.parametrize("bar", [0.06, 6.0])
+def test_a_bar_above_the_tolerance_is_never_valid(bar):
+    verdict, validity = judged({"timoshenko": solution(), "harmonic": solution(bar=bar)}, 0.05)
     assert (
         verdict.trust is None
         and not validity["harmonic"].valid
@@ -314,22 +329,22 @@ def test_a_band_above_the_tolerance_is_never_valid(band):
 
 
 def test_the_3d_solid_judges_where_the_harmonic_one_is_missing():
-    verdict, validity = judged({"timoshenko": rung(0.97), "solid": rung(band=1e-3)}, 0.05)
+    verdict, validity = judged({"timoshenko": solution(0.97), "solid": solution(bar=1e-3)}, 0.05)
     assert verdict.trust == "solid" and validity["timoshenko"].valid
     assert verdict.sentences[0].startswith("Trust the 3D solid: full 3D elasticity")
 
 
 def test_a_guard_that_says_avoid_is_heard():
     notice = GuardRecord(level="avoid", models=["timoshenko"], sentence="sections lose their shape")
-    rungs = {"timoshenko": rung(), "harmonic": rung(band=1e-3)}
-    verdict, validity = judged(rungs, 0.05, notices=[notice])
+    solutions = {"timoshenko": solution(), "harmonic": solution(bar=1e-3)}
+    verdict, validity = judged(solutions, 0.05, notices=[notice])
     assert (
         not validity["timoshenko"].valid
         and validity["timoshenko"].why_not == "sections lose their shape"
     )
     assert verdict.cheapest == "harmonic"
     # a caution is told and does not decide
-    assert judged(rungs, 0.05, notices=[notice.model_copy(update={"level": "caution"})])[1][
+    assert judged(solutions, 0.05, notices=[notice.model_copy(update={"level": "caution"})])[1][
         "timoshenko"
     ].valid
 
@@ -369,7 +384,7 @@ def test_a_plain_symmetric_shaft_is_within_every_models_reach():
         and models["harmonic"]["valid"]
         and models["timoshenko"]["valid"]
     )
-    # symmetry makes the coupling zero: its band and its gap are shares of what it could be
+    # symmetry makes the coupling zero: its bar and its gap are shares of what it could be
     assert (
         models["harmonic"]["band"]["each"]["C_z,thx"] < 1e-4
         and abs(gaps[(SCENE, "C_z,thx")]) < 1e-4

@@ -266,18 +266,18 @@ def test_command_line(tmp_path):
 
 def test_a_study_keeps_where_its_widest_bar_sits(scenes):
     scene = scenes["shaft_stepped"]
-    rung = study(scene, "harmonic", share=2.0, evidence=False)
-    found = recorded_places(scene, rung)
-    bands = rung.bands[SCENE]
-    assert found.quantity == max(usual(scene), key=lambda q: bands[q].gci)
-    assert found.model == "harmonic" and found.total == bands[found.quantity].gci
+    solution = study(scene, "harmonic", share=2.0, evidence=False)
+    found = recorded_places(scene, solution)
+    bars = solution.error_bars[SCENE]
+    assert found.quantity == max(usual(scene), key=lambda q: bars[q].width)
+    assert found.model == "harmonic" and found.total == bars[found.quantity].width
     assert whole(_as_found(found)) and len(found.shares) == len(found.cells[0])
-    same = where(scene, found.quantity, rung.options)
+    same = where(scene, found.quantity, solution.options)
     assert found.sentence == same.sentence and found.order == same.order
     # there planes of section ties are singular as well, which the richer space knows of
     assert np.allclose(found.shares, same.shares, atol=1e-4)
-    rung.bands = {}
-    assert recorded_places(scene, rung) is None
+    solution.error_bars = {}
+    assert recorded_places(scene, solution) is None
 
 
 def _as_found(record):

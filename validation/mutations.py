@@ -316,7 +316,7 @@ MUTATIONS = (
     Mutation(
         "axis condition of bending dropped",
         "solidgear/models/harmonic/blocks.py",
-        "_Work.kept",
+        "_Work.free_unknowns",
         "keep[self.on_axis, 1:] = False",
         "keep[self.on_axis, 2:] = False",
         "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",
@@ -603,10 +603,10 @@ MUTATIONS = (
     ),
     Mutation(
         "bearing: the housing's spring is left out of the equilibrium",
-        "solidgear/bearings/equilibrium.py",
-        "_System.__init__",
-        "-below[k].moves",
-        "-0.0 * below[k].moves",
+        "solidgear/bearings/balance.py",
+        "Balance.__init__",
+        "self.reads[k][:, at : at + len(foot.stiffness)] = -foot.moves",
+        "self.reads[k][:, at : at + len(foot.stiffness)] = -0.0 * foot.moves",
         "tests/test_bearings_equilibrium.py::test_series_spring_and_housing_take_the_bearings_load",
     ),
     Mutation(

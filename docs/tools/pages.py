@@ -89,11 +89,11 @@ def options() -> str:
 
     lines = []
     for name in LADDER.bodies:
-        rung = LADDER[name]
-        defaults = rung.defaults()
-        lines += [f"## {name}: {rung.title}", "", "| option | default | may be | what it is |"]
+        model = LADDER[name]
+        defaults = model.defaults()
+        lines += [f"## {name}: {model.title}", "", "| option | default | may be | what it is |"]
         lines.append("| --- | --- | --- | --- |")
-        for key, option in rung.options.items():
+        for key, option in model.options.items():
             default = _default(defaults.get(key))
             lines.append(f"| `{key}` | {default} | {_may_be(option)} | {option.meaning} |")
         lines.append("")

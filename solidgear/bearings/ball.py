@@ -33,7 +33,7 @@ from solidgear.bearings.hertz import (
     Point,
     point_contact,
 )
-from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, unfolded
+from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, symmetric
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ class BallRow:
             ],
             axis=-1,
         )
-        return unfolded(weights @ self._products)
+        return symmetric(weights @ self._products)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
         """Loads, angles and pressures of the balls at motions (..., 6)."""

@@ -51,7 +51,7 @@ class Ranges:
                 )
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The varied data in words."""
         parts = [
             f"{key} {low:g} to {high:g} times"

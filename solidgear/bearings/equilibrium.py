@@ -112,7 +112,7 @@ def equilibrium(
         found = shaft.balance.settle(shaft.target, None if start is None else start._state)
     except NothingHolds as error:
         raise SolidgearError(shaft.not_held(error.direction)) from None
-    return shaft.told(found.motion, found.unbalanced, found.iterations)
+    return shaft.equilibrium(found.motion, found.unbalanced, found.iterations)
 
 
 class _OnBody:
@@ -155,7 +155,7 @@ class _OnBody:
         """Error of a search that found no equilibrium."""
         return not_held(self.loads.reshape(-1, 5).sum(axis=0), direction)
 
-    def told(self, at: np.ndarray, unbalanced: float, iterations: int) -> Equilibrium:
+    def equilibrium(self, at: np.ndarray, unbalanced: float, iterations: int) -> Equilibrium:
         """The equilibrium by names."""
         motion = {name: np.zeros(6) for name in self.names}
         for name, five in zip(self.names, self.balance.places(at).reshape(-1, 5)):

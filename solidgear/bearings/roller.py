@@ -26,7 +26,7 @@ from solidgear.bearings.hertz import (
     line_constant,
     line_pressure,
 )
-from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, unfolded
+from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, symmetric
 
 Profile = Literal["logarithmic", "straight"]
 
@@ -160,7 +160,7 @@ class RollerRow:
         """Derivative of the load, (..., 6, 6), exact."""
         factor = self.constant / self.slices * LINE_POWER
         weights = factor * self._approach(motion) ** (LINE_POWER - 1)
-        return unfolded(weights @ self._products)
+        return symmetric(weights @ self._products)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
         """Loads, angles and pressures of the rollers at motions (..., 6)."""

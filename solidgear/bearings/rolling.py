@@ -135,17 +135,17 @@ class RollingBearing:
             raise SolidgearError(_not_carried(wanted, move, error.direction)) from None
         if found.unbalanced > 1e-6:
             raise SolidgearError(
-                f"no equilibrium under {_told(wanted)}: {found.unbalanced:.1e} of it is left over"
+                f"no equilibrium under {_load_in_words(wanted)}: {found.unbalanced:.1e} of it is left over"
             )
         return whole(found.motion)
 
 
 def _not_carried(load: np.ndarray, move: Sequence[int], direction: np.ndarray) -> str:
     name = DOF_NAMES[move[int(np.argmax(np.abs(direction)))]]
-    return f"the bearing cannot carry {_told(load)}: nothing holds it in {name}"
+    return f"the bearing cannot carry {_load_in_words(load)}: nothing holds it in {name}"
 
 
-def _told(load: np.ndarray) -> str:
+def _load_in_words(load: np.ndarray) -> str:
     """A load in words, its zeros left out."""
     parts = [f"{v:.6g} {u} in {n}" for v, u, n in zip(load, UNITS, DOF_NAMES) if v != 0.0]
     return " and ".join(parts) or "no load"

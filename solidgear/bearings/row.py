@@ -103,7 +103,7 @@ def products(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return (a[:, i] * b[:, j] + a[:, j] * b[:, i]) / 2
 
 
-def unfolded(upper: np.ndarray) -> np.ndarray:
+def symmetric(upper: np.ndarray) -> np.ndarray:
     """(..., 6, 6) from upper triangles (..., 15) of what is felt; the row of thy is zero."""
     out = np.zeros((*upper.shape[:-1], 6, 6))
     i, j = _PLACE[_UPPER[0]], _PLACE[_UPPER[1]]

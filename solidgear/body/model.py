@@ -1,6 +1,6 @@
 """The one currency of the house: a free elastic shaft with named ports.
 
-Every fidelity (beam, harmonic solid, 3D solid) is turned into a :class:`Body`; everything after
+Every model (beam, harmonic solid, 3D solid) is turned into a :class:`Body`; everything after
 that (condensation, modes, evidence) is written once against it. Bearings are never part of a body:
 they are :class:`~solidgear.body.supports.Supports` that act on ports.
 """
@@ -192,7 +192,7 @@ class _Families(dict[int, "Body"]):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Body(Displayed):
-    """A free elastic shaft at one fidelity.
+    """A free elastic shaft by one model.
 
     Attributes
     ----------
@@ -213,13 +213,13 @@ class Body(Displayed):
     further : object or None
         Builder of further circumferential families, such as
         :class:`solidgear.models.harmonic.circumferential.Families`; None where the blocks are all that the
-        fidelity knows.
+        model knows.
     cache : Cache
         What solvers have worked out about this body, such as its factors.
     factoring : Factoring
         How its matrices are to be factored.
-    ways_out : callable, optional
-        ``ways_out(body, error)`` adds to a refusal of its factors what to do instead.
+    remedies : callable, optional
+        ``remedies(body, error)`` adds to a refusal of its factors what to do instead.
 
     Examples
     --------
@@ -244,7 +244,7 @@ class Body(Displayed):
     further: Any = None
     cache: Cache = field(default_factory=Cache, repr=False)
     factoring: Factoring = Factoring()
-    ways_out: Callable[..., SolidgearError] | None = None
+    remedies: Callable[..., SolidgearError] | None = None
 
     @property
     def size(self) -> int:
@@ -267,7 +267,7 @@ class Body(Displayed):
         Raises
         ------
         SolidgearError
-            If the fidelity has no such family.
+            If the model has no such family.
         """
         if index < FURTHER:
             return self.blocks[index]
@@ -291,7 +291,7 @@ class Body(Displayed):
         Raises
         ------
         SolidgearError
-            If the fidelity has no such families.
+            If the model has no such families.
         """
         if self.further is None:
             raise SolidgearError(

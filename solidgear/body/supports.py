@@ -266,10 +266,10 @@ def as_supports(source: Holding) -> Supports:
         k = around.beneath(k, [b.y for b in bearings])
     names = tuple(b.name for b in bearings)
     masses = tuple(getattr(source, "masses", ()))
-    return _laden(names, k, masses) if masses else Supports(names, k)
+    return _with_masses(names, k, masses) if masses else Supports(names, k)
 
 
-def _laden(names: tuple[str, ...], k: np.ndarray, masses: Iterable[PointMass]) -> Supports:
+def _with_masses(names: tuple[str, ...], k: np.ndarray, masses: Iterable[PointMass]) -> Supports:
     """Springs of bearings, with masses on their ports and on further ones."""
     ports = tuple(dict.fromkeys((*names, *(mass.station for mass in masses))))
     stiffness, inertia = np.zeros((2, 6 * len(ports), 6 * len(ports)))

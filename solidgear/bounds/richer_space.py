@@ -121,7 +121,7 @@ class RicherSpace:
         u = u if block.expand is None else block.expand @ u
         count, c = self._work.n, family.count
         every = np.zeros((count * c, u.shape[1]))
-        keep = self._work.kept(family.waves) if family.waves >= 0 else slice(None)
+        keep = self._work.free_unknowns(family.waves) if family.waves >= 0 else slice(None)
         every[keep] = u
         cells = self._up @ every.reshape(count, -1)[self._work.dofs.T]
         return cells.reshape(*cells.shape[:2], c, -1)

@@ -93,7 +93,7 @@ def answer(
         say(_values(found, units), _path(found))
         say(*sentences(found), *_of_round_part(loaded, found))
         if places is not None:
-            say(_where_table(places), _told(places))
+            say(_where_table(places), _sentence(places))
         if unplaced:
             say(f"Where the error sits: {unplaced}.")
         if places is not None and picture is not None:
@@ -169,7 +169,7 @@ def sentences(found: Answered | Settled) -> list[str]:
 
 
 def _of_round_part(scene: Scene, found: Answered) -> list[str]:
-    """Whose numbers they are, where a mesh file is of a round part and a model of revolution answers."""
+    """Remark that numbers are of the round part, where a mesh file is answered by a model of revolution."""
     from solidgear.ladder.registry import LADDER
     from solidgear.models.kinds import PARTS
     from solidgear.report.words import percent
@@ -237,7 +237,7 @@ def _where_table(places: Whereabouts) -> Table:
     return Table("", columns, worth_naming(places.rows))
 
 
-def _told(places: Whereabouts) -> str:
+def _sentence(places: Whereabouts) -> str:
     """Sentences on the places with most of the error, the width of the bar, and the cost of
     telling.
     """

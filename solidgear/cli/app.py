@@ -61,9 +61,9 @@ def everywhere(
     Progress.silent = quiet
 
 
-#: the rung that commands solve with unless told otherwise
+#: the model that commands solve with unless told otherwise
 FIDELITY = "harmonic"
-#: the word for the cheapest mesh that keeps a tolerance, instead of a rung
+#: the word for the cheapest mesh that keeps a tolerance, instead of a model
 AUTO = "auto"
 #: units of tables and pages unless told otherwise
 UNITS = ENGINEERING.name
@@ -85,12 +85,13 @@ else:
     UnitsChoice = StrEnum("UnitsChoice", [(name, name) for name in SYSTEMS])
     Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
     AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
-FidelityOption = Annotated[Choice, typer.Option("--fidelity", "-f", help="Model to solve with.")]
+#: spellings of the option that names a model
+BY_MODEL = ("--model", "--fidelity", "-f")
+FidelityOption = Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")]
 AutoFidelityOption = Annotated[
     AutoChoice,
     typer.Option(
-        "--fidelity",
-        "-f",
+        *BY_MODEL,
         help="Model to solve with; auto: the cheapest whose bars are within --tol.",
     ),
 ]
@@ -196,7 +197,7 @@ def _value(text: str):
 
 
 def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
-    """Body of a scene at one fidelity, with ``--set`` options."""
+    """Body of a scene by one model, with ``--set`` options."""
     from solidgear.ladder import build
 
     # Checked here too: an option called scene or fidelity would be taken for an argument of

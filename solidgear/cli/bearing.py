@@ -239,10 +239,10 @@ def _print_range(found: BearingRange) -> None:
         Column("Hz", lambda b: b.middle, hertz),
         Column("from", lambda b: b.low, hertz),
         Column("to", lambda b: b.high, hertz),
-        Column("band", lambda b: f"{change(b.low, b)} / {change(b.high, b)} %"),
+        Column("range", lambda b: f"{change(b.low, b)} / {change(b.high, b)} %"),
     ]
     say(Table("", columns, found.bounds))
-    say(f"Over {found.points} points: {found.ranges.told}.")
+    say(f"Over {found.points} points: {found.ranges.text}.")
     for name in found.lost:
         say(f"caution: bearing {name!r} carries nothing somewhere in this range.")
     for reason in found.refused:

@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import UNITS, JsonFlag, Progress, UnitsOption, caution, command, say
+from solidgear.cli.app import (
+    BY_MODEL,
+    UNITS,
+    JsonFlag,
+    Progress,
+    UnitsOption,
+    caution,
+    command,
+    say,
+)
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -38,15 +47,14 @@ def deflect(
     load: Annotated[
         str | None,
         typer.Option(
-            "--load", help='Of a shaft, in place of its [load]: "x=2 kN, z=-500 N" at the port.'
+            "--load",
+            help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
         ),
     ] = None,
     fidelity: Annotated[
         list[str] | None,
         typer.Option(
-            "--fidelity",
-            "--model",
-            "-f",
+            *BY_MODEL,
             help="Model of every shaft; repeatable, the finest last. By default rigid (trains), "
             "euler, timoshenko and harmonic.",
         ),
@@ -58,7 +66,7 @@ def deflect(
     units: UnitsOption = UNITS,
     as_json: JsonFlag = False,
 ) -> None:
-    """Where shafts go under torque: displacements, misalignment of the gears, bearing loads."""
+    """Deflection of shafts under torque: displacements, misalignment of the gears, bearing loads."""
     from solidgear.report.folder import held
     from solidgear.scene.toml_file import is_train
 

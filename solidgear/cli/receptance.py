@@ -12,12 +12,12 @@ from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
 from solidgear.cli.train import (
     Against,
     Damping,
-    GearRung,
+    GearModel,
     Kept,
     LocalHarmonics,
     MatchedAt,
     MaxFrequency,
-    PinionRung,
+    PinionModel,
     Point,
     Reduction,
     TrainFile,
@@ -38,8 +38,8 @@ def receptance(
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for receptance.csv and its chart.")
     ] = Path("out"),
-    pinion: PinionRung = FIDELITY,
-    gear: GearRung = FIDELITY,
+    pinion: PinionModel = FIDELITY,
+    gear: GearModel = FIDELITY,
     against: Against = None,
     max_frequency: MaxFrequency = None,
     damping: Damping = "hysteretic",

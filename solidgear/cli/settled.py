@@ -33,7 +33,7 @@ def body_for(
     ----------
     scene : Scene
     fidelity : str
-        A rung, or ``auto``.
+        A model, or ``auto``.
     pairs : list of str or None
         ``--set`` options.
     tol : float or None
@@ -90,7 +90,7 @@ def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
     return f"{scene.name}: {model}, {part}{body.size} unknowns"
 
 
-def told(settled: Settled | None) -> list[str]:
+def bar_lines(settled: Settled | None) -> list[str]:
     """The largest bar, what was passed over and whether the tolerance is kept, in plain text."""
     if settled is None:
         return []
@@ -164,14 +164,14 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     ]
 
 
-def unjudged(names: Sequence[str], rung: str) -> list[str]:
+def unjudged(names: Sequence[str], model: str) -> list[str]:
     """Sentences on modes without a bar."""
     from solidgear.ladder.registry import LADDER
 
     if not names:
         return []
     why = "the higher a mode, the more it asks of a mesh"
-    if LADDER[rung].bounded:
+    if LADDER[model].bounded:
         why = "no further mode of their family was found above, which a bar needs; raise -n"
     return [f"No bar of their own: {listed(names, most=3)}; {why}."]
 

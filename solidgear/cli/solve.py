@@ -31,12 +31,12 @@ from solidgear.cli.app import (
     with_engine,
 )
 from solidgear.cli.settled import (
+    bar_lines,
     bars_of_modes,
     beyond,
     body_for,
     ended,
     heading,
-    told,
     unjudged,
     without_bar,
 )
@@ -125,7 +125,7 @@ def compare(
         say(*closing_lines(found.record), f"Report: {out / 'report.html'}")
     if not found.record.complete:
         raise typer.Exit(130)
-    if not found.rungs:
+    if not found.solutions:
         raise typer.Exit(1)
 
 
@@ -237,7 +237,7 @@ def modes(
         from solidgear.judge.completeness import completeness
 
         say(completeness(e, body.fidelity), soft_wrap=False)
-    lines = told(settled)
+    lines = bar_lines(settled)
     if bars:
         lines += unjudged(without_bar(found, bars), body.fidelity)
     lines += beyond(bars, settled)
@@ -304,7 +304,7 @@ def check(
     if is_train(scene):
         from solidgear.cli.checked import check_train
 
-        given = {"--fidelity": fidelity != FIDELITY, "--set": bool(settings)}
+        given = {"--model": fidelity != FIDELITY, "--set": bool(settings)}
         check_train(scene, as_json, given)
         return
     from solidgear.cli.checked import print_check

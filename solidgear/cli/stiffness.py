@@ -22,7 +22,7 @@ from solidgear.cli.app import (
     say,
     with_engine,
 )
-from solidgear.cli.settled import body_for, ended, heading, told
+from solidgear.cli.settled import bar_lines, body_for, ended, heading
 
 if TYPE_CHECKING:
     from solidgear.judge.settle import Settled
@@ -86,7 +86,7 @@ def stiffness(
         _tell_coupled(head, loaded, coupled, units)
         if settled is not None:
             say(_bars(settled, coupled))
-    say(*told(settled))
+    say(*bar_lines(settled))
     say(*map(caution, said), soft_wrap=False)
     ended(settled)
 

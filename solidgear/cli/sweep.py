@@ -103,10 +103,10 @@ def sweep(
         refuse_settings(settings)
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(loaded, vary, tol, sample=sample, seed=seed, progress=steps)
-        rung, given = settled.rung, settled.options
+        name, given = settled.rung, settled.options
     else:
         refuse_tolerance(fidelity, tol)
-        rung, given = str(fidelity), LADDER[fidelity].checked(options(settings))
+        name, given = str(fidelity), LADDER[fidelity].checked(options(settings))
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -132,7 +132,7 @@ def sweep(
                 loaded,
                 vary,
                 out,
-                fidelity=rung,
+                fidelity=name,
                 options=given,
                 n=n,
                 sample=sample,
@@ -159,7 +159,7 @@ def sweep(
         print(json.dumps(record, default=str))
         ended(settled)
         return
-    for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), rung):
+    for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), name):
         print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text

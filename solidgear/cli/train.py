@@ -34,12 +34,14 @@ from solidgear.ladder.registry import LADDER
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
 ]
-RUNGS = (
+MODELS = (
     f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
-PinionRung = Annotated[str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {RUNGS}")]
-GearRung = Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")]
+PinionModel = Annotated[
+    str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
+]
+GearModel = Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")]
 Reduction = Annotated[
     str, typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton.")
 ]
@@ -149,8 +151,8 @@ def _harmonics(text: str) -> tuple[int, ...]:
 @command
 def system_modes(
     train: TrainFile,
-    pinion: PinionRung = FIDELITY,
-    gear: GearRung = FIDELITY,
+    pinion: PinionModel = FIDELITY,
+    gear: GearModel = FIDELITY,
     max_frequency: MaxFrequency = None,
     pictures: Annotated[
         Path | None,
@@ -247,8 +249,8 @@ def response(
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for response.csv and its chart.")
     ] = Path("out"),
-    pinion: PinionRung = FIDELITY,
-    gear: GearRung = FIDELITY,
+    pinion: PinionModel = FIDELITY,
+    gear: GearModel = FIDELITY,
     against: Against = None,
     max_frequency: MaxFrequency = None,
     damping: Damping = "hysteretic",

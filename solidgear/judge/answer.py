@@ -145,7 +145,7 @@ def answer(
         values,
         tuple(steps),
         bool(values) and all(v.bar <= tol for v in values),
-        climb.rung.name,
+        climb.model.name,
         tuple(q for q in wanted if q not in known),
         time.perf_counter() - start,
     )
@@ -205,7 +205,7 @@ def climbed(
     for step in steps:
         if step.rung in LADDER.of(SOLID):
             whys.setdefault(step.why.removesuffix(f"; {NO_MODEL}"), []).append(step.rung)
-    failed = [f"{' and '.join(rungs)}: {why}" for why, rungs in whys.items()]
+    failed = [f"{' and '.join(models)}: {why}" for why, models in whys.items()]
     raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
 
 

@@ -28,14 +28,14 @@ LEAST = 1e-10
 
 
 @dataclass(frozen=True)
-class Band:
+class ErrorBar:
     """Error bar of one quantity.
 
     Attributes
     ----------
     values : tuple of float
         Coarse to fine.
-    gci : float
+    width : float
         The error bar, relative to the finest value (couplings: to the geometric mean of their
         diagonal entries).
     change : float
@@ -54,7 +54,7 @@ class Band:
     """
 
     values: tuple[float, ...]
-    gci: float
+    width: float
     change: float
     reduction: float | None
     factor: float
@@ -68,10 +68,10 @@ class Band:
         """The error bar about `middle`, which is narrower; about the finest value where there is
         none.
         """
-        return self.gci if self.middle is None else self.gci - self.change / 2
+        return self.width if self.middle is None else self.width - self.change / 2
 
 
-def step_bands(
+def step_bars(
     levels: Sequence[Values],
     solver: Values,
     safety: Safety,
@@ -79,7 +79,7 @@ def step_bands(
     left_over: float | None = None,
     around: Values | None = None,
     effect: Values | None = None,
-) -> dict[Quantity, Band]:
+) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of two or more meshes.
 
     Parameters
@@ -99,13 +99,13 @@ def step_bands(
 
     Returns
     -------
-    dict of Quantity to Band
+    dict of Quantity to ErrorBar
 
     Examples
     --------
     >>> meshes = [{Quantity("C_zz"): value} for value in (1.0, 1.1, 1.12)]
-    >>> band = step_bands(meshes, {}, Safety((3.0, 2.0)), left_over=1.0)["C_zz"]
-    >>> round(band.gci, 4)  # twice the larger change
+    >>> bar = step_bars(meshes, {}, Safety((3.0, 2.0)), left_over=1.0)["C_zz"]
+    >>> round(bar.width, 4)  # twice the larger change
     0.1818
     """
     around, effect = around or {}, effect or {}
@@ -126,9 +126,9 @@ def step_bands(
         left = solver.get(name, 0.0)
         least = safety.least_share(moves_freely(name), len(levels)) * effect.get(name, 0.0)
         finest, before = levels[-1][name], levels[-2][name]
-        out[name] = Band(
+        out[name] = ErrorBar(
             values=tuple(float(level[name]) for level in levels if name in level),
-            gci=float(
+            width=float(
                 max(factor * rests_on, least)
                 + safety.steps[0] * _left_around(around, name)
                 + left

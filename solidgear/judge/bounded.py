@@ -17,7 +17,7 @@ import numpy as np
 from solidgear.body import Body, Supports
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
-from solidgear.judge.bars import LEAST, Band
+from solidgear.judge.bars import LEAST, ErrorBar
 from solidgear.judge.quantities import Values, in_order, measure, size
 from solidgear.judge.solving import widened
 from solidgear.quantity import ACROSS, STIFFNESS, Quantity
@@ -94,12 +94,12 @@ class Bounded:
 
     Attributes
     ----------
-    bands : dict of Quantity to Band
+    error_bars : dict of Quantity to ErrorBar
     scores : dict of Quantity to ndarray
         Of every number, (ne,) shares of its bar by cells; in sum one.
     """
 
-    bands: dict[Quantity, Band]
+    error_bars: dict[Quantity, ErrorBar]
     scores: dict[Quantity, np.ndarray]
 
 
@@ -136,7 +136,7 @@ def bounded(
         wanted=list(dict.fromkeys(asked)),
         safety=LOCAL,
     )
-    bands: dict[Quantity, Band] = {}
+    bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}
     if statics is not None:
         stiff = statics.values()
@@ -147,8 +147,8 @@ def bounded(
         for name in in_order(dict.fromkeys((*stiff, *names))):
             known = all(name in end for end in (stiff, two, one))
             if known and not name.is_frequency:
-                bands[name] = _between(name, stiff, two, one, solver.get(name, 0.0))
-        own = [q for q in names if q in bands]
+                bars[name] = _between(name, stiff, two, one, solver.get(name, 0.0))
+        own = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, own)
     for name in names:
         mode = found.named(name) if found is not None and name.is_frequency else None
@@ -156,9 +156,9 @@ def bounded(
             continue
         least = bounds.frequency(mode)
         open_ = 1 - least / mode.frequency_hz
-        bands[name] = _band(mode.frequency_hz, open_, mode.error, least)
+        bars[name] = _bar(mode.frequency_hz, open_, mode.error, least)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
-    return Bounded(bands, scores)
+    return Bounded(bars, scores)
 
 
 def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
@@ -222,7 +222,7 @@ def _all_below(found: ModeSet) -> bool:
     return all(m.frequency_hz < last[m.family] for m in found.modes if m.frequency_hz > 0)
 
 
-def _between(name: Quantity, stiff: Values, two: Values, one: Values, solver: float) -> Band:
+def _between(name: Quantity, stiff: Values, two: Values, one: Values, solver: float) -> ErrorBar:
     """Error bar of a static number from its ends: the number itself, and as soft as two orders more
     and one order more see it.
     """
@@ -234,7 +234,7 @@ def _between(name: Quantity, stiff: Values, two: Values, one: Values, solver: fl
     pair = name.diagonals
     if pair is None or not all(d in end for d in pair for end in (stiff, two, one)):
         other = stiff[name] + np.copysign(move(name), two[name] - stiff[name])
-        return _band(stiff[name], move(name) / scale, solver, other, scale=scale)
+        return _bar(stiff[name], move(name) / scale, solver, other, scale=scale)
     half = float(np.sqrt(move(pair[0]) * move(pair[1]))) / 2
     seen = float(np.sqrt(abs(np.prod([two[d] - stiff[d] for d in pair]))))
     most = 2 * half / seen if seen else 1.0
@@ -242,20 +242,20 @@ def _between(name: Quantity, stiff: Values, two: Values, one: Values, solver: fl
     middle = (stiff[name] + other) / 2
     # the number itself stands aside of the middle
     open_ = (half + abs(middle - stiff[name])) / scale
-    return _band(stiff[name], open_, solver, other, float(middle), scale)
+    return _bar(stiff[name], open_, solver, other, float(middle), scale)
 
 
-def _band(
+def _bar(
     value: float,
     open_: float,
     solver: float,
     other: float,
     middle: float | None = None,
     scale: float | None = None,
-) -> Band:
-    return Band(
+) -> ErrorBar:
+    return ErrorBar(
         values=(float(value),),
-        gci=float(open_ + solver + LEAST),
+        width=float(open_ + solver + LEAST),
         change=float(abs(other - value) / (scale or abs(value) or 1.0)),
         reduction=None,
         factor=LOCAL,

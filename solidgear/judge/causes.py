@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 SHOWN = (C_ZZ, K_ZZ, FIRST_BENDING)
 
 
-def _solve(scene: Scene, rung: str, **options) -> Values:
-    return solve(scene, rung, **options).quantities
+def _solve(scene: Scene, model: str, **options) -> Values:
+    return solve(scene, model, **options).quantities
 
 
 def _row(cause: str, text: str, model: str, new: Values, old: Values) -> CauseRecord:

@@ -82,13 +82,13 @@ class Climb(Loop):
 
     def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
         options = dict(level)
-        if families is not None and "families" in self.rung.options:
+        if families is not None and "families" in self.model.options:
             options["families"] = families
-        return build(self.scene, self.rung.name, **options)
+        return build(self.scene, self.model.name, **options)
 
     def needed(self, body: Body) -> list[tuple[str, ...]] | None:
         """Families that the question is about, each with those that bearings couple to it."""
-        if len(body.blocks) < len(FAMILIES) or "families" not in self.rung.options:
+        if len(body.blocks) < len(FAMILIES) or "families" not in self.model.options:
             return None  # one block holds all motions, or the builder makes all of them at once
         found, self.left_out = coupled_families(self.scene, body, COUPLING * self.tol)
         asked = {family_of(q) for q in self.wanted}
@@ -105,7 +105,7 @@ class Climb(Loop):
         statics: Statics | None = None
         found: ModeSet | None = None
         if len(wanted) < len(names):
-            if self.rung.bounded:
+            if self.model.bounded:
                 flexibility(body, SOLVED)
             statics = Statics.of(self.scene, body, supports, names)
             self.compliances[families or tuple(FAMILIES)] = statics.main
@@ -115,7 +115,7 @@ class Climb(Loop):
                 supports,
                 shapes(families, names),
                 wanted,
-                spare=self.rung.bounded,
+                spare=self.model.bounded,
                 ovalising=False,
             )
         values = numbers(
@@ -129,11 +129,11 @@ class Climb(Loop):
                 values.quantities | statics.values(),
                 {q: statics.main.evidence["residual"] for q in statics.values()} | values.solver,
             )
-        if not self.rung.bounded:
+        if not self.model.bounded:
             return values, None
         here = self._judged_names(values, names)
         judged = bounded(self.scene, body, supports, statics, found, here, values.solver)
-        self.bands |= {q: judged.bands[q] for q in here}
+        self.error_bars |= {q: judged.error_bars[q] for q in here}
         # no value without its bar
         kept = {q: v for q, v in values.quantities.items() if q in here or not q.is_frequency}
         values = Numbers(kept, values.solver)

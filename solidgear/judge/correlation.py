@@ -1,4 +1,4 @@
-"""Mode correlation between fidelities: MAC on axis stations, subspace MAC for degenerate pairs and
+"""Mode correlation between models: MAC on axis stations, subspace MAC for degenerate pairs and
 clusters, and which mode is which.
 """
 

@@ -22,11 +22,11 @@ TIES = {
 }
 
 
-def gap_verdict(gap: float, band: float, tolerance: float) -> str:
+def gap_verdict(gap: float, bar: float, tolerance: float) -> str:
     """``within``, ``open`` or ``beyond`` a tolerance, for a gap known to within an error bar."""
-    if abs(gap) + band <= tolerance:
+    if abs(gap) + bar <= tolerance:
         return WITHIN
-    return BEYOND if abs(gap) - band > tolerance else OPEN
+    return BEYOND if abs(gap) - bar > tolerance else OPEN
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,11 @@ def _deviations(
         relative = change({**mine.quantities, name: value}, theirs.quantities, name)
         if relative is None:
             continue
-        bands = [r.bands[tie][name].gci for r in (base, solution) if name in r.bands.get(tie, {})]
+        bars = [
+            r.error_bars[tie][name].width
+            for r in (base, solution)
+            if name in r.error_bars.get(tie, {})
+        ]
         yield Deviation(
             model,
             reference,
@@ -133,7 +137,7 @@ def _deviations(
             value,
             theirs.quantities[name],
             relative,
-            sum(bands) if bands else None,
+            sum(bars) if bars else None,
             how,
         )
 

@@ -1,4 +1,4 @@
-"""What heavy meshes of a solid cost."""
+"""Time and memory of heavy meshes of a solid."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MAYBE_HEAVY = HEAVY / 3
 SECONDS, AT, GROWTH = 10.0, 130_000, 1.3
 
 
-def told(unknowns: int, mb: float) -> str:
+def cost_text(unknowns: int, mb: float) -> str:
     """Unknowns, memory and time of a mesh, each to what it is worth.
 
     Parameters
@@ -31,7 +31,7 @@ def told(unknowns: int, mb: float) -> str:
 
     Examples
     --------
-    >>> told(931_117, 5894.0)
+    >>> cost_text(931_117, 5894.0)
     '931,117 unknowns, about 5.9 GB and 2 to 4 min'
     """
     minutes = SECONDS * (unknowns / AT) ** GROWTH / 60
@@ -40,8 +40,8 @@ def told(unknowns: int, mb: float) -> str:
 
 
 def heavy_meshes(scene: Scene, model: Model) -> Iterator[str]:
-    """What the two coarsest meshes of a solid cost, from which a bar is told, where that is much;
-    those that may be large are made and counted.
+    """Cost of the two coarsest meshes of a solid, which an error bar needs, in sentences where it is
+    much; meshes that may be large are made and counted.
 
     Parameters
     ----------
@@ -58,6 +58,6 @@ def heavy_meshes(scene: Scene, model: Model) -> Iterator[str]:
         except SolidgearError:
             continue  # said where it is built
         if size.unknowns >= HEAVY:
-            words.append(f"{where} takes {told(size.unknowns, size.mb)}")
+            words.append(f"{where} takes {cost_text(size.unknowns, size.mb)}")
     if words:
         yield f"the {model.title} is heavy here: {'; '.join(words)}"

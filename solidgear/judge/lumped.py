@@ -109,14 +109,14 @@ def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
 
 def drawn(model: str) -> dict[str, str]:
     """Facts of a model that a record keeps: its names, what it solves, and how charts draw it."""
-    rung = LADDER[model]
+    known = LADDER[model]
     return {
-        "title": rung.title,
-        "short": rung.heading,
-        "theory": rung.theory,
-        "family": rung.family,
-        "colour": rung.colour,
-        "marker": rung.marker,
+        "title": known.title,
+        "short": known.heading,
+        "theory": known.theory,
+        "family": known.family,
+        "colour": known.colour,
+        "marker": known.marker,
     }
 
 
@@ -125,7 +125,7 @@ def model_record(
     models: Mapping[str, ModelRecord],
     reference_hz: float | None,
     tolerance: float,
-    band: float | None,
+    bar: float | None,
     notices: Iterable[GuardRecord] = (),
 ) -> ModelRecord | None:
     """Record of the lumped model among the others; its stiffness is its source's.
@@ -139,7 +139,7 @@ def model_record(
     reference_hz : float or None
         First bending of the reference model.
     tolerance : float
-    band : float or None
+    bar : float or None
         Of the reference's first bending; None where nothing may judge.
     notices : iterable of GuardRecord
     """
@@ -149,7 +149,7 @@ def model_record(
     source, variant = chosen
     base, made = models[source], lumped[source]
     own = made.variants[variant]
-    judged = _judged(own, base, made, source, reference_hz, tolerance, band, notices)
+    judged = _judged(own, base, made, source, reference_hz, tolerance, bar, notices)
     # The price of its source comes first: there is no lumped model without a body to condense.
     seconds = {k: base.seconds.get(k) or 0.0 for k in ("build", "statics", "modes")}
     seconds["synthesis"] = made.seconds or 0.0
@@ -189,7 +189,7 @@ def _judged(
     source: str,
     reference_hz: float | None,
     tolerance: float,
-    band: float | None,
+    bar: float | None,
     notices: Iterable[GuardRecord],
 ) -> Judgement:
     """Judge the lumped model by its source's stiffness and its own first bending."""
@@ -199,18 +199,18 @@ def _judged(
         return Judgement(False, why, open=base.open)
     if against := spoken_against("lumped", notices):
         return Judgement(False, against[0])
-    if not reference_hz or band is None or own.frequency_hz is None or made.frequency_hz is None:
+    if not reference_hz or bar is None or own.frequency_hz is None or made.frequency_hz is None:
         why = "not judged: there is no first bending of a trusted model to hold it against"
         return Judgement(False, why, open=True)
     gap = own.frequency_hz / reference_hz - 1
-    kind = gap_verdict(gap, band, tolerance)
+    kind = gap_verdict(gap, bar, tolerance)
     if kind == BEYOND:
         why = (
             f"its first bending is {100 * gap:+.1f} % off, "
             f"more than the {100 * tolerance:g} % asked for"
         )
         lowest = made.frequency_hz / reference_hz - 1
-        if gap_verdict(lowest, band, tolerance) == BEYOND:
+        if gap_verdict(lowest, bar, tolerance) == BEYOND:
             why += (
                 ": masses are lumped in the z plane, and the first bending of this shaft "
                 "is not in it"
@@ -218,7 +218,7 @@ def _judged(
         return Judgement(False, why)
     if kind == OPEN:
         why = (
-            f"not judged: its first bending is {100 * gap:+.1f} % off, and with the band of the "
+            f"not judged: its first bending is {100 * gap:+.1f} % off, and with the error bar of the "
             f"reference that may be more or less than the {100 * tolerance:g} % asked for"
         )
         return Judgement(False, why, open=True)

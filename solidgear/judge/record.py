@@ -78,8 +78,8 @@ class ModeRecord(Part):
     error: Number = 0.0
 
 
-class BandRecord(Part):
-    """Error bar of one quantity; see :class:`solidgear.judge.bars.Band`."""
+class BarRecord(Part):
+    """Error bar of one quantity; see :class:`solidgear.judge.bars.ErrorBar`."""
 
     values: Numbers = []
     gci: Number = None
@@ -94,7 +94,7 @@ class BandRecord(Part):
     method: str = ""
 
 
-class BandSummary(Part):
+class BarSummary(Part):
     """Error bars of a model: relative, of every quantity, and the widest of a compliance."""
 
     compliance: Number = None
@@ -116,7 +116,7 @@ class ConvergenceRecord(Part):
     """Meshes from coarse to fine, and the error bar that each quantity has from them."""
 
     levels: list[LevelRecord] = []
-    quantities: dict[str, BandRecord] = {}
+    quantities: dict[str, BarRecord] = {}
 
 
 class EvidenceRecord(Part):
@@ -178,7 +178,7 @@ class ModelRecord(Part):
     points: dict[str, PointRecord] = {}
     coupled: CoupledRecord | None = None
     modes: list[ModeRecord] = []
-    band: BandSummary | None = None
+    band: BarSummary | None = None
     convergence: ConvergenceRecord | None = None
     dofs: int | None = None
     seconds: Quantities = {}

@@ -6,14 +6,15 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.bars import ErrorBar
 from solidgear.judge.completeness import completeness, cut_short
 from solidgear.judge.correlation import correlate
 from solidgear.judge.deviations import Deviation, deviations
 from solidgear.judge.lumped import drawn, model_record
 from solidgear.judge.quantities import usual
 from solidgear.judge.record import (
-    BandRecord,
-    BandSummary,
+    BarRecord,
+    BarSummary,
     CauseRecord,
     ConvergenceRecord,
     CoupledRecord,
@@ -161,13 +162,13 @@ def _add_lumped(
     record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
 ) -> None:
     """The lumped model among the models; what every synthesis is worth only where it is asked."""
-    band = base.bands.get(SCENE, {}).get(FIRST_BENDING)
+    bar = base.error_bars.get(SCENE, {}).get(FIRST_BENDING)
     own = model_record(
         record.lumped,
         record.models,
         base.quantities.get(FIRST_BENDING),
         tolerance,
-        band.gci if band else None,
+        bar.width if bar else None,
         guards,
     )
     if own is None:
@@ -223,7 +224,7 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
         points=_points(solution.ties[SCENE]),
         coupled=_coupled(solution.ties[SCENE]),
         modes=[_mode_record(m) for m in solution.modes.modes],
-        band=_band_summary(solution),
+        band=_bar_summary(solution),
         convergence=_convergence(solution),
         dofs=solution.body.size,
         seconds=solution.meter.total(),
@@ -253,26 +254,31 @@ def _coupled(found: Answer) -> CoupledRecord | None:
     )
 
 
-def _band_summary(solution: Solution) -> BandSummary | None:
-    own = solution.bands.get(SCENE, {})
+def _bar_summary(solution: Solution) -> BarSummary | None:
+    own = solution.error_bars.get(SCENE, {})
     if not own:
         return None
     method = next(iter(own.values())).method
-    return BandSummary(
-        compliance=max((b.gci for q, b in own.items() if q.kind == COMPLIANCE), default=None),
+    return BarSummary(
+        compliance=max((b.width for q, b in own.items() if q.kind == COMPLIANCE), default=None),
         method=f"{method}, {len(solution.levels)} meshes",
-        each={name: band.gci for name, band in own.items()},
+        each={name: bar.width for name, bar in own.items()},
     )
 
 
 def _convergence(solution: Solution) -> ConvergenceRecord | None:
-    own = solution.bands.get(SCENE, {})
+    own = solution.error_bars.get(SCENE, {})
     if not own:
         return None
     return ConvergenceRecord(
         levels=solution.levels,
-        quantities={name: BandRecord(**asdict(band)) for name, band in own.items()},
+        quantities={name: _bar_record(bar) for name, bar in own.items()},
     )
+
+
+def _bar_record(bar: ErrorBar) -> BarRecord:
+    facts = asdict(bar)
+    return BarRecord(gci=facts.pop("width"), **facts)
 
 
 def _evidence(solution: Solution) -> EvidenceRecord:

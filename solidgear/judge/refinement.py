@@ -21,12 +21,12 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.bounds.refining import MOST_MESHES, Meshed, refined
 from solidgear.errors import SolidgearError
-from solidgear.judge.bars import Band, moves_freely
+from solidgear.judge.bars import ErrorBar, moves_freely
 from solidgear.judge.bounded import Bounded
-from solidgear.judge.effort import HEAVY, told
+from solidgear.judge.effort import HEAVY, cost_text
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.question import Solved, few, mesh_words, most_of
-from solidgear.judge.sequence_bars import feature_effect, sequence_bands
+from solidgear.judge.sequence_bars import feature_effect, sequence_bars
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import ABOVE, BELOW, BOTH, Step, Value
 from solidgear.ladder.model import Model
@@ -53,7 +53,7 @@ class Loop(ABC):
     Parameters
     ----------
     scene : Scene
-    rung : Model
+    model : Model
         A solid.
     wanted : tuple of Quantity
         Those whose bars are wanted.
@@ -70,7 +70,7 @@ class Loop(ABC):
     ----------
     levels : list of Numbers
         Of every mesh, coarse to fine: what was solved for on it.
-    bands : dict of Quantity to Band
+    error_bars : dict of Quantity to ErrorBar
         Of every quantity, on the finest mesh that was solved for it.
     """
 
@@ -82,23 +82,23 @@ class Loop(ABC):
     def __init__(
         self,
         scene: Scene,
-        rung: Model,
+        model: Model,
         wanted: tuple[Quantity, ...],
         tol: float,
         progress: Progress,
         options: Mapping[str, Any] | None = None,
         most: int | None = None,
     ):
-        self.scene, self.rung, self.wanted, self.tol = scene, rung, wanted, tol
+        self.scene, self.model, self.wanted, self.tol = scene, model, wanted, tol
         self.progress = progress
-        self.plan = rung.meshes_of(scene, options or {})
+        self.plan = model.meshes_of(scene, options or {})
         self.most = most
         #: of a harmonic solid, the one it begins with, and later the last one
         self.mesh = Meshed(given=self.plan.levels[0])
         self.levels: list[Numbers] = []
         self.sizes: list[float | None] = []
         self.steps: list[Step] = []
-        self.bands: dict[Quantity, Band] = {}
+        self.error_bars: dict[Quantity, ErrorBar] = {}
         self.missing: set[Quantity] = set()
         self._changes: list[Values] = []
         self.last: Solved | None = None
@@ -119,7 +119,7 @@ class Loop(ABC):
     @property
     def called(self) -> str:
         """Name of what is solved, as it is told."""
-        return self.rung.title
+        return self.model.title
 
     @property
     def body(self) -> Body | None:
@@ -150,7 +150,7 @@ class Loop(ABC):
             spent = time.perf_counter() - start
             self.steps.append(
                 Step(
-                    self.rung.name,
+                    self.model.name,
                     setting,
                     valid=True,
                     bar=bar,
@@ -160,7 +160,7 @@ class Loop(ABC):
                     options=self.options,
                 )
             )
-            if (self.rung.bounded or len(self.levels) == 2) and not self.values():
+            if (self.model.bounded or len(self.levels) == 2) and not self.values():
                 self._choose("nothing that was asked for exists in this scene")
                 return
             if bar is not None and bar <= self.tol:
@@ -174,11 +174,11 @@ class Loop(ABC):
     def _tell(self, unknowns: int, mb: float) -> None:
         """Tell what a heavy factor will cost, before it is made."""
         if unknowns >= HEAVY:
-            self.progress(f"{self.called}: {told(unknowns, mb)}")
+            self.progress(f"{self.called}: {cost_text(unknowns, mb)}")
 
     def _meshes(self) -> Iterator[Mapping[str, Any]]:
         """All meshes, coarse to fine."""
-        if not self.rung.bounded or self.plan.fixed:
+        if not self.model.bounded or self.plan.fixed:
             yield from self.plan.levels if self.plan.fixed else self.plan.levels[: self.most]
             return
         yield self.mesh.options()
@@ -190,7 +190,7 @@ class Loop(ABC):
 
     def _stopped(self) -> str:
         """Reason for no further mesh."""
-        if not self.rung.bounded:
+        if not self.model.bounded:
             only_one = self.plan.fixed and len(self.plan.levels) == 1
             return (
                 "the mesh is that of the file, and nothing finer tells how good it is"
@@ -217,11 +217,11 @@ class Loop(ABC):
             history = self._history(name)
             finest = history[-1].quantities
             unit, scale = name.unit, size(finest, name)
-            band = self.bands.get(name)
-            given = band.middle if band is not None and self.middles else None
+            bar = self.error_bars.get(name)
+            given = bar.middle if bar is not None and self.middles else None
             value = finest[name] if given is None else given
-            how = band.method if band else ""
-            meshes = 1 if self.rung.bounded else len(history)
+            how = bar.method if bar else ""
+            meshes = 1 if self.model.bounded else len(history)
             out.append(
                 Value(name, value, unit, self.bar(name), meshes, scale, self._side(name), how)
             )
@@ -241,17 +241,17 @@ class Loop(ABC):
         Of all admissible displacements the exact ones store the least energy under given motions of
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
-        exact = self.rung.bounded and not self.scene.corners
-        if not exact or name.diagonals or name not in self.bands:
+        exact = self.model.bounded and not self.scene.corners
+        if not exact or name.diagonals or name not in self.error_bars:
             return BOTH
         # what the solver leaves, and couplings that were left out, may go either way
-        if max(self.bands[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
             return BOTH
         return ABOVE if name.kind == COMPLIANCE else BELOW
 
     def _started(self) -> bool:
         """Tell whether there is a bar of everything already."""
-        return len(self.levels) >= (1 if self.rung.bounded else 2)
+        return len(self.levels) >= (1 if self.model.bounded else 2)
 
     def _open(self) -> list[Quantity]:
         """Quantities that are there, and not yet within the tolerance."""
@@ -259,7 +259,7 @@ class Loop(ABC):
 
     def floors(self) -> dict[Quantity, float]:
         """Least bars on the finest mesh: a share of what features change, where the model has one."""
-        safety = self.rung.safety
+        safety = self.model.safety
         if safety is None or not safety.share:
             return {}
         for level in self.levels[len(self._changes) :]:
@@ -271,14 +271,14 @@ class Loop(ABC):
     def _in_vain(self) -> str:
         """Reason for which no finer mesh would help, if none would."""
         bars = [step.bar for step in self.steps if step.bar is not None]
-        if self.rung.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
+        if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
             return f"finer meshes no longer help; most of the bar comes from {self.stops_at()}"
         floors, open_ = self.floors(), self._open()
         if not open_ or not all(floors.get(q, 0.0) > self.tol for q in open_):
             return ""
         top = max(open_, key=floors.__getitem__)
         return (
-            f"no mesh makes bars of {few(open_)} as narrow: the {self.rung.title} is sure "
+            f"no mesh makes bars of {few(open_)} as narrow: the {self.model.title} is sure "
             "of a quantity to a share of what features change of it, here to "
             f"{100 * floors[top]:.2g} % of {top} at best"
         )
@@ -294,28 +294,28 @@ class Loop(ABC):
         """Error bars of what the finest mesh was solved for; the largest of all that was asked."""
         if not self._started():
             return None
-        if not self.rung.bounded:
-            self.bands |= self.bands_of(self.levels)
+        if not self.model.bounded:
+            self.error_bars |= self.error_bars_of(self.levels)
         bars = [self.bar(q) for q in self._known()]
-        return max(bars, default=None) if self.bands else None
+        return max(bars, default=None) if self.error_bars else None
 
-    def bands_of(self, levels: list[Numbers]) -> dict[Quantity, Band]:
+    def error_bars_of(self, levels: list[Numbers]) -> dict[Quantity, ErrorBar]:
         """Error bars of the finest of two or more meshes of a list."""
         values = [x.quantities for x in levels], levels[-1].solver
-        return sequence_bands(self.scene, self.plan, self.rung, *values, self.sizes)
+        return sequence_bars(self.scene, self.plan, self.model, *values, self.sizes)
 
     def bar(self, name: Quantity) -> float:
         """Relative bar of a quantity; infinite where nothing is known."""
-        if name not in self.bands:
+        if name not in self.error_bars:
             return math.inf
-        band = self.bands[name]
-        width = band.about_middle if self.middles else band.gci
+        bar = self.error_bars[name]
+        width = bar.about_middle if self.middles else bar.width
         return max(width, RISE * self._rise(name)) + self.left_out
 
     def _rise(self, name: Quantity) -> float:
         """Rise of a frequency at the last step of a list, beyond what the solver leaves."""
         history = self._history(name)
-        if self.rung.bounded or not name.is_frequency or len(history) < 2:
+        if self.model.bounded or not name.is_frequency or len(history) < 2:
             return 0.0
         before, last = history[-2:]
         rise = last.quantities[name] / before.quantities[name] - 1

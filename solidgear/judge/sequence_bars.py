@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
-from solidgear.judge.bars import Band, step_bands
+from solidgear.judge.bars import ErrorBar, step_bars
 from solidgear.judge.quantities import Values, measure, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
@@ -29,15 +29,15 @@ RIGID_EDGE = 0.5
 PLAIN = "harmonic"
 
 
-def sequence_bands(
+def sequence_bars(
     scene: Scene,
     plan: Sequence,
-    rung: Model,
+    model: Model,
     levels: Listed[Values],
     solver: Values,
     sizes: Listed[float | None],
     around: Values | None = None,
-) -> dict[Quantity, Band]:
+) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of some meshes.
 
     Parameters
@@ -46,7 +46,7 @@ def sequence_bands(
         Tied as the levels are.
     plan : Sequence
         That the meshes are of.
-    rung : Model
+    model : Model
         With a :class:`~solidgear.bounds.safety.Safety`.
     levels : sequence of mappings
         Quantity to value, coarse to fine.
@@ -59,16 +59,16 @@ def sequence_bands(
 
     Returns
     -------
-    dict of Quantity to Band
+    dict of Quantity to ErrorBar
         Empty of a single level, of meshes that are not ever finer, and of layered hexahedra beside a
         fillet or a chamfer, where no layers lead to the corners.
     """
     if len(levels) < 2 or scene.corners and plan.turned is not None:
         return {}
-    safety = rung.safety or (LAYERS if plan.layered else REFINEMENT)
+    safety = model.safety or (LAYERS if plan.layered else REFINEMENT)
     if plan.layered:
         effect = feature_effect(scene, safety, levels[-1])
-        return step_bands(levels, solver, safety, around=around, effect=effect)
+        return step_bars(levels, solver, safety, around=around, effect=effect)
     last = [size or 0.0 for size in sizes[-3:]]
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
@@ -78,7 +78,7 @@ def sequence_bands(
         sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0
     )
     left_over = 1 / ((last[-2] / last[-1]) ** (2 * exponent) - 1)
-    return step_bands(levels, solver, safety, left_over=left_over)
+    return step_bars(levels, solver, safety, left_over=left_over)
 
 
 def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:

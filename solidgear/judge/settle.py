@@ -177,13 +177,13 @@ def settle(
         crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
         wanted = (*at_points(wanted, points), *crossed)
     climb, steps = climbed(scene, tol, wanted, partial(Whole, before=before), progress)
-    assert climb.body is not None  # a rung without a single mesh is passed over
+    assert climb.body is not None  # a model without a single mesh is passed over
     bars = climb.bars()
     judged = bool(bars) or ask == "stiffness"
     return Settled(
         scene.name,
         tol,
-        climb.rung.name,
+        climb.model.name,
         climb.options,
         climb.body,
         bars,
@@ -191,7 +191,7 @@ def settle(
         judged and all(bar <= tol for bar in bars.values()),
         tuple(q for q in wanted if q not in bars),
         point=scene.port.name,
-        mesh=climb.mesh if climb.rung.bounded else None,
+        mesh=climb.mesh if climb.model.bounded else None,
     )
 
 
@@ -209,7 +209,7 @@ class Whole(Climb):
 
     def __init__(self, *args: Any, before: Settled | None = None):
         super().__init__(*args)
-        self.before = before if before and before.rung == self.rung.name else None
+        self.before = before if before and before.rung == self.model.name else None
         if self.before and self.before.mesh is not None:
             self.mesh = self.before.mesh
 

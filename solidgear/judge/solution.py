@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.body import Body
-from solidgear.judge.bars import Band
+from solidgear.judge.bars import ErrorBar
 from solidgear.judge.quantities import JUDGED
 from solidgear.judge.record import LevelRecord
 from solidgear.judge.solving import Answer
@@ -35,7 +35,7 @@ class Solution:
         Its name.
     ties : dict of str to Answer
         ``as scene`` and ``section``, as far as they could be solved.
-    bands : dict of str to dict of Quantity to Band
+    error_bars : dict of str to dict of Quantity to ErrorBar
         The same keys; empty for a model without an error bar of its own.
     scores : dict of Quantity to ndarray
         With the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a
@@ -52,7 +52,7 @@ class Solution:
     model: str
     ties: dict[str, Answer]
     meter: Meter
-    bands: dict[str, dict[Quantity, Band]] = field(default_factory=dict)
+    error_bars: dict[str, dict[Quantity, ErrorBar]] = field(default_factory=dict)
     scores: dict[Quantity, np.ndarray] = field(default_factory=dict)
     variants: dict[str, Answer] = field(default_factory=dict)
     levels: list[LevelRecord] = field(default_factory=list)
@@ -79,9 +79,9 @@ class Solution:
         """Compared numbers with the ties of the scene."""
         return self.ties[SCENE].quantities
 
-    def worst_band(self, names: Iterable[Quantity] = JUDGED) -> float | None:
+    def worst_bar(self, names: Iterable[Quantity] = JUDGED) -> float | None:
         """Largest error bar over some quantities, tied as in the scene; None where there is
         none.
         """
-        own = self.bands.get(SCENE, {})
-        return max((own[n].gci for n in names if n in own), default=None)
+        own = self.error_bars.get(SCENE, {})
+        return max((own[n].width for n in names if n in own), default=None)

@@ -181,7 +181,7 @@ def _held(found: ModeSet, name: str, spare: bool) -> bool:
 
 def solve(
     scene: Scene,
-    rung: str,
+    model: str,
     n: int = ENOUGH,
     *,
     max_frequency: float | None = None,
@@ -195,7 +195,7 @@ def solve(
     Parameters
     ----------
     scene : Scene
-    rung : str
+    model : str
         One that builds a body.
     n : int
         Elastic shapes, twins counted twice.
@@ -224,7 +224,7 @@ def solve(
     """
     meter = meter or Meter()
     with meter.stage("build"):
-        body = build(scene, rung, **options)
+        body = build(scene, model, **options)
     return answered(
         body,
         as_supports(scene),

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
-from solidgear.judge.bars import Band
+from solidgear.judge.bars import ErrorBar
 from solidgear.judge.bounded import Bounded, Statics, bounded
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
 from solidgear.judge.record import LevelRecord
 from solidgear.judge.refinement import Loop, Progress
-from solidgear.judge.sequence_bars import sequence_bands
+from solidgear.judge.sequence_bars import sequence_bars
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, Answer, Numbers, searched
 from solidgear.judge.tied import judged_modes, level_of, solved_ties, tied_answer
@@ -56,7 +56,7 @@ def study(
     ----------
     scene : Scene
     model : str
-        A fidelity.
+        Name of it in the ladder.
     options : mapping, optional
         Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
         meshes two coarser ones.
@@ -124,7 +124,7 @@ class Tied(Loop):
 
     @property
     def called(self) -> str:
-        return self.rung.name
+        return self.model.name
 
     def studied(self) -> Solution:
         """Solution of the last mesh that could be solved."""
@@ -135,7 +135,7 @@ class Tied(Loop):
                 raise
             self.failed["finer mesh"] = str(error) or "not enough memory"
         assert self.solution is not None
-        if self.rung.bounded:
+        if self.model.bounded:
             if why := self.steps[-1].why * (self.most is None and not self.plan.fixed):
                 self.failed["narrower bars"] = why
             self._finish(self.solution)
@@ -147,31 +147,31 @@ class Tied(Loop):
             self.solution.body.cache.clear()  # its factor need not be held beside the next one
         counted_from = self._counted_from(k)
         ties = solved_ties(
-            self.scene, self.rung.name, level, self.meter, counted_from, self.rung.bounded
+            self.scene, self.model.name, level, self.meter, counted_from, self.model.bounded
         )
         if self.solution is not None:
             _book_as_evidence(self.meter, before)
         found = ties[SCENE]
         self.solved.append({tie: one.numbers for tie, one in ties.items()})
         self.meshes.append(level_of(found))
-        self.solution = solution = Solution(self.rung.name, ties, self.meter)
+        self.solution = solution = Solution(self.model.name, ties, self.meter)
         solution.levels, solution.failed, solution.options = self.meshes, self.failed, dict(level)
         score = None
         with self.meter.stage("band"):
-            if self.rung.bounded:
+            if self.model.bounded:
                 told = _judged(self.scene, found, self.wanted)
-                solution.bands, solution.scores = {SCENE: told.bands}, told.scores
-                self.bands = told.bands
+                solution.error_bars, solution.scores = {SCENE: told.error_bars}, told.scores
+                self.error_bars = told.error_bars
                 score = self.score(told, self.wanted)
             else:
                 self._turn()
-                solution.bands = self._bands()
+                solution.error_bars = self._error_bars()
         self.keep(solution)
         return Solved(found.body, found.numbers, found.body.size, self.meshes[-1].h, score)
 
     def _counted_from(self, k: int) -> float:
         """Unknowns from which on modes of a mesh of a list are counted."""
-        if not self.counted or self.rung.bounded:
+        if not self.counted or self.model.bounded:
             return math.inf
         if k == len(self.plan.levels) - 1 if self.plan.fixed else k >= 2:
             return 0
@@ -179,10 +179,10 @@ class Tied(Loop):
         return HEAVY + 1 if not self.plan.fixed and k == 1 else math.inf
 
     def judge(self) -> float | None:
-        if not self.rung.bounded:
+        if not self.model.bounded:
             assert self.solution is not None
-            self.bands = self.solution.bands.get(SCENE, {})
-        bars = [band.gci for name, band in self.bands.items() if name in self.wanted]
+            self.error_bars = self.solution.error_bars.get(SCENE, {})
+        bars = [bar.width for name, bar in self.error_bars.items() if name in self.wanted]
         return max(bars, default=None) if self._enough() else None
 
     def _enough(self) -> bool:
@@ -190,14 +190,14 @@ class Tied(Loop):
         large ones.
         """
         k = len(self.levels)
-        if self.rung.bounded or self.plan.fixed:
-            return self.rung.bounded or k == len(self.plan.levels)
+        if self.model.bounded or self.plan.fixed:
+            return self.model.bounded or k == len(self.plan.levels)
         return k > 2 or k == 2 and self.last is not None and self.last.unknowns > HEAVY
 
     def _spared(self, level: Mapping[str, Any], error: Exception) -> bool:
         coarser = self.plan.fixed and level is not self.plan.levels[-1]
         if coarser:
-            self.failed["band"] = str(error) or "not enough memory"
+            self.failed["error bar"] = str(error) or "not enough memory"
         return coarser
 
     def _turn(self) -> None:
@@ -206,14 +206,14 @@ class Tied(Loop):
         if turned is None or self.around:
             return
         self.progress(f"{self.called}: {mesh_words(turned)}")
-        ties = solved_ties(self.scene, self.rung.name, turned, Meter())
+        ties = solved_ties(self.scene, self.model.name, turned, Meter())
         for tie in set(self.solved[0]) & set(ties):
             finer = ties[tie].quantities
             changes = {q: change(self.solved[0][tie].quantities, finer, q) for q in finer}
             left = self.plan.left_around
             self.around[tie] = {q: left * abs(c) for q, c in changes.items() if c is not None}
 
-    def _bands(self) -> dict[str, dict[Quantity, Band]]:
+    def _error_bars(self) -> dict[str, dict[Quantity, ErrorBar]]:
         """Error bars of the finest mesh of a list by way of tying, of those the last ones have."""
         out = {}
         for tie in (SCENE, SECTION):
@@ -224,7 +224,7 @@ class Tied(Loop):
             sizes = [level.mesh.get("representative_size") for level in self.meshes]
             tied = self.scene if tie == SCENE else self.scene.with_attachment("section")
             around = self.around.get(tie)
-            found = sequence_bands(tied, self.plan, self.rung, values, solver, sizes, around)
+            found = sequence_bars(tied, self.plan, self.model, values, solver, sizes, around)
             if found:
                 out[tie] = found
         return out
@@ -237,11 +237,11 @@ class Tied(Loop):
             plain = scene.with_attachment("section")
             with self.meter.stage("band"):
                 own = (
-                    solution.bands[SCENE]
+                    solution.error_bars[SCENE]
                     if tied is found
-                    else _judged(plain, tied, self.wanted).bands
+                    else _judged(plain, tied, self.wanted).error_bars
                 )
-            solution.bands[SECTION] = own
+            solution.error_bars[SECTION] = own
         if self.counted:
             assert found.supports is not None  # of what was just answered
             with self.meter.stage("count"):

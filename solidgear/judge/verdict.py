@@ -46,9 +46,9 @@ def trusted(
     for model in LADDER.of(SOLID):
         if model not in solutions:
             continue
-        worst = solutions[model].worst_band(names)
+        worst = solutions[model].worst_bar(names)
         if worst is None:
-            why = f"the {LADDER[model].title} has no band of its own ({_reason(solutions[model])})"
+            why = f"the {LADDER[model].title} has no error bar of its own ({_reason(solutions[model])})"
         elif worst > tolerance:
             why = (
                 f"the {LADDER[model].title} is sure of itself to no better than {percent(worst)}, "
@@ -132,10 +132,10 @@ def _judged(
         return Judgement(False, against[0])
     solution = solutions[model]
     if LADDER[model].family == SOLID:
-        worst = solution.worst_band(judged)
+        worst = solution.worst_bar(judged)
         if worst is None or worst > tolerance:
             text = (
-                "it has no band of its own"
+                "it has no error bar of its own"
                 if worst is None
                 else f"it is sure of itself to no better than {percent(worst)}"
             )
@@ -179,7 +179,7 @@ def _why(gap: Deviation, solutions: dict[str, Solution], kind: str, tolerance: f
     if kind == BEYOND:
         return f"{text}, more than the {percent(tolerance)} asked for"
     return (
-        f"{text}, which with a band of {percent(gap.band or 0.0)} may or may not be within the "
+        f"{text}, which with an error bar of {percent(gap.band or 0.0)} may or may not be within the "
         f"{percent(tolerance)} asked for"
     )
 
@@ -193,18 +193,18 @@ def percent(x: float) -> str:
 
 def _trust(solutions, reference, gaps, judged) -> list[str]:
     base = solutions[reference]
-    own = base.bands[SCENE]
+    own = base.error_bars[SCENE]
     size = []
-    c = max((own[q].gci for q in judged if q.kind == COMPLIANCE and q in own), default=None)
-    f = own[FIRST_BENDING].gci if FIRST_BENDING in own else None
+    c = max((own[q].width for q in judged if q.kind == COMPLIANCE and q in own), default=None)
+    f = own[FIRST_BENDING].width if FIRST_BENDING in own else None
     if c is not None:
         size.append(f"{percent(c)} in compliance")
     if f is not None:
         size.append(f"{percent(f)} in first bending")
-    band = " and ".join(size) or "the numbers it has"
+    told = " and ".join(size) or "the numbers it has"
     out = [
         f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to "
-        f"{band} ({len(base.levels)} meshes)."
+        f"{told} ({len(base.levels)} meshes)."
     ]
     for model in LADDER.of(SOLID):
         if model in solutions and model != reference:
@@ -224,15 +224,15 @@ def _other_solid(
     worst = max(gap.size for gap in mine)
     text = f"The {LADDER[model].title}, {kind}, is within {percent(worst)} of it in every judged number"
     # what has no error bar of its own may err by all of a gap
-    own = solution.bands.get(SCENE, {})
+    own = solution.error_bars.get(SCENE, {})
     unknown = [gap.quantity for gap in mine if gap.quantity not in own]
     if len(unknown) == len(mine):
-        return [f"{text}; it has no bands of its own, which would tell whose the gaps are."]
+        return [f"{text}; it has no error bars of its own, which would tell whose the gaps are."]
     beyond = [g.quantity for g in mine if g.quantity in own and g.verdict == "resolved"]
-    text += f", beyond the bands in {', '.join(beyond)}" * bool(beyond)
+    text += f", beyond the error bars in {', '.join(beyond)}" * bool(beyond)
     if unknown:
-        return [f"{text}; of {', '.join(unknown)} it has no band of its own."]
-    return [f"{text}{'; all gaps lie inside the bands (not resolved)' * (not beyond)}."]
+        return [f"{text}; of {', '.join(unknown)} it has no error bar of its own."]
+    return [f"{text}{'; all gaps lie inside the error bars (not resolved)' * (not beyond)}."]
 
 
 def _points(scene: Scene, names: Sequence[Quantity]) -> list[str]:

@@ -19,7 +19,7 @@ from solidgear.body import Body, Supports, as_supports
 from solidgear.bounds.harmonic import richer_space
 from solidgear.bounds.refining import Meshed, corner_strength
 from solidgear.errors import SolidgearError, nearest, show
-from solidgear.judge.bars import LEAST, Band
+from solidgear.judge.bars import LEAST, ErrorBar
 from solidgear.judge.bounded import Statics, bounded
 from solidgear.judge.quantities import own_name, usual
 from solidgear.judge.record import PlaceRecord, WhereRecord
@@ -155,10 +155,10 @@ def where(
     with one_run():
         body, supports = build(scene, "harmonic", **options), as_supports(scene)
         statics, found = _solved(scene, body, supports, asked)
-        band, shares = _shares(scene, body, supports, statics, found, asked)
+        bar, shares = _shares(scene, body, supports, statics, found, asked)
         # a body with several attachments answers with the first
         places = singular_places(scene, (options.get("attachments") or ())[:1] or None)
-        return _whereabouts(scene, body, places, asked, band.gci, shares, start)
+        return _whereabouts(scene, body, places, asked, bar.width, shares, start)
 
 
 def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
@@ -176,15 +176,15 @@ def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
         None where the error has no place: nothing is judged, or what is left is rounding.
     """
     start = time.perf_counter()
-    bands = solution.bands.get(SCENE, {})
-    judged = [q for q in usual(scene) if q in bands]
+    bars = solution.error_bars.get(SCENE, {})
+    judged = [q for q in usual(scene) if q in bars]
     if not judged:
         return None
-    quantity = max(judged, key=lambda q: bands[q].gci)
-    if _rounding(bands[quantity]):
+    quantity = max(judged, key=lambda q: bars[q].width)
+    if _rounding(bars[quantity]):
         return None
     shares, places = solution.scores[quantity], singular_places(scene)
-    total = bands[quantity].gci
+    total = bars[quantity].width
     found = _whereabouts(scene, solution.body, places, quantity, total, shares, start)
     return WhereRecord(
         model=solution.model,
@@ -243,7 +243,7 @@ def _shares(
     statics: Statics | None,
     found: ModeSet | None,
     quantity: Quantity,
-) -> tuple[Band, np.ndarray]:
+) -> tuple[ErrorBar, np.ndarray]:
     """Bar of a quantity that is solved, and (m,) shares of it by cells."""
     _exists(quantity, statics, found)
     solver = {}
@@ -251,17 +251,17 @@ def _shares(
         left = numbers(statics.main, None, statics.further, statics.coupled).solver
         solver = {quantity: statics.main.evidence["residual"]} | left
     told = bounded(scene, body, supports, statics, found, [quantity], solver)
-    band, score = told.bands[quantity], told.scores[quantity]
-    if _rounding(band):
+    bar, score = told.error_bars[quantity], told.scores[quantity]
+    if _rounding(bar):
         raise SolidgearError(
-            f"the bar of {quantity} is {band.gci:.1e}, which is rounding; there is no error to place"
+            f"the bar of {quantity} is {bar.width:.1e}, which is rounding; there is no error to place"
         )
-    return band, score / score.sum()
+    return bar, score / score.sum()
 
 
-def _rounding(band: Band) -> bool:
+def _rounding(bar: ErrorBar) -> bool:
     """Tell whether a bar is no more than rounding, and has no place."""
-    return band.gci - band.solver - LEAST < ROUNDING
+    return bar.width - bar.solver - LEAST < ROUNDING
 
 
 def _whereabouts(

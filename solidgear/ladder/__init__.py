@@ -22,7 +22,7 @@ NO_MODEL = "no model holds all that the scene has"
 
 @pinned
 def build(scene: Shaft, fidelity: str, **options) -> Body:
-    """Free body of a scene at one fidelity.
+    """Free body of a scene by one model.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     Raises
     ------
     SolidgearError
-        For an unknown fidelity, an option it does not have or cannot use
+        For an unknown model, an option it does not have or cannot use
         (the options of its model).
     NoRoom
         For a mesh or matrices that will not fit into memory. Whether factors do is found out when
@@ -59,7 +59,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     """
     if fidelity not in LADDER.bodies:
         raise SolidgearError(
-            f"fidelity {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
+            f"model {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
             f"use one of {', '.join(LADDER.bodies)}"
         )
     model = LADDER[fidelity]
@@ -80,5 +80,5 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
         raise SolidgearError(
             f"{fidelity}: its matrices did not fit into memory; {model.coarser}"
         ) from None
-    told = partial(refusal, scene, fidelity, options)
-    return replace(body, fidelity=fidelity, factoring=factoring, ways_out=told)
+    remedies = partial(refusal, scene, fidelity, options)
+    return replace(body, fidelity=fidelity, factoring=factoring, remedies=remedies)

@@ -1,4 +1,4 @@
-"""Beams: solved once, without a band of their own."""
+"""Beams: solved once, without an error bar of their own."""
 
 from __future__ import annotations
 

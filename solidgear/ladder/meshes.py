@@ -1,8 +1,8 @@
-"""Which meshes a solid is solved on, coarse to fine, until its band meets a target.
+"""Meshes that a solid is solved on, coarse to fine, until its error bar meets a target.
 
 Every level raises all that limits it at once: the order of the harmonic elements (or the size of 3D
 ones) and the layers towards shoulders and seat ends.  Errors then shrink by a nearly constant
-factor from level to level, which is what a band can be made of; raising one alone runs into what
+factor from level to level, which is what a bar can be made of; raising one alone runs into what
 the other leaves (two levels that differ only in layers are one mesh on a shaft without shoulders).
 """
 
@@ -27,7 +27,7 @@ FREE = ("element", "around", "ovalising", "attachments", "material_port", *FACTO
 #: error of the cells around a hexahedral mesh that bends as a whole: with this power of their size
 ORDER_AROUND = 4
 #: unknowns of the second level above which a third one, some three times as large, is solved only
-#: if the band needs it
+#: if the error bar needs it
 HEAVY = 15_000
 
 
@@ -41,7 +41,7 @@ class Sequence:
         Builder options of each.
     fixed : bool
         All are solved, the last being the one that was asked for; otherwise the program climbs
-        until a band is met.
+        until a bar is met.
     layered : bool
         Whether every level adds layers towards singular points (see
         :mod:`solidgear.judge.bars`).

@@ -65,7 +65,7 @@ class Model:
         the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
         from below, stiffnesses and frequencies from above.
     share : float
-        Bands are wanted below the tolerance asked for divided by this.
+        Error bars are wanted below the tolerance asked for divided by this.
     section_ties : bool
         Whether its mesh carries the mean motion of any section; otherwise it is not compared like
         for like.
@@ -74,7 +74,7 @@ class Model:
     most_seats : int
         Seats that one body carries in a sweep.
     safety : Safety or None
-        Of a band over its meshes, where it is not that of meshes with layers or of plain refinement.
+        Of an error bar over its meshes, where it is not that of meshes with layers or of plain refinement.
     """
 
     name: ClassVar[str]
@@ -116,7 +116,7 @@ class Model:
         return self.builder()(scene, **{**self.preset, **options})
 
     def size(self, scene: Any, options: Options) -> Size:
-        """How large it will be, counted on the mesh.
+        """Unknowns and entries of its matrices, counted on the mesh.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class Model:
         return 0.0
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """Whether an option ``half`` makes it smaller."""
+        """True where an option ``half`` makes it smaller."""
         return False
 
     def meshes(self, options: Options) -> Sequence:
@@ -168,13 +168,13 @@ class Model:
         return [(self.family, self.heading, [{}])]
 
     def limits(self, scene: Any) -> str:
-        """Why a scene whose features are of sorts that it holds does not fit it all the same, or
-        nothing; asked of scenes with features of `CYCLIC` only.
+        """Reason why a scene whose features are of sorts that it holds does not fit it all the same,
+        or nothing; asked of scenes with features of `CYCLIC` only.
         """
         return ""
 
     def unfit(self, scene: Any) -> str:
-        """Why it does not model a scene, or nothing.
+        """Reason why it does not model a scene, or nothing.
 
         Parameters
         ----------
@@ -203,7 +203,7 @@ class Model:
         return unfit if strange else f"{unfit}, which no mesh holds together"
 
     def concerns(self, scene: Any) -> bool:
-        """Whether it is among the models that one asks of a scene without naming any.
+        """True where it is among the models that one asks of a scene without naming any.
 
         Parameters
         ----------
@@ -238,7 +238,7 @@ class Model:
         return own | dict(self.preset) | usual
 
     def split(self, options: Options) -> tuple[dict[str, Any], Factoring]:
-        """What of the options the builder takes, and how the matrices are to be factored."""
+        """Options that the builder takes, apart from those that say how matrices are factored."""
         own = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
         factoring = Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
         if factoring.engine != "own" and (factoring.precision, factoring.out_of_core) != (

@@ -1,4 +1,4 @@
-"""What to do with a model that does not fit into memory: other models and other factors of the same
+"""Remedies for a model that does not fit into memory: other models and other factors of the same
 scene, each with the memory it would take.
 """
 
@@ -34,7 +34,7 @@ BY_REFINEMENT = 4
 
 
 @dataclass(frozen=True)
-class Way:
+class Remedy:
     """One way out.
 
     Attributes
@@ -52,7 +52,7 @@ class Way:
     note: str = ""
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """In a list."""
         return f"{self.words} (about {self.mb:.0f} MB{', ' if self.note else ''}{self.note})"
 
@@ -80,18 +80,18 @@ def refusal(
     """
     model = LADDER[name]
     if name not in LARGE:
-        return error.told(name, model.coarser)
+        return error.of_model(name, model.coarser)
     try:
         with anew():
-            found = _Ways(scene, model, model.given(scene, options), body, error)
-            ways = offered([*found.all()], found.room)
+            found = _Remedies(scene, model, model.given(scene, options), body, error)
+            remedies = offered([*found.all()], found.room)
     except (MemoryError, ImportError):
-        ways = ""  # where memory has run out, nothing can be counted any more
-    return error.told(name, f"{model.coarser}{ways}")
+        remedies = ""  # where memory has run out, nothing can be counted any more
+    return error.of_model(name, f"{model.coarser}{remedies}")
 
 
 @dataclass(frozen=True)
-class _Ways:
+class _Remedies:
     """Ways out of one refusal, those first that cost least accuracy and work."""
 
     scene: Any
@@ -116,8 +116,8 @@ class _Ways:
         """MB for matrices and factors."""
         return self.error.free_mb + self._held
 
-    def all(self) -> Iterator[Way]:
-        """Whether they fit or not."""
+    def all(self) -> Iterator[Remedy]:
+        """Yield every one, fitting or not."""
         yield from self.half()
         yield from self.other_models()
         yield from self.coarser()
@@ -137,16 +137,16 @@ class _Ways:
             off = self.error.need_mb / self._now.factors_mb
         return size.unknowns, size.matrices_mb + off * size.factors_mb
 
-    def half(self) -> Iterator[Way]:
+    def half(self) -> Iterator[Remedy]:
         """A half of it, where there is a mirror plane that was not used."""
         if self.options.get("half", True) or not self.model.can_halve(self.scene, self.options):
             return
         found = self._sized(self.model, {**self.options, "half": True})
         what = "half a sector" if self.model.name == "sector" else "two half models"
         if found is not None:
-            yield Way("--set half=true", found[1], what)
+            yield Remedy("--set half=true", found[1], what)
 
-    def other_models(self) -> Iterator[Way]:
+    def other_models(self) -> Iterator[Remedy]:
         """Other models of the same scene."""
         for other in (LADDER[name] for name in ("sector", "corrected", "harmonic")):
             if other is self.model or other.unfit(self.scene):
@@ -154,9 +154,9 @@ class _Ways:
             found = self._sized(other, {})
             if found is not None:
                 note = f"the {other.title}, {found[0]} unknowns"
-                yield Way(f"-f {other.name}", found[1], note)
+                yield Remedy(f"-f {other.name}", found[1], note)
 
-    def coarser(self) -> Iterator[Way]:
+    def coarser(self) -> Iterator[Remedy]:
         """A mesh of the same kind that fits."""
         if getattr(getattr(self.scene, "body", None), "one_mesh", False):
             return  # a mesh that is given
@@ -172,11 +172,11 @@ class _Ways:
                 return
             unknowns, mb = found
             if mb <= FILLED * self.room:
-                note = f"{unknowns} unknowns, with a wider band"
-                yield Way(f"--set refinement={refinement:g}", mb, note)
+                note = f"{unknowns} unknowns, with a wider error bar"
+                yield Remedy(f"--set refinement={refinement:g}", mb, note)
                 return
 
-    def other_factors(self, body: Body) -> Iterator[Way]:
+    def other_factors(self, body: Body) -> Iterator[Remedy]:
         """Factors of the same matrices that take less, by their own analysis, and by other programs."""
         from solidgear.solve.shifted import needed_mb
 
@@ -192,17 +192,17 @@ class _Ways:
                 continue  # no back end here makes it
             # a factor in double precision may fall into pieces by mirror planes, others do not
             if mb < self.error.need_mb:
-                yield Way(words, self._held + mb, note)
+                yield Remedy(words, self._held + mb, note)
         if body.factoring.engine == "own":
             note = "MUMPS in PETSc on two ranks of this machine; SOLIDGEAR_MPIRUN names others"
             mb = needed_mb(body, Factoring(engine="petsc"))
-            yield Way("--engine petsc", self._held + mb, note)
+            yield Remedy("--engine petsc", self._held + mb, note)
 
 
-def offered(ways: list[Way], free: float) -> str:
+def offered(remedies: list[Remedy], free: float) -> str:
     """Those that fit in a list, and those that do not."""
-    fit = [way.told for way in ways if way.mb <= free]
-    large = [way.told for way in ways if way.mb > free]
+    fit = [remedy.text for remedy in remedies if remedy.mb <= free]
+    large = [remedy.text for remedy in remedies if remedy.mb > free]
     text = ""
     if fit:
         text = "; ways that fit: " + "; ".join(f"{k}. {one}" for k, one in enumerate(fit, 1))

@@ -58,7 +58,7 @@ class Sector(Volume):
         return PER_TETRAHEDRON * OF_A_HALF * rough_sector(scene, self.wanted(scene, given), **sizes)
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """Whether the middle of a sector can lie in a mirror plane of all features."""
+        """True where the middle of a sector can lie in a mirror plane of all features."""
         from solidgear.models.sector.body import halved, sectors_around
 
         return halved(scene, sectors_around(scene, options))

@@ -95,7 +95,7 @@ class Solid(Volume):
         return PER_TETRAHEDRON * tetrahedra_of(scene, plan, given["refinement"])
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """Whether all that is cut out of a shaft has one mirror plane."""
+        """True where all that is cut out of a shaft has one mirror plane."""
         from solidgear.meshing.cuts import mirror_plane
 
         cuts = features_of(scene)
@@ -109,7 +109,7 @@ class Solid(Volume):
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
         """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,
-        or from a file: layered hexahedra converge too slowly beside fillets for their bands.
+        or from a file: layered hexahedra converge too slowly beside fillets for error bars.
         """
         special = features_of(scene) or getattr(scene, "corners", ())
         return {**({"element": "tet10"} if special else {}), **options}

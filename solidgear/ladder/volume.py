@@ -1,4 +1,4 @@
-"""What models on a mesh of the volume have in common."""
+"""Traits that models on a mesh of the volume share."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Volume(Model):
         return [*attached_stations(scene.stations, options["attachments"])]
 
     def limits(self, scene: Any) -> str:
-        """Why the features of a scene have no sector that can be meshed, or nothing."""
+        """Reason why the features of a scene have no sector that can be meshed, or nothing."""
         from solidgear.models.sector.body import no_sector
 
         return no_sector(scene)

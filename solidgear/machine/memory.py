@@ -17,7 +17,7 @@ from solidgear.machine.control_groups import control_groups, text_of
 
 
 class NoRoom(SolidgearError):
-    """What was asked for does not fit into memory, or cannot be numbered.
+    """Refusal of what does not fit into memory, or cannot be numbered.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class NoRoom(SolidgearError):
         self.what, self.need_mb, self.free_mb = what, need_mb, free_mb
         super().__init__(f"{what}; {instead}")
 
-    def told(self, model: str, instead: str) -> NoRoom:
+    def of_model(self, model: str, instead: str) -> NoRoom:
         """The same of a model, with what to do instead."""
         return NoRoom(f"{model}: {self.what}", self.need_mb, self.free_mb, instead)
 

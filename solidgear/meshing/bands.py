@@ -34,7 +34,7 @@ def first_of_run(bands, band: int, segment: int) -> int:
     return segment
 
 
-def _kept(bands, i: int) -> set[int]:
+def _surfaces(bands, i: int) -> set[int]:
     """Boundaries that are a surface where segments i and i + 1 meet."""
     (a, b), (c, d) = bands[i], bands[i + 1]
     return {a, b, c, d, max(a, c), min(b, d)}
@@ -300,7 +300,7 @@ def radial_bands(segments, raised=None):
 
     left: dict[int, np.ndarray] = {}
     right: dict[int, np.ndarray] = {}
-    kept = {(i, place) for i in range(n - 1) for place in _kept(bands, i)}
+    kept = {(i, place) for i in range(n - 1) for place in _surfaces(bands, i)}
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = _common(bands, i)

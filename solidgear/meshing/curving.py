@@ -46,10 +46,10 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
     curve = mesh.doflocs[:, middles] - straight
     # a straight edge may fold the element beside it, which then is straightened in its turn
     for part in (0.5, 0.25, *[0.0] * 10):
-        folded = np.flatnonzero(element_ratios(mesh) < FOLD)
-        if not len(folded):
+        inverted = np.flatnonzero(element_ratios(mesh) < FOLD)
+        if not len(inverted):
             break
-        edges = np.unique(mesh.t2e[:, folded])
+        edges = np.unique(mesh.t2e[:, inverted])
         keep[edges] = np.minimum(keep[edges], part)
         doflocs = mesh.doflocs.copy()
         doflocs[:, middles] = straight + keep * curve
@@ -97,7 +97,7 @@ def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
     return np.where((least > 0.5) & (depth > 1e-9 * np.ptp(mesh.p)), gain, 0.0)
 
 
-def volume_kept(mesh: MeshTet2) -> MeshTet2:
+def volume_preserved(mesh: MeshTet2) -> MeshTet2:
     """The mesh with middle nodes moved a little beyond the true surface, so that curved sides enclose
     as much as it does.
 

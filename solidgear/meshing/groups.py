@@ -95,7 +95,7 @@ def _short(deck: Deck, place: int) -> str:
     return f"in {deck.named(place)}" if deck.lines is not None else deck.named(place)
 
 
-def told(deck: Deck) -> tuple[str, ...]:
+def material_groups(deck: Deck) -> tuple[str, ...]:
     """Groups that tell materials, where there are at least two that share nothing.
 
     Parameters

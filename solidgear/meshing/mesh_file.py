@@ -14,7 +14,7 @@ from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS
 from solidgear.meshing.edge_places import edge_places
-from solidgear.meshing.groups import owners, told
+from solidgear.meshing.groups import material_groups, owners
 from solidgear.meshing.lost_elements import lost_elements
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
@@ -133,7 +133,13 @@ def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMes
     owner, rest = owners(deck, named)
     mesh = _hexes(points, deck.cells) if hexes else _tets(points, deck.cells)
     found = FileMesh(
-        mesh, KINDS[deck.kind], check_mesh(mesh).volume, owner, rest, told(deck), deck.remarks
+        mesh,
+        KINDS[deck.kind],
+        check_mesh(mesh).volume,
+        owner,
+        rest,
+        material_groups(deck),
+        deck.remarks,
     )
     _no_holes(found)
     return replace(found, remarks=(*found.remarks, *_pitted(found, deck)))

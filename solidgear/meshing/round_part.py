@@ -132,7 +132,7 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
     share = float(area[on].sum() / area[~flat].sum())
     if by_rays:  # mean radii have the volume of the part, whatever its surface is
         facets = 0.0
-    elif not _narrow(points, triangles[:, on], ON_LINE * largest):
+    elif not _fine_around(points, triangles[:, on], ON_LINE * largest):
         facets *= CURVED
     return RoundPart(tuple(walls), tuple(surfaces), share, facets)
 
@@ -147,7 +147,7 @@ def _between(points, triangles, surface: Lathe) -> float:
     return abs(float(np.pi * (surface.y1 - surface.y0) * (r0 * r0 + r0 * r1 + r1 * r1) / 3 - flat))
 
 
-def _narrow(points, triangles, near) -> bool:
+def _fine_around(points, triangles, near) -> bool:
     """True where triangles are as narrow around the axis as those of a mesh of something round."""
     x, z = points[0][triangles], points[2][triangles]
     turn = np.where(np.hypot(x, z) > near, np.arctan2(x, z), np.nan)
@@ -240,8 +240,8 @@ def _walls(points, triangles, surfaces, first, last) -> tuple[list[Wall], bool]:
             continue
         _, (outer, inner) = crossed
         # a round surface that most rays meet, else what they say on the mean
-        out = max(_met(here, middle, outer), key=lambda s: s.radius(middle), default=None)
-        rest = [s for s in _met(here, middle, inner) if s is not out]
+        out = max(_at_radius(here, middle, outer), key=lambda s: s.radius(middle), default=None)
+        rest = [s for s in _at_radius(here, middle, inner) if s is not out]
         bore = min(rest, key=lambda s: s.radius(middle), default=None)
         if out is not None and (bore is not None or inner == 0.0):
             ends = [s.radius(e) if s else 0.0 for s in (out, bore) for e in (y0, y1)]
@@ -257,7 +257,7 @@ def _inside(y0, y1) -> float:
     return y0 + 0.4837 * (y1 - y0)
 
 
-def _met(surfaces, middle, radius) -> list[Lathe]:
+def _at_radius(surfaces, middle, radius) -> list[Lathe]:
     """Surfaces at the radius that rays tell, which is that of chords."""
     return (
         [s for s in surfaces if -1e-3 <= s.radius(middle) / radius - 1 <= CHORD] if radius else []

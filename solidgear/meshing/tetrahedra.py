@@ -17,7 +17,7 @@ from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
 from solidgear.meshing.closed_form import volume_of
-from solidgear.meshing.curving import relaxed, volume_kept
+from solidgear.meshing.curving import relaxed, volume_preserved
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
@@ -156,7 +156,7 @@ def filled(gmsh, refusal: str, report=lambda fraction, message: None):
             report(fraction, f"meshing dimension {dimension}")
             call(gmsh.model.mesh.generate, dimension)
         _onto_cones(gmsh)
-        return relaxed(volume_kept(to_skfem(gmsh)))
+        return relaxed(volume_preserved(to_skfem(gmsh)))
     except MeshError:
         raise
     except Exception as error:

@@ -1,4 +1,4 @@
-"""How large a model is, counted on its mesh."""
+"""Size of a model, counted on its mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Size:
-    """What a model takes.
+    """Unknowns, entries and memory of a model.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Size:
 
     @property
     def backend(self) -> str:
-        """What will factor the largest matrix."""
+        """Name of the back end that will factor the largest matrix."""
         return choice(*max(self.matrices), planar=self.planar)[0]
 
     @property

@@ -58,7 +58,7 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
     Parameters
     ----------
     body : Body
-        Of any fidelity.
+        Of any model.
     n : int
         Lowest modes with all chosen ports held fast to keep; twins count twice.
     ports : iterable of str or (str, str), optional

@@ -64,7 +64,7 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     Parameters
     ----------
     body : Body
-        Of any fidelity.
+        Of any model.
     n : int
         Lowest elastic modes of the free body to keep; twins count twice.
     ports : iterable of str or (str, str), optional

@@ -20,7 +20,7 @@ TALL, WIDTH = 290.0, 330.0
 
 
 class BearingPanel(NamedTuple):
-    """What is drawn of one bearing.
+    """Curves of one bearing over its load.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a report says of bearings beside the table of their stiffness: which they are, at what load."""
+"""Sentences on bearings beside the table of their stiffness: their designation and their load."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def loads(load: Mapping[str, Any], units: Units) -> str:
 
 
 def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
-    """Which bearing it is, from its catalogue data; nothing for a 6x6 that was given.
+    """Designation, dimensions and load of a bearing from its catalogue data; nothing for a given 6x6.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
 
 
 def without_column(bearings: Sequence[Mapping[str, Any]], shown: Sequence[tuple[int, int]]) -> str:
-    """Which bearings have entries that a table of some entries leaves out, in a sentence.
+    """Sentence that names the bearings with entries which a table of some entries leaves out.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where a record comes in: the report reads typed records, whatever it is given."""
+"""Border of the report: whatever it is given, it reads typed records."""
 
 from __future__ import annotations
 

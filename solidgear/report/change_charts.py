@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from solidgear.judge.record import CauseRecord, Record
-from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, told, wrapped
+from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.reading import model_name, relative_change
 from solidgear.report.words import percent
@@ -58,9 +58,9 @@ def _rows(labels: list[str], columns: dict[str, list[float | None]]):
                 continue
             y, change = i + (k - (len(columns) - 1) / 2) * thick, percent(value)
             case = labels[i].replace("\n", " ")
-            words = told(name, ("case", case, ""), (f"change of {name}", change, ""))
+            words = readout(name, ("case", case, ""), (f"change of {name}", change, ""))
             bar = {"x": 0.0, "x2": value, "y": y - 0.43 * thick, "y2": y + 0.43 * thick}
-            yield {**bar, "name": name, "told": words}, {"x": value, "y": y, "text": change}
+            yield {**bar, "name": name, "readout": words}, {"x": value, "y": y, "text": change}
 
 
 def cause_chart(record: Record, width: float = WIDE) -> Chart | None:

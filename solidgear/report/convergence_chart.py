@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solidgear.judge.race.pareto import CHARTED
-from solidgear.judge.record import BandRecord, LevelRecord, ModelRecord, Record
-from solidgear.report.panel import GREY, PERCENT, SHAPES, Axis, Panel, told
+from solidgear.judge.record import BarRecord, LevelRecord, ModelRecord, Record
+from solidgear.report.panel import GREY, PERCENT, SHAPES, Axis, Panel, readout
 from solidgear.report.plot import WIDE, Chart, in_columns
 from solidgear.report.reading import model_name
 from solidgear.report.words import grouped, percent
@@ -20,7 +20,7 @@ AXIS = {
 
 
 def convergence_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the band and
+    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the error bar and
     both orders.
     """
     found = []
@@ -42,7 +42,7 @@ class _Quantity:
     quantity: str
     along: str
     spots: list[tuple[float, float, LevelRecord]]
-    band: BandRecord
+    bar: BarRecord
 
 
 def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
@@ -53,32 +53,32 @@ def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
     along = _distinguished_by(levels)
     found = []
     for quantity in CHARTED:
-        band = model.convergence.quantities.get(quantity, BandRecord())
-        if not band.extrapolated:
+        bar = model.convergence.quantities.get(quantity, BarRecord())
+        if not bar.extrapolated:
             continue
         spots = []
         for level in levels:
             place, value = _size(level, along), level.quantities.get(quantity)
             if place is None or value is None:
                 continue
-            distance = abs(value / band.extrapolated - 1)
+            distance = abs(value / bar.extrapolated - 1)
             if distance > 0:
                 spots.append((_on_axis(along, place), distance, level))
         if len(spots) >= 2:
             spots.sort(key=lambda spot: spot[:2])
-            found.append(_Quantity(name, model, quantity, along, spots, band))
+            found.append(_Quantity(name, model, quantity, along, spots, bar))
     return found
 
 
 def _size(level: LevelRecord, along: str) -> float | None:
-    """What a mesh has along an axis."""
+    """Value of a mesh along an axis: its size, its order or its unknowns."""
     if along == "h":
         return level.h
     return level.order if along == "order" else level.dofs
 
 
 def _distinguished_by(levels: list[LevelRecord]) -> str:
-    """What the meshes differ in: their size if all have one, else their order, else unknowns."""
+    """Difference between the meshes: their size if all have one, else their order, else unknowns."""
     for along in ("h", "order"):
         if levels and all((_size(level, along) or 0) > 0 for level in levels):
             return along
@@ -95,24 +95,24 @@ def _on_axis(along: str, value: float) -> float:
 def _panel(one: _Quantity) -> Panel:
     xs, ys, _ = zip(*one.spots)
     low, high = min(ys) / 3, max(ys) * 3
-    band = one.band.gci
-    if band:
-        low, high = min(low, band / 3), max(high, band * 2)
+    bar = one.bar.gci
+    if bar:
+        low, high = min(low, bar / 3), max(high, bar * 2)
     ticks = {x: _tick(one.along, x) for x in xs}  # at the meshes: three seldom span a decade
     ends = min(xs) / 1.25, max(xs) * 1.25
     panel = Panel(
         Axis(AXIS[one.along], ends, log=True, ticks=ticks),
         Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
         180,
-        f"{one.name}, {one.quantity}\n{_orders(one.band)}",
+        f"{one.name}, {one.quantity}\n{_orders(one.bar)}",
     )
-    if band:
+    if bar:
         _shade(panel, low, one)
-    expected, colour = one.band.expected_order, one.model.colour
+    expected, colour = one.bar.expected_order, one.model.colour
     if expected is not None and one.along != "dofs":
         slope = [{"x": x, "y": ys[-1] * (x / xs[-1]) ** expected} for x in xs]
         panel.draw({"type": "line", "color": GREY, "strokeDash": [2, 3], "strokeWidth": 1}, slope)
-    rows = [{"x": x, "y": y, "told": _words(one, y, level)} for x, y, level in one.spots]
+    rows = [{"x": x, "y": y, "readout": _words(one, y, level)} for x, y, level in one.spots]
     line = {"type": "line", "color": colour, "strokeWidth": 1.5}
     panel.draw(line, [{"x": x, "y": y} for x, y, _ in one.spots])
     shape = SHAPES.get(one.model.marker, "circle")
@@ -120,14 +120,14 @@ def _panel(one: _Quantity) -> Panel:
     return panel
 
 
-def _orders(band: BandRecord) -> str:
-    known = {"observed order": band.observed_order, "expected": band.expected_order}
+def _orders(bar: BarRecord) -> str:
+    known = {"observed order": bar.observed_order, "expected": bar.expected_order}
     return ", ".join(f"{what} {order:.2f}" for what, order in known.items() if order is not None)
 
 
 def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:
-    """What is to be read at one mesh."""
-    return told(
+    """Words shown at the point of one mesh."""
+    return readout(
         one.name,
         (f"{one.quantity}, from extrapolated", percent(distance, signed=False), ""),
         ("mesh", str(level.mesh.get("element") or ""), ""),
@@ -137,13 +137,13 @@ def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:
 
 
 def _shade(panel: Panel, low: float, one: _Quantity) -> None:
-    """The band, from the bottom of the panel up."""
-    band, colour = one.band.gci, one.model.colour
-    panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": band}])
-    panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": band}])
-    words = f"band {percent(band, signed=False)}, factor {one.band.factor}"
+    """Shade the error bar, from the bottom of the panel up."""
+    bar, colour = one.bar.gci, one.model.colour
+    panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar}])
+    panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar}])
+    words = f"bar {percent(bar, signed=False)}, factor {one.bar.factor}"
     name = {"type": "text", "align": "left", "dy": -7, "dx": 4}
-    panel.draw(name, [{"y": band, "text": words}], x={"value": 0})
+    panel.draw(name, [{"y": bar, "text": words}], x={"value": 0})
 
 
 def _tick(along: str, x: float) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import ModelRecord, Record
-from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, told, tolerance_line
+from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, readout, tolerance_line
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.reading import (
     answer_seconds,
@@ -21,7 +21,7 @@ from solidgear.report.words import grouped, percent, seconds
 def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Seconds against deviation from the reference, log-log, one point a model.
 
-    The reference has no deviation; it stands at its own band, hollow, like every deviation that is
+    The reference has no deviation; it stands at its own error bar, hollow, like every deviation that is
     not resolved.
     """
     spots = {quantity: _spots(record, quantity) for quantity in CHARTED}
@@ -34,7 +34,7 @@ def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
 
 @dataclass(frozen=True)
 class _Spot:
-    """One model in one panel: a hollow marker is a band and no deviation."""
+    """One model in one panel: a hollow marker is an error bar and no deviation."""
 
     name: str
     model: ModelRecord
@@ -56,10 +56,10 @@ def _spots(record: Record, quantity: str) -> list[_Spot]:
         if total is None or total <= 0:
             continue
         name = model_name(record, key)
-        band = _own_band(model, quantity) if key == reference_of(record) else None
+        bar = _own_bar(model, quantity) if key == reference_of(record) else None
         row = headline(record, key, quantity)
-        if band:
-            out.append(_Spot(name, model, total, band, True, "own band"))
+        if bar:
+            out.append(_Spot(name, model, total, bar, True, "own error bar"))
         elif row is not None and row.relative:
             hollow = not is_resolved(row)
             remark = "not resolved" if hollow else ""
@@ -67,14 +67,14 @@ def _spots(record: Record, quantity: str) -> list[_Spot]:
     return out
 
 
-def _own_band(model: ModelRecord, quantity: str) -> float | None:
-    """The band of a quantity, for compliances that of the worst; None where there is none."""
+def _own_bar(model: ModelRecord, quantity: str) -> float | None:
+    """The error bar of a quantity, for compliances that of the worst; None where there is none."""
     if model.band is None:
         return None
-    band = model.band.each.get(quantity)
+    bar = model.band.each.get(quantity)
     if quantity.startswith("C_"):
-        band = model.band.compliance
-    return band if band is not None and band > 0 else None
+        bar = model.band.compliance
+    return bar if bar is not None and bar > 0 else None
 
 
 def _panel(quantity: str, spots: list[_Spot], tolerance: float | None) -> Panel:
@@ -103,7 +103,7 @@ def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
     remarks = [spot.remark] if spot.remark else []
     if spot.rejected:
         remarks.append("rejected")
-    words = told(
+    words = readout(
         spot.name,
         (f"{quantity}, from reference", percent(spot.error, signed=False), ""),
         ("building and solving", seconds(spot.seconds), "s"),
@@ -119,7 +119,7 @@ def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
         "strokeWidth": 2,
         "size": 80,
     }
-    panel.draw(mark, [{**place, "told": words}])
+    panel.draw(mark, [{**place, "readout": words}])
     name = spot.name + (f"\n({', '.join(remarks)})" if remarks else "")
     text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
     panel.draw(text, [{**place, "text": name}])

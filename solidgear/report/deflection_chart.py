@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, Axis, Panel, Series, told
+from solidgear.report.panel import GREY, Axis, Panel, Series, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.train_chart import COLOURS
 from solidgear.report.units import ENGINEERING, Units
@@ -83,11 +83,11 @@ def _panel(
                 "x": float(x),
                 "y": float(y),
                 "name": model,
-                "told": told(model, ("y", f"{x:.1f}", length), (plane, f"{y:.3g}", unit)),
+                "readout": readout(model, ("y", f"{x:.1f}", length), (plane, f"{y:.3g}", unit)),
             }
             for x, y in zip(along[model], moved[model])
         ]
-        panel.draw("line", [{k: v for k, v in row.items() if k != "told"} for row in rows])
+        panel.draw("line", [{k: v for k, v in row.items() if k != "readout"} for row in rows])
         panel.read(
             [{k: v for k, v in row.items() if k != "name"} for row in rows], looks[model].colour
         )

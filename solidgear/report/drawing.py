@@ -184,7 +184,7 @@ def _text(p, words: str, height: float, font: int) -> None:
 
 
 def _bar(p, body, count: int) -> None:
-    """What the colours are."""
+    """Draw the scale of colours: displacement as a share of the largest."""
     alone = count == 1
     _text(p, "displacement / max", 0.105 if alone else 0.12, 10 if alone else 8)
     # The bar's own title would sit on its labels.

@@ -1,4 +1,4 @@
-"""Tables of the evidence: deviations, causes, attachments, bands, algebraic checks, modes."""
+"""Tables of the evidence: deviations, causes, attachments, error bars, algebraic checks, modes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from solidgear.judge.correlation import FOREIGN
 from solidgear.judge.record import (
-    BandRecord,
+    BarRecord,
     DeviationRecord,
     EvidenceRecord,
     PartnerRecord,
@@ -28,7 +28,7 @@ from solidgear.report.reading import is_resolved, model_name, reference_of, rela
 from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import (
-    band_percent,
+    bar_percent,
     capital,
     grouped,
     hertz,
@@ -84,12 +84,13 @@ def deviations(record: Record, units: Units = ENGINEERING) -> Table:
         sorted(
             dict.fromkeys(r.quantity for r in record.deviations), key=lambda q: RANKS.index(q.kind)
         ),
-        "In brackets and cursive: not resolved, smaller than the bands of the two models." + within,
+        "In brackets and cursive: not resolved, smaller than the error bars of both models."
+        + within,
     )
 
 
 def _ties(attachment: str) -> str:
-    """How two models were held when they were compared."""
+    """Name of the ties with which two models were compared."""
     return "as tied" if attachment == SCENE else f"{attachment} ties"
 
 
@@ -104,7 +105,7 @@ def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
 
 
 def causes(record: Record) -> Table:
-    """What each assumption alone changes."""
+    """Table of causes: the change by each assumption alone."""
     columns = [
         Column("cause", lambda cause: cause.cause),
         text("what is switched", lambda cause: cause.change),
@@ -119,7 +120,7 @@ def _changed(name: Quantity, called: str) -> Column:
 
 
 def attachments(record: Record, units: Units = ENGINEERING) -> Table:
-    """What the way of holding the seats changes."""
+    """Table of attachments: the change by each way of holding the seats."""
     rows = [(key, tie) for key, ties in record.attachments.items() for tie in ties]
 
     def value(name: Quantity, key: str, tie: str) -> float | None:
@@ -149,7 +150,7 @@ def _figure(value: float | None, si: str, units: Units) -> str:
 
 
 def levels(record: Record, units: Units = ENGINEERING) -> Table:
-    """The meshes that the bands come from."""
+    """Table of the meshes that the error bars come from."""
     rows = [
         (f"{_named(record, key)}, {n}", level)
         for key, model in record.models.items()
@@ -171,27 +172,27 @@ def levels(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def orders(record: Record) -> Table:
-    """Changes from mesh to mesh, and the bands made of them, of what models are judged by."""
+    """Changes from mesh to mesh, and the error bars made of them, of what models are judged by."""
     rows = []
     for key, model in record.models.items():
-        bands = model.convergence.quantities if model.convergence else {}
+        bars = model.convergence.quantities if model.convergence else {}
         judged = record.verdict.judged
-        for name, band in bands.items():
+        for name, bar in bars.items():
             if not judged or name in judged:
                 label = f"{name}, Hz" if Quantity(name).is_frequency else name
-                rows.append((f"{_named(record, key)}: {label}", band))
+                rows.append((f"{_named(record, key)}: {label}", bar))
     columns = [
         Column("quantity", lambda row: row[0]),
-        word("band from", lambda row: row[1].method or None),
+        word("bar from", lambda row: row[1].method or None),
         Column("last change", lambda row: row[1].change, unsigned),
         Column("over the one before", lambda row: row[1].reduction, small),
         Column("order observed, expected", lambda row: _orders(row[1])),
         Column("factor", lambda row: row[1].factor, small),
         Column("of the solver", lambda row: row[1].solver, unsigned),
-        Column("band", lambda row: row[1].gci, band_percent),
+        Column("error bar", lambda row: row[1].gci, bar_percent),
     ]
     return Table(
-        "Changes and bands",
+        "Changes and error bars",
         columns,
         rows,
         "Layers: errors shrink by a nearly fixed share, and the factor is measured on random "
@@ -199,10 +200,10 @@ def orders(record: Record) -> Table:
     )
 
 
-def _orders(band: BandRecord) -> str | None:
-    if band.observed_order is None or band.expected_order is None:
+def _orders(bar: BarRecord) -> str | None:
+    if bar.observed_order is None or bar.expected_order is None:
         return None
-    return f"{band.observed_order:.2f} of {band.expected_order:.2f}"
+    return f"{bar.observed_order:.2f} of {bar.expected_order:.2f}"
 
 
 def algebra(record: Record) -> Table:
@@ -267,7 +268,7 @@ def pairs(record: Record) -> Table:
 
 
 def _pair(pair: PartnerRecord | None) -> str | None:
-    """How like its partner a mode is."""
+    """MAC of a mode and its partner, with the partner's name where it is another."""
     if pair is None or pair.mac is None:
         return None
     if pair.mac < FOREIGN:

@@ -121,7 +121,7 @@ def _locked(folder: Path, out) -> IO | None:
 
 
 def _is(file: IO, path: Path) -> bool:
-    """Whether an open file is still the one of that name."""
+    """True where an open file is still the one of that name."""
     try:
         return os.path.samestat(os.fstat(file.fileno()), path.stat())
     except OSError:

@@ -30,7 +30,7 @@ from solidgear.report.reading import (
 )
 from solidgear.report.table import Cell, Table
 from solidgear.report.units import Units, digits_for
-from solidgear.report.words import DASH, band_percent, percent, plus_minus, short_percent
+from solidgear.report.words import DASH, bar_percent, percent, plus_minus, short_percent
 
 #: quantities of page one -> in words
 ROWS: dict[str, str] = {
@@ -78,7 +78,7 @@ def scene_hash(scene: Mapping[str, Any]) -> str:
 
 
 def numbers(record: Record, units: Units) -> Table:
-    """What was asked, each number with its bar, from the model that is shown."""
+    """Table of the numbers that were asked, each with its bar, from the model that is shown."""
     key = shown_model(record)
     model = model_of(record, key)
     asked = (record.scene.get("ask") or {}).get("quantities") or []
@@ -136,7 +136,7 @@ def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
 
 
 def reasons(record: Record) -> list[str]:
-    """Why the shown model is trusted, in three plain sentences; without a verdict, why not."""
+    """Reasons to trust the shown model, in three plain sentences; without a verdict, why there is none."""
     verdict = record.verdict
     if verdict == VerdictRecord():
         return ["The run did not get far enough to give a verdict."]
@@ -146,7 +146,7 @@ def reasons(record: Record) -> list[str]:
 
 
 def _own(record: Record) -> str:
-    """How sure the trusted model is of itself."""
+    """Sentence on the trusted model's own error bars."""
     trust = record.verdict.trust
     model = model_of(record, trust)
     solves = f", which solves {model.theory}," if model.theory else ""
@@ -154,7 +154,7 @@ def _own(record: Record) -> str:
     judged = record.verdict.judged or list(map(Quantity, bars))
     c = max((bars[q] or 0.0 for q in judged if q.kind == COMPLIANCE and q in bars), default=None)
     sure = [(c, "compliance"), (bars.get(FIRST_BENDING), "first bending")]
-    told = [f"{band_percent(bar)} in {what}" for bar, what in sure if bar is not None]
+    told = [f"{bar_percent(bar)} in {what}" for bar, what in sure if bar is not None]
     asked = short_percent(record.verdict.tolerance)
     wanted = f"; {asked} was asked for" if asked else ""
     known = f" is sure of its own numbers to {' and '.join(told)}" if told else " judges the others"
@@ -162,7 +162,7 @@ def _own(record: Record) -> str:
 
 
 def _second(record: Record) -> str:
-    """What a second solid says of the trusted one."""
+    """Sentence on the distance of a second solid from the trusted one."""
     trust, judged = record.verdict.trust, record.verdict.judged
     told = []
     for key, model in record.models.items():
@@ -188,7 +188,7 @@ def _second(record: Record) -> str:
 
 
 def _others(record: Record) -> str:
-    """Which cheaper models will do, and which will not."""
+    """Sentence on cheaper models: those that will do, and those that will not."""
     verdict = record.verdict
     tolerance = short_percent(verdict.tolerance) or "the tolerance"
     out = [model_name(record, k) for k, m in record.models.items() if validity(m) == "no"]

@@ -222,7 +222,7 @@ def drawn_charts(found: Record | Mapping[str, Any], folder: str | os.PathLike | 
 
 
 def _opening(record: Record, units: Units) -> dict[str, Any]:
-    """What page one says: the numbers, the model they come from, and why it is trusted."""
+    """Contents of page one: the numbers, the model they come from, and why it is trusted."""
     scene, verdict = record.scene, record.verdict
     return {
         "title": scene.get("title") or scene.get("name") or "shaft",
@@ -239,7 +239,7 @@ def _opening(record: Record, units: Units) -> dict[str, Any]:
 
 
 def _where(record: Record) -> dict[str, Any] | None:
-    """What is said of where the error of the judge sits."""
+    """Contents of the section on the places where the error of the judge sits."""
     found = record.where
     if found is None:
         return None

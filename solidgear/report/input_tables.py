@@ -46,7 +46,7 @@ def _material(material: Mapping[str, Any], units: Units) -> str:
 
 
 def _lumped_point(record: Record, units: Units) -> str:
-    """Where the lumped point is and what carries it, by the scene, else by the solution."""
+    """Place of the lumped point and the seat that carries it, by the scene, else by the solution."""
     port = record.scene.get("port")
     if not port:
         port = record.port.model_dump(exclude_defaults=True) if record.port else {}
@@ -73,7 +73,7 @@ def _carried(port: Mapping, units: Units) -> str:
 
 
 def _housing(scene: Mapping, units: Units) -> list[str]:
-    """What all bearings stand in."""
+    """Row on the housing that all bearings share."""
     around, spring = scene.get("housing"), scene.get("housing_axial")
     if not around:
         return [
@@ -168,7 +168,7 @@ def _stiffness(name: Quantity, units: Units) -> Column:
 
 
 def _note(bearing: Mapping, units: Units) -> str:
-    """What is told of a bearing in words, catalogue data and the housing at its seat included."""
+    """Remark on a bearing in words, catalogue data and the housing at its seat included."""
     words = [catalogue(bearing.get("catalogue"), units), str(bearing.get("note") or "")]
     own = bearing.get("housing")
     if own:
@@ -178,12 +178,12 @@ def _note(bearing: Mapping, units: Units) -> str:
 
 
 def bearing_range(record: Record) -> Table:
-    """What is not known of catalogue bearings, as bands on natural frequencies: beside these stand
-    those of mesh and model.
+    """Ranges of natural frequencies that unknowns of catalogue bearings leave open, apart from the
+    error bars of mesh and solver.
     """
     found = record.bearing_range
 
-    def band(b: Mapping) -> str:
+    def ends(b: Mapping) -> str:
         return " / ".join(percent(b[end] / b["frequency_hz"] - 1) for end in ("low", "high"))
 
     columns = [
@@ -191,7 +191,7 @@ def bearing_range(record: Record) -> Table:
         Column("at the scene's load", lambda b: b["frequency_hz"], hertz),
         Column("from", lambda b: b["low"], hertz),
         Column("to", lambda b: b["high"], hertz),
-        Column("band", band),
+        Column("range", ends),
     ]
     lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
     note = (
@@ -203,7 +203,7 @@ def bearing_range(record: Record) -> Table:
 
 
 def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
-    """What is cut out of the shaft, stands on it or rounds its edges."""
+    """Table of features: cut out of the shaft, standing on it or rounding its edges."""
 
     def kind(found: Mapping) -> str:
         return str(found.get("kind", "")).replace("_", " ")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, INK, Axis, Panel, Series, read_places, told
+from solidgear.report.panel import GREY, INK, Axis, Panel, Series, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.speed_tables import line_place
 from solidgear.report.units import ENGINEERING, Units, plain
@@ -85,7 +85,7 @@ def _measured(found: Any, ends: tuple[float, float], width: float) -> Panel:
             ("order at", line_place(peak.line) or "", "Hz"),
             ("also within the bar of", ", ".join(peak.others[:3]), ""),
         )
-        words = told(peak.name, *facts)
+        words = readout(peak.name, *facts)
         rows.append(
             {"x": peak.frequency_hz, "y": peak.amplitude, "name": _kind(peak), "told": words}
         )
@@ -168,7 +168,7 @@ def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units
             ("frequency", hertz(float(hz[k])), "Hz"),
             ("mesh force", plain(float(force[k]), 4), unit),
         )
-        rows.append({"x": hz[k], "y": force[k], "told": told("computed", *facts)})
+        rows.append({"x": hz[k], "y": force[k], "told": readout("computed", *facts)})
     panel.read(rows, INK)
     return panel
 
@@ -180,7 +180,7 @@ def _modes(panel: Panel, found: Any, ends: tuple[float, float], name: bool) -> N
     if name:
         low = panel.y.ends[0]
         words = [
-            {"x": hz, "y": low, "told": told(mode, ("natural frequency", hertz(hz), "Hz"))}
+            {"x": hz, "y": low, "told": readout(mode, ("natural frequency", hertz(hz), "Hz"))}
             for mode, hz in there
         ]
         panel.read(words, MODE)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from solidgear.judge.record import MacTable, ModelRecord, ModeRecord, Record
-from solidgear.report.panel import GREY, INK, PERCENT, SHAPES, Axis, Panel, Series, told
+from solidgear.report.panel import GREY, INK, PERCENT, SHAPES, Axis, Panel, Series, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.reading import model_name, reference_of, relative_change
 from solidgear.report.words import hertz, percent
@@ -75,13 +75,13 @@ def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> d
     """
     base = reference[mode.name].frequency_hz if mode.name in reference else None
     change = relative_change(mode.frequency_hz, base)
-    words = told(
+    words = readout(
         model,
         ("mode", mode.name, ""),
         ("frequency", hertz(mode.frequency_hz), "Hz"),
         ("from reference", percent(change) if change is not None else "", ""),
     )
-    return {"y": mode.frequency_hz or 0.0, "apart": change, "name": model, "told": words}
+    return {"y": mode.frequency_hz or 0.0, "apart": change, "name": model, "readout": words}
 
 
 def _stems(
@@ -102,7 +102,7 @@ def _stems(
     panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
     stems = [{"x": row["x"], "y": 0.0, "y2": row["y"], "name": row["name"]} for row in rows]
     panel.draw({"type": "rule", "strokeWidth": 1.4}, stems)
-    kept = [{key: row[key] for key in ("x", "y", "name", "told")} for row in rows]
+    kept = [{key: row[key] for key in ("x", "y", "name", "readout")} for row in rows]
     panel.draw({"type": "point", "filled": True, "size": 60}, kept)
     return panel
 
@@ -157,9 +157,9 @@ def _matrix(found: MacTable, name: str, reference: str) -> Panel:
             if value is None:
                 continue
             against = (f"against, of the {reference}", columns[j], "")
-            words = told(name, ("mode", rows[i], ""), against, ("MAC", f"{value:.4f}", ""))
+            words = readout(name, ("mode", rows[i], ""), against, ("MAC", f"{value:.4f}", ""))
             place: dict[str, Any] = {"x": j - 0.5, "x2": j + 0.5, "y": i - 0.5, "y2": i + 0.5}
-            cells.append({**place, "told": words, "fill": _blue(value)})
+            cells.append({**place, "readout": words, "fill": _blue(value)})
     panel.draw({"type": "rect", "stroke": "#ffffff", "strokeWidth": 0.5}, cells)
     for white in (False, True):
         text = {"type": "text", "color": "#ffffff" if white else INK, "baseline": "middle"}

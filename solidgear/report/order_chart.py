@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.panel import INK, Axis, Panel, read_places, told
+from solidgear.report.panel import INK, Axis, Panel, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
@@ -125,7 +125,7 @@ def _crossings(panel: Panel, found: Any, units: Units) -> None:
             {
                 "x": c.rpm,
                 "y": c.frequency_hz,
-                "told": told(
+                "readout": readout(
                     c.line, ("meets", c.mode, ""), *_facts(c.rpm, c.frequency_hz, c.force, units)
                 ),
             }
@@ -164,8 +164,8 @@ def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> 
     kept = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
     for k in kept:
         rpm = float(speeds[k])
-        words = told(line.name, *_facts(rpm, rpm * line.per_turn / 60, forces[k], units))
-        rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "told": words})
+        words = readout(line.name, *_facts(rpm, rpm * line.per_turn / 60, forces[k], units))
+        rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "readout": words})
     panel.read(rows, PLAIN[kind])
     # names are staggered: lines of one kind run close together
     steps = -0.06 if kind == "mesh" else 0.13

@@ -227,7 +227,7 @@ class Panel:
         for key in dict.fromkeys(key for row in rows for key in row):
             if key in places:
                 channels[key] = {"field": key, **places[key]}
-            elif key == "told":
+            elif key == "readout":
                 channels["description"] = {"field": key, "type": "nominal"}
             elif key == "name":
                 channels |= self._looks(mark["type"])
@@ -262,12 +262,12 @@ class Panel:
         }
 
 
-def told(name: str, *facts: tuple[str, str, str]) -> str:
+def readout(name: str, *facts: tuple[str, str, str]) -> str:
     """The words of a mark: a name, and what, value and unit a line; without a value, no line.
 
     Examples
     --------
-    >>> told("beam", ("error", "3 %", ""), ("time", "2", "s"), ("remark", "", ""))
+    >>> readout("beam", ("error", "3 %", ""), ("time", "2", "s"), ("remark", "", ""))
     'beam\\nerror: 3 %\\ntime: 2 s'
     """
     lines = (f"{what}: {value} {unit}".rstrip() for what, value, unit in facts if value)

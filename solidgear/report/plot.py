@@ -73,9 +73,9 @@ class Chart:
 
     Examples
     --------
-    >>> from solidgear.report.panel import Axis, told
+    >>> from solidgear.report.panel import Axis, readout
     >>> panel = Panel(Axis("length, mm", (0, 2)), Axis("error", (1e-3, 1), log=True), 200)
-    >>> panel.draw("point", [{"x": 1, "y": 0.1, "told": told("beam", ("error", "10", "%"))}])
+    >>> panel.draw("point", [{"x": 1, "y": 0.1, "readout": readout("beam", ("error", "10", "%"))}])
     >>> 'aria-label="beam&#xA;error: 10 %"' in Chart([[panel]]).svg()
     True
     """

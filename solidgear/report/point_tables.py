@@ -27,8 +27,8 @@ def points(record: Record, units: Units = ENGINEERING) -> Table:
         cells = [units.number(value_of(m, quantity), quantity.unit) for m in every]
         rows.append([f"{label}, {units.unit(quantity.unit)}", *cells])
         rows.append(["against reference", *(apart(record, k, quantity) for k in record.models)])
-        bands = [m.band.each.get(quantity) if m.band else None for m in every]
-        rows.append(["bar", *(None if bar is None else plus_minus(bar) for bar in bands)])
+        bars = [m.band.each.get(quantity) if m.band else None for m in every]
+        rows.append(["bar", *(None if bar is None else plus_minus(bar) for bar in bars)])
 
     for port in record.further_ports:
         for name in SUMMED:

@@ -14,7 +14,7 @@ from solidgear.report.panel import (
     SHAPES,
     Axis,
     Panel,
-    told,
+    readout,
     tolerance_line,
 )
 from solidgear.report.plot import WIDE, Chart
@@ -48,7 +48,7 @@ def race_chart(race: Race, width: float = WIDE) -> Chart:
 
 def _panel(race: Race, quantity: str, cost: str) -> Panel:
     low, top = _heights(race, quantity)
-    band, setup = race.reference["bands"][quantity], sum(race.setup.values())
+    bar, setup = race.reference["bands"][quantity], sum(race.setup.values())
     panel = Panel(
         Axis(
             COSTS[cost], _reach(race, cost), log=True, label=COUNT if cost == "unknowns" else NUMBER
@@ -58,7 +58,7 @@ def _panel(race: Race, quantity: str, cost: str) -> Panel:
         left=72.0,
     )
     left, right = panel.x.ends
-    _band(panel, band, low)
+    _bar(panel, bar, low)
     tolerance = (race.scene.get("ask") or {}).get("tolerance")
     if is_number(tolerance) and low < tolerance < top:
         tolerance_line(panel, tolerance)
@@ -68,7 +68,7 @@ def _panel(race: Race, quantity: str, cost: str) -> Panel:
         _series(panel, race, rows, quantity, cost)
         _crosses(panel, rows, quantity, cost, top / 1.5)
     if cost in race.reference:
-        _reference(panel, race, quantity, cost, max(band, low))
+        _reference(panel, race, quantity, cost, max(bar, low))
     if cost == "seconds" and left < setup < right:
         _setup(panel, setup)
     return panel
@@ -84,42 +84,42 @@ def _reach(race: Race, cost: str) -> tuple[float, float]:
 def _heights(race: Race, quantity: str) -> tuple[float, float]:
     """Both ends of the axis of errors.
 
-    A band far below every error is named at the bottom, so that it does not squeeze what there is
+    An error bar far below every error is named at the bottom, so that it does not squeeze what there is
     to see.
     """
-    band = race.reference["bands"][quantity]
+    bar = race.reference["bands"][quantity]
     errors = []
     for row in race.rows:
         error = race.error(row, quantity)
         if error is None:
             continue
         like = row.like_for_like.get(quantity) if error else None
-        errors += [error, like or band]
+        errors += [error, like or bar]
     known = [error for error in errors if error > 0] or [1e-3]
-    return max(band / 2.5, min(known) / 40), max(known) * 4
+    return max(bar / 2.5, min(known) / 40), max(known) * 4
 
 
-def _band(panel: Panel, band: float, low: float) -> None:
-    """What the reference does not resolve."""
-    floor = max(band, low)
-    if band > 0:
+def _bar(panel: Panel, bar: float, low: float) -> None:
+    """Shade the errors that the reference does not resolve, and name its bar."""
+    floor = max(bar, low)
+    if bar > 0:
         panel.draw({"type": "rect", "color": "#00805e", "opacity": 0.13}, [{"y": low, "y2": floor}])
-    below = "" if band > low else ", below this axis"
-    words = f"band of the reference {percent(band, signed=False)}{below}"
+    below = "" if bar > low else ", below this axis"
+    words = f"error bar of the reference {percent(bar, signed=False)}{below}"
     look = {"type": "text", "color": REFERENCE, "align": "left", "dx": 4, "dy": -7, "fontSize": 10}
     panel.draw(look, [{"y": floor, "text": words}], x={"value": 0})
 
 
 def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float) -> None:
-    """The reference itself, at its own band."""
-    words = told(
+    """The reference itself, at its own error bar."""
+    words = readout(
         "reference, harmonic solid",
-        ("own band", percent(race.reference["bands"][quantity], signed=False), ""),
+        ("own error bar", percent(race.reference["bands"][quantity], signed=False), ""),
         ("time", seconds(race.reference["seconds"]), "s"),
         ("unknowns", grouped(race.reference["unknowns"]), ""),
     )
     star = {"type": "point", "shape": SHAPES["*"], "size": 110, "stroke": REFERENCE}
-    place = {"x": race.reference[cost], "y": floor, "told": words}
+    place = {"x": race.reference[cost], "y": floor, "readout": words}
     panel.draw(star | {"fill": "#ffffff", "strokeWidth": 1}, [place])
 
 
@@ -150,7 +150,7 @@ def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str)
         error = race.error(row, quantity)
         if error is not None and getattr(row, cost):
             place = {"x": getattr(row, cost), "y": error}
-            spots.append((row, {**place, "told": _words(race, row, look.series, quantity)}))
+            spots.append((row, {**place, "readout": _words(race, row, look.series, quantity)}))
     line = {"type": "line", "color": look.colour, "strokeWidth": look.width}
     line |= {"strokeDash": look.dash, "opacity": 0.75 if look.uniform else 1.0}
     panel.draw(line, [{"x": at["x"], "y": at["y"]} for _, at in spots])
@@ -182,8 +182,8 @@ def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str)
 
 
 def _words(race: Race, row: Row, name: str, quantity: str) -> str:
-    """What is to be read at one level of a series."""
-    return told(
+    """Words shown at the point of one level of a series."""
+    return readout(
         name,
         (f"error of {quantity}", error_text(race, row, quantity), ""),
         ("time", seconds(row.seconds), "s"),
@@ -200,7 +200,7 @@ def _beside(look: Look, row: Row) -> str:
 
 
 def _arrows(panel: Panel, spots: list[dict[str, Any]], colour: str) -> None:
-    """Below points on the band: the error may be smaller."""
+    """Draw arrows below points on the bar: the error may be smaller."""
     head = {"type": "point", "shape": "triangle-down", "color": colour, "filled": True, "size": 30}
     for size, dy in ((head, 13), ({**head, "shape": "stroke", "angle": 90, "size": 60}, 8)):
         panel.draw({**size, "yOffset": dy}, [{"x": at["x"], "y": at["y"]} for at in spots])
@@ -209,14 +209,23 @@ def _arrows(panel: Panel, spots: list[dict[str, Any]], colour: str) -> None:
 def _like_for_like(panel: Panel, race: Race, look: Look, spots: list, quantity: str) -> None:
     """Errors against the solid with the same ties, hollow at the other end of a dotted line."""
     rows = [
-        {"x": at["x"], "y": at["y"], "y2": row.like_for_like.get(quantity), "told": at["told"]}
+        {
+            "x": at["x"],
+            "y": at["y"],
+            "y2": row.like_for_like.get(quantity),
+            "readout": at["readout"],
+        }
         for row, at in spots
     ]
     known = [row for row in rows if row["y2"]]
     dots = {"type": "rule", "color": look.colour, "strokeDash": [2, 2]}
     panel.draw(dots, [{key: row[key] for key in ("x", "y", "y2")} for row in known])
     hollow = [
-        {"x": row["x"], "y": row["y2"], "told": row["told"].replace("\n", ", like for like\n", 1)}
+        {
+            "x": row["x"],
+            "y": row["y2"],
+            "readout": row["readout"].replace("\n", ", like for like\n", 1),
+        }
         for row in known
     ]
     panel.draw({**look.marks, "fill": "#ffffff"}, hollow)

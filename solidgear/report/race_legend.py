@@ -32,7 +32,7 @@ MARKS: tuple[tuple[str, Any, Any], ...] = (
         {"stroke": REFERENCE, "fill": "#ffffff", "shape": SHAPES["*"], "size": 80},
     ),
     (
-        "below the band: not resolved",
+        "below the bar: not resolved",
         None,
         {"fill": MARK, "stroke": MARK, "shape": "triangle-down"},
     ),
@@ -98,7 +98,7 @@ def _reference(race: Race) -> str:
     order = reference["options"]["order"]
     return (
         f"Reference: harmonic solid, {options}, {reference['unknowns']} unknowns, "
-        f"{seconds(reference['seconds'])} s; its band is the grid convergence index "
+        f"{seconds(reference['seconds'])} s; its error bar is the grid convergence index "
         f"of orders {order - 2} to {order}."
     )
 

@@ -82,7 +82,9 @@ def records(race: Race) -> list[dict]:
 
 
 def _resolved(race: Race, row: Row, quantity: str) -> str:
-    """Whether the error of a row lies above the band of the reference; empty where it has none."""
+    """``yes`` where the error of a row lies above the error bar of the reference, else ``no``; empty
+    where it has none.
+    """
     if quantity not in row.errors:
         return ""
     return "yes" if race.resolved(row, quantity) else "no"
@@ -98,7 +100,7 @@ def options_text(row: Row) -> str:
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
     """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
-    not resolve as its band.
+    not resolve as its error bar.
     """
     found = race.error(row, quantity)
     if found is None:

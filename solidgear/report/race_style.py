@@ -1,4 +1,4 @@
-"""How the families and series of a race are drawn: colours, markers and names."""
+"""Style of the families and series of a race: colours, markers and names."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from solidgear.report.panel import SHAPES
 
 #: of a family that is not listed
 GREY = "#777777"
-#: the reference itself and its band
+#: the reference itself and its error bar
 REFERENCE = "#00603f"
 #: families, in the order of the legend: name there, colour
 FAMILIES = {
@@ -41,7 +41,7 @@ SCATTERED = ("lumped", "beam")
 
 @dataclass(frozen=True)
 class Look:
-    """How a series is drawn: one of uniform meshes is dashed and pale."""
+    """Style of one series: dashed and pale for uniform meshes."""
 
     series: str
     family: str
@@ -61,7 +61,7 @@ class Look:
 
     @property
     def converges(self) -> bool:
-        """Whether its levels refine one mesh."""
+        """True where its levels refine one mesh."""
         return self.family not in SCATTERED
 
     @property

@@ -23,7 +23,7 @@ CAPTION = (
     "of finer meshes of its series. Black stars: the automatic choice at the tolerance beside it, "
     "all meshes that it tried in its time and the largest system that it solved in its unknowns; "
     "it knows its error, the others do not. Points with an "
-    "arrow, on the edge of the shaded band, lie "
+    "arrow, on the edge of the shade, lie "
     "below what the reference resolves. Crosses at the top failed, or found no such number; the "
     "reason is in rows.csv."
 )
@@ -73,7 +73,7 @@ def front_table(race: Race) -> tuple[Table, str]:
     """The Pareto front over seconds in 80 columns, and what its marks mean."""
     title = "Pareto front over wall time"
     notes = (
-        "*: on the front of this quantity; <: below the band of the reference\n"
+        "*: on the front of this quantity; <: below the error bar of the reference\n"
         "after the stroke: like for like, section ties on both sides; no cancellation counts"
     )
     return Table(title, front_columns(race, True), front_rows(race), style="narrow"), notes
@@ -93,14 +93,14 @@ def _of_scene(folder, scene: Mapping) -> Race | None:
 
 
 def section(folder, scene: Mapping) -> dict | None:
-    """What the report shows of a race in its folder beside its chart: words and tables; None where
-    there is none of this scene.
+    """Words and tables of a race in its folder, beside its chart in the report; None where there is
+    none of this scene.
     """
     race = _of_scene(folder, scene)
     if race is None:
         return None
     note = (
-        "“<”: below the band of the reference, which is shown instead. After the stroke: "
+        "“<”: below the error bar of the reference, which is shown instead. After the stroke: "
         "like for like, with section ties on both sides. No cancellation counts on the front."
     )
     lost = [

@@ -1,4 +1,4 @@
-"""What tables and charts read out of a record."""
+"""Readings of a record, shared by tables and charts."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def model_name(record: Record, key: str | None) -> str:
 
 
 def left_open(record: Record) -> str:
-    """What catalogue bearings leave open of first bending, in a sentence; nothing where there are
-    none.
+    """Sentence on the range of first bending that catalogue bearings leave open; nothing where there
+    are none.
     """
     bounds = record.bearing_range.get("bounds") or []
     first = next((b for b in bounds if b["mode"] == FIRST_BENDING), None)
@@ -58,7 +58,7 @@ def heading(record: Record, key: str) -> str:
 
 
 def is_beam(record: Record, key: str) -> bool:
-    """Whether a model is a beam."""
+    """True where a model is a beam."""
     return model_of(record, key).family == BEAM
 
 
@@ -89,7 +89,7 @@ def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | No
 
 
 def is_nothing(value: float | None, one: float | None, other: float | None) -> bool:
-    """Whether a coupling is next to nothing beside two entries of its size."""
+    """True where a coupling is next to nothing beside two entries of its size."""
     if value is None or one is None or other is None:
         return False
     return abs(value) <= FAINT * abs(one * other) ** 0.5
@@ -132,8 +132,8 @@ def headline(record: Record, model: str, quantity: str) -> DeviationRecord | Non
 
 
 def is_resolved(row: DeviationRecord) -> bool:
-    """Whether a deviation may be read as one: False only where it lies inside the bands of the
-    models compared.
+    """True where a deviation may be read as one; False only where it lies inside the error bars of
+    the models compared.
     """
     if row.verdict is not None:
         return row.verdict != "not resolved"
@@ -143,7 +143,7 @@ def is_resolved(row: DeviationRecord) -> bool:
 
 
 def answer_seconds(model: ModelRecord) -> float | None:
-    """What an answer costs: building and solving. Bands and variants are evidence on top, and in
+    """Seconds of an answer: building and solving. Error bars and variants are evidence on top, and in
     the total only.
     """
     total = 0.0

@@ -62,7 +62,7 @@ class RenderJob:
 
 @dataclass(frozen=True)
 class RenderResult:
-    """How a :class:`RenderJob` ended.
+    """Outcome of a :class:`RenderJob`.
 
     Attributes
     ----------

@@ -28,7 +28,7 @@ from solidgear.report.reading import (
 from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import (
-    band_percent,
+    bar_percent,
     by_plane,
     capital,
     grouped,
@@ -68,19 +68,19 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
             lambda _, m: units.number(value_of(m, name), name.unit),
         )
 
-    def band(key: str, model: ModelRecord, name: str = "") -> Any:
+    def bar(key: str, model: ModelRecord, name: str = "") -> Any:
         if model.band is None:
             # beams are solved on one mesh
             return Cell("none given", "quiet") if is_beam(record, key) else None
-        return band_percent(model.band.each.get(name) if name else model.band.compliance)
+        return bar_percent(model.band.each.get(name) if name else model.band.compliance)
 
     rows = [
         row("valid for this scene", lambda _, m: WORTH[validity(m)]),
         *map(value, (K_ZZ, C_ZZ, Quantity("K_yy"), Quantity("K_thx"))),
         row("C_zz against reference", lambda key, _: apart(record, key, C_ZZ)),
         row("first bending against reference", lambda key, _: apart(record, key, FIRST_BENDING)),
-        row("band, worst compliance", band),
-        row("band, first bending", lambda key, m: band(key, m, FIRST_BENDING)),
+        row("error bar, worst compliance", bar),
+        row("error bar, first bending", lambda key, m: bar(key, m, FIRST_BENDING)),
         row("degrees of freedom", lambda _, m: grouped(m.dofs)),
     ]
     note = (
@@ -93,7 +93,7 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def models(record: Record) -> Table:
-    """Which models may be used, and why the others not: a model a row."""
+    """Table of models that may be used, and why the others not: a model a row."""
     of, tolerance = record.models, short_percent(record.verdict.tolerance)
     columns = [
         Column("model", lambda key: capital(model_name(record, key))),
@@ -110,7 +110,7 @@ def models(record: Record) -> Table:
 
 
 def apart(record: Record, key: str, quantity: str) -> Cell | None:
-    """How far a model is from the reference.
+    """Deviation of a model from the reference.
 
     Parameters
     ----------

@@ -10,6 +10,9 @@ from solidgear.report.reading import model_name, reference_of
 from solidgear.report.table import Cell, Column, Table, text
 from solidgear.report.words import DASH, capital, seconds, whole
 
+#: stages of work that a reader knows by another word than the record does
+STAGES = {"band": "error bars"}
+
 
 def cost(record: Record) -> Table:
     """Seconds of every stage and peak memory."""
@@ -29,11 +32,11 @@ def cost(record: Record) -> Table:
 
 
 def _stage(name: str) -> Column:
-    return Column(name, lambda item: item[1].seconds.get(name), seconds)
+    return Column(STAGES.get(name, name), lambda item: item[1].seconds.get(name), seconds)
 
 
 def provenance(record: Record) -> Table:
-    """Where each class of number comes from."""
+    """Table of the origin of each class of number."""
     reference = model_name(record, reference_of(record))
     ran = ", ".join(model_name(record, key) for key in record.models) or "no model"
     source = record.scene.get("source") or "source not given"
@@ -45,7 +48,7 @@ def provenance(record: Record) -> Table:
             f"this run, against its {reference}: no error against reality",
         ],
         ["causes, attachments", "this run: the same model solved again with one thing switched"],
-        ["bands", "this run: solution verification on related meshes of the same model"],
+        ["error bars", "this run: solution verification on related meshes of the same model"],
         ["expected orders, free motions", "closed form"],
         [
             "experiment",
@@ -74,7 +77,7 @@ def pairs_of(mapping: Mapping[str, Any], caption: str) -> Table:
 
 
 def mesh(record: Record) -> Table:
-    """What is known of every mesh, a model a row."""
+    """Facts of every mesh, a model a row."""
     rows = [
         [capital(model_name(record, key)), _flat(model.mesh)]
         for key, model in record.models.items()

@@ -1,4 +1,4 @@
-"""What scenes, bodies and results tell of themselves in a line, a table or a picture."""
+"""Scenes, bodies and results as they show themselves: in a line, a table or a picture."""
 
 from __future__ import annotations
 
@@ -22,33 +22,39 @@ MOST_SHAPES = 6
 SMALL = 0.05
 
 
-def scene(told: Any) -> Table:
+def scene(shaft: Any) -> Table:
     """Parts of a shaft along its axis."""
     rows: list[tuple[Any, ...]] = []
-    for s in told.segments:
+    for s in shaft.segments:
         rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
-    for f in told.features:
-        lo, hi = f.span(told.segments)
+    for f in shaft.features:
+        lo, hi = f.span(shaft.segments)
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
-    for b in told.bearings:
+    for b in shaft.bearings:
         rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
-    seats = {s.name: s for s in told.stations}
-    for m in told.masses:
+    seats = {s.name: s for s in shaft.stations}
+    for m in shaft.masses:
         seat = seats[m.station]
         rows.append((m.name, "mass", 1e3 * seat.lo, 1e3 * seat.hi, f"{m.mass:.6g} kg"))
-    for c in told.corners:
+    for c in shaft.corners:
         rows.append(
-            (c.name, c.kind, *(1e3 * y for y in c.span), f"on {told.segments[c.owner].name}")
+            (c.name, c.kind, *(1e3 * y for y in c.span), f"on {shaft.segments[c.owner].name}")
         )
-    if told.body is not None:
+    if shaft.body is not None:
         rows.append(
-            (told.body.name, told.body.what, 0.0, 1e3 * told.length, "segments are its round part")
+            (
+                shaft.body.name,
+                shaft.body.what,
+                0.0,
+                1e3 * shaft.length,
+                "segments are its round part",
+            )
         )
-    for port in told.ports:
+    for port in shaft.ports:
         rows.append((port.name, "port", 1e3 * port.lo, 1e3 * port.hi, port.attachment))
-    title = told.title or told.name
+    title = shaft.title or shaft.name
     return Table(
-        f"Scene {told.name}: {title}, {1e3 * told.length:.6g} mm long",
+        f"Scene {shaft.name}: {title}, {1e3 * shaft.length:.6g} mm long",
         ("part", "kind", "from mm", "to mm", "what"),
         rows,
     )
@@ -65,59 +71,59 @@ def _diameters(segment: Any) -> str:
     return f"diameter {ends(outer)} mm{bore}"
 
 
-def scene_figure(told: Any) -> Any:
+def scene_figure(shaft: Any) -> Any:
     """The dimensioned section of the report."""
     from solidgear.report.sketch import draw
 
-    return draw(told.as_dict())
+    return draw(shaft.as_dict())
 
 
-def body(told: Body) -> Table:
+def body(free_body: Body) -> Table:
     """Blocks of a body."""
     rows = [
         (b.name, " ".join(DOF_NAMES[c] for c in b.components), b.size, b.mirror is not None)
-        for b in told.blocks
+        for b in free_body.blocks
     ]
-    ports = ", ".join(f"{p.name} ({p.attachment})" for p in told.ports)
+    ports = ", ".join(f"{p.name} ({p.attachment})" for p in free_body.ports)
     return Table(
-        f"Body {told.fidelity}: {told.size} unknowns, ports {ports}",
+        f"Body {free_body.fidelity}: {free_body.size} unknowns, ports {ports}",
         ("block", "moves", "unknowns", "twin"),
         rows,
     )
 
 
-def mode_set(told: Any) -> Table:
+def mode_set(modes: Any) -> Table:
     """Natural frequencies."""
-    rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in told.modes]
+    rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in modes.modes]
     return Table(
-        f"Modes of the {told.fidelity} body",
+        f"Modes of the {modes.fidelity} body",
         ("mode", "Hz", "shapes", "waves around", "solver's error"),
         rows,
     )
 
 
-def mode_set_figure(told: Any, names: Sequence[str] = ()) -> Any:
+def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
     """Section motions of elastic modes along the shaft: translations, of torsion the turns.
 
     Parameters
     ----------
-    told : ModeSet
+    modes : ModeSet
     names : sequence of str
         Modes to draw, by name; the first few elastic ones by default.
     """
     from matplotlib.figure import Figure
 
-    elastic = [m for m in told.modes if m.frequency_hz > 0]
-    drawn = [told.named(name) for name in names] if names else elastic[:MOST_SHAPES]
+    elastic = [m for m in modes.modes if m.frequency_hz > 0]
+    drawn = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
     if not drawn or None in drawn:
-        raise ValueError(f"no such mode; there are {', '.join(told.names)}")
+        raise ValueError(f"no such mode; there are {', '.join(modes.names)}")
     figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(drawn)), layout="constrained")
     axes = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-    y = 1e3 * told.stations
+    y = 1e3 * modes.stations
     for ax, mode in zip(axes, drawn):
         moves, turns = np.abs(mode.motions[0]).max(axis=0).reshape(2, 3)
         # turns of a bent line say what the line says; where it stays, as in torsion, they are all
-        bent = moves.max() > SMALL * turns.max() * np.ptp(told.stations)
+        bent = moves.max() > SMALL * turns.max() * np.ptp(modes.stations)
         shown = range(3) if bent else range(3, 6)
         largest = (moves if bent else turns).max() or 1.0
         for k in shown:
@@ -132,54 +138,54 @@ def mode_set_figure(told: Any, names: Sequence[str] = ()) -> Any:
     return figure
 
 
-def condensed(told: Any, kind: str = "stiffness") -> Table:
+def condensed(statics: Any, kind: str = "stiffness") -> Table:
     """The 6x6 at a port.
 
     Parameters
     ----------
-    told : Condensed
+    statics : Condensed
     kind : {'stiffness', 'compliance'}
     """
     if kind not in BLOCK_UNITS:
         raise ValueError(f"kind {kind!r}: use stiffness or compliance")
-    matrix = getattr(told, kind)
+    matrix = getattr(statics, kind)
     rows = [
         (name, *(float(v) if np.isfinite(v) else None for v in row))
         for name, row in zip(DOF_NAMES, matrix)
     ]
     units = ", ".join(BLOCK_UNITS[kind])
-    free = f"; free: {', '.join(told.free_names)}" if told.free_names else ""
+    free = f"; free: {', '.join(statics.free_names)}" if statics.free_names else ""
     return Table(
-        f"{kind} at {told.port} ({told.attachment}), {units}{free}", ("", *DOF_NAMES), rows
+        f"{kind} at {statics.port} ({statics.attachment}), {units}{free}", ("", *DOF_NAMES), rows
     )
 
 
-def coupled(told: Any, kind: str = "compliance") -> Table:
+def coupled(statics: Any, kind: str = "compliance") -> Table:
     """The matrix between several ports.
 
     Parameters
     ----------
-    told : Coupled
+    statics : Coupled
     kind : {'stiffness', 'compliance'}
     """
     if kind not in BLOCK_UNITS:
         raise ValueError(f"kind {kind!r}: use stiffness or compliance")
-    heads = [f"{port} {name}" for port in told.ports for name in DOF_NAMES]
+    heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
     rows = [
         (name, *(float(v) if np.isfinite(v) else None for v in row))
-        for name, row in zip(heads, getattr(told, kind))
+        for name, row in zip(heads, getattr(statics, kind))
     ]
-    free = f"; free together: {', '.join(told.free_names)}" if told.free_names else ""
+    free = f"; free together: {', '.join(statics.free_names)}" if statics.free_names else ""
     return Table(
-        f"{kind} between {' and '.join(told.ports)}, {', '.join(BLOCK_UNITS[kind])}{free}",
+        f"{kind} between {' and '.join(statics.ports)}, {', '.join(BLOCK_UNITS[kind])}{free}",
         ("", *heads),
         rows,
     )
 
 
-def comparison(told: Any) -> Table:
+def comparison(compared: Any) -> Table:
     """Verdict and first numbers of every model."""
-    record, rows = told.record, []
+    record, rows = compared.record, []
     for name, model in record.models.items():
         first = mode_of(model, "bending 1")
         c_zz = model.compliance[2][2] if model.compliance else None
@@ -191,18 +197,18 @@ def comparison(told: Any) -> Table:
     tolerance = percent(record.verdict.tolerance, signed=False)
     title = f"trust {trust}" if trust else "not judged"
     return Table(
-        f"Comparison of {told.scene.name}: {title}; within {tolerance}: {record.verdict.cheapest or 'none'}",
+        f"Comparison of {compared.scene.name}: {title}; within {tolerance}: {record.verdict.cheapest or 'none'}",
         ("model", "C_zz m/N", "bending 1 Hz", "valid", "unknowns", "s"),
         rows,
     )
 
 
-def answered(told: Any) -> Table:
+def answered(answer: Any) -> Table:
     """Numbers with their bars."""
-    rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in told.values]
-    words = "within" if told.reached else "not within"
+    rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
+    words = "within" if answer.reached else "not within"
     return Table(
-        f"Answer for {told.scene}: {told.rung}, {words} {percent(told.tolerance, signed=False)}",
+        f"Answer for {answer.scene}: {answer.rung}, {words} {percent(answer.tolerance, signed=False)}",
         ("quantity", "value", "unit", "bar"),
         rows,
     )

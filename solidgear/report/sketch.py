@@ -111,7 +111,7 @@ def draw(scene: Mapping[str, Any], width: float = WIDTH) -> Any:
 
 
 def _notes(scene: Mapping, enlarged: float) -> list[str]:
-    """What the drawing does not show, or not to scale, a line each."""
+    """Remarks on things that the drawing leaves out or has not to scale, a line each."""
     notes = []
     if body := scene.get("body"):
         notes.append(
@@ -357,7 +357,7 @@ class _Pen:
 
 
 def _handles(segments, scene) -> list[Any]:
-    """What the legend names."""
+    """Entries of the legend."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -1,4 +1,4 @@
-"""What a sketch of a shaft shows beside segments, bearings and features: fillets, masses."""
+"""Details of a sketch beside segments, bearings and features: fillets, masses."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def _label(pen, x: float, height: float, text: str) -> None:
 
 
 def _cut(pen, cut: Mapping, here: Mapping) -> None:
-    """What is cut out of a segment."""
+    """Draw a cut into a segment."""
     lo, hi = cut["y"], cut["y"] + cut.get("length", 0.0)
     if "diameter" in cut:
         lo, hi = lo - cut["diameter"] / 2, lo + cut["diameter"] / 2

@@ -36,7 +36,7 @@ COLUMNS = {
     "f1": "Hz",
     "dC_zz": "",
     "df1": "",
-    "band C": "",
+    "bar C": "",
     "DOFs": "",
     "time": "s",
 }
@@ -45,8 +45,8 @@ COLUMNS = {
 def final_table(
     found: Record | Mapping[str, Any], units: str | Units | None = None
 ) -> RenderableType:
-    """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, band,
-    size, time.
+    """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, error
+    bar, size, time.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def _columns(record: Record, units: Units) -> list[Column]:
     def entry(name: Quantity) -> Tell:
         return lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
 
-    def band(key: str) -> float | None:
+    def bar(key: str) -> float | None:
         found = models[key].band
         return found.compliance if found else None
 
@@ -92,7 +92,7 @@ def _columns(record: Record, units: Units) -> list[Column]:
         "f1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
         "dC_zz": (lambda key: _against_reference(record, key, C_ZZ), str),
         "df1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
-        "band C": (band, words.band_percent),
+        "bar C": (bar, words.bar_percent),
         "DOFs": (lambda key: models[key].dofs, words.count),
         "time": (lambda key: reading.answer_seconds(models[key]), words.seconds),
     }
@@ -108,7 +108,7 @@ def _head(name: str, si: str, units: Units) -> str:
 
 
 def _notes(record: Record, unresolved: bool) -> list[str]:
-    """What the marks of the final table mean."""
+    """Meaning of the marks of the final table."""
     notes = []
     reference = reading.reference_of(record)
     if reference:
@@ -119,10 +119,10 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
     if any(reading.validity(m) == "open" for m in record.models.values()):
         notes.append("?: not judged, or too close to the tolerance to tell")
     if unresolved:
-        notes.append("n.r.: not resolved, the difference lies inside the bands of the two models")
+        notes.append("n.r.: not resolved, the difference lies inside the error bars of both models")
     if record.models:
         notes.append(
-            "band: mesh uncertainty of the worst compliance; "
+            "bar C: error bar of the worst compliance; "
             "time: building and solving, without the evidence"
         )
     if not record.complete:
@@ -147,7 +147,7 @@ def _further_points(record: Record, units: Units) -> list[str]:
 
 
 def _reason(record: Record, key: str, model: ModelRecord) -> str:
-    """Why a model must not be trusted, or cannot be judged."""
+    """Reason why a model must not be trusted, or cannot be judged."""
     worth = reading.validity(model)
     if worth not in ("no", "open"):
         return ""
@@ -166,8 +166,8 @@ def _against_reference(record: Record, key: str, quantity: str) -> str:
 
 
 def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
-    """What else a reader must know: cautions, which modes were counted, seconds and peak memory
-    (plain text).
+    """Lines below a verdict: cautions, modes that were counted, seconds and peak memory (plain
+    text).
     """
     record = as_record(found)
     lines = [f"caution: {w}" for w in record.warnings]

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, told
+from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
@@ -40,7 +40,7 @@ def response_chart(
     Parameters
     ----------
     responses : sequence of TrainResponse
-        Labelled by their rungs; the peaks of the first are named.
+        Labelled by their models; the peaks of the first are named.
     title : str
     teeth : int
         Of the pinion, for the upper axis in rpm.
@@ -93,7 +93,7 @@ def response_chart(
 
 
 def _cut(response: Any, first: float) -> str:
-    """What an axis leaves out below, in words; nothing where it begins with the response."""
+    """Remark on the part that an axis leaves out below; nothing where it begins with the response."""
     if first <= response.frequency_hz[0]:
         return ""
     below = sum(peak.frequency_hz < first for peak in response.peaks)
@@ -208,7 +208,7 @@ def label(response: Any) -> str:
 def _words(name: str, hz: float, teeth: int, *facts: tuple[str, str, str]) -> str:
     """The words on a place of a model over frequency."""
     speed = ("pinion speed", f"{60 * hz / teeth:.0f}", "rpm")
-    return told(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
+    return readout(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
 
 
 def _curves(
@@ -227,7 +227,7 @@ def _curves(
         for i in read_places(x, y, int(width / APART), log=True):
             facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in curve.read]
             words = _words(curve.name, float(x[i]), teeth, *facts)
-            read.append({"x": x[i], "y": y[i], "told": words})
+            read.append({"x": x[i], "y": y[i], "readout": words})
         panel.read(read, panel.series[curve.name].colour)
 
 
@@ -267,7 +267,7 @@ def _peaks(
         for hz, size, mode in peaks:
             facts = ("peak of", mode, ""), (what[0], plain(float(size), 4), what[1])
             words = _words(label(one), float(hz), teeth, *facts)
-            rows.append({"x": hz, "y": size, "told": words})
+            rows.append({"x": hz, "y": size, "readout": words})
         panel.read(rows, panel.series[label(one)].colour)
     first, last = panel.x.ends
     pixel = np.log(last / first) / (width - panel.beside - panel.right)

@@ -197,7 +197,7 @@ def over_frequency(response: Any, teeth: int) -> Table:
 
 
 def crossings(orders: Any) -> Table:
-    """Where order lines meet natural frequencies, in SI."""
+    """Table of crossings of order lines and natural frequencies, in SI."""
     columns = [
         Column("order", lambda c: c.line),
         Column("mode", lambda c: c.mode),

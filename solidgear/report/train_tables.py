@@ -196,7 +196,7 @@ def peaks(
 
 
 def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:
-    """Where orders meet natural frequencies."""
+    """Table of crossings of order lines and natural frequencies."""
     columns = [
         text("order", lambda c: c["line"]),
         text("mode", lambda c: c["mode"]),

@@ -121,7 +121,7 @@ def turned(
     body : Body
     modes : ModeSet or iterable of Mode
     title : str, optional
-        The body's fidelity by default.
+        The body's model by default.
     like : sequence of Turned, optional
         Models beside it: a shape takes the sign of theirs of the same name.
 

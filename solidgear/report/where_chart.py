@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, PERCENT, Axis, Panel, told
+from solidgear.report.panel import GREY, PERCENT, Axis, Panel, readout
 from solidgear.report.plot import BETWEEN, WIDE, Chart
 from solidgear.report.words import percent
 
@@ -125,7 +125,7 @@ def _draw(panel: Panel, corners, shares, legend: Any) -> None:
     mark = {"type": "line", "interpolate": "linear-closed", "stroke": "#808080"}
     panel.draw(mark | {"strokeWidth": 0.5}, rows, fill=shade)
     places = [
-        {"x": x, "y": y, "told": _words(x, y, share)}
+        {"x": x, "y": y, "readout": _words(x, y, share)}
         for (x, y), share in zip(corners.mean(axis=1).tolist(), shares)
     ]
     panel.read(places, "#444444")
@@ -134,7 +134,7 @@ def _draw(panel: Panel, corners, shares, legend: Any) -> None:
 def _words(y: float, r: float, share: float) -> str:
     size = percent(abs(share), signed=False)
     places = ("y", f"{y:.4g}", "mm"), ("r", f"{r:.4g}", "mm")
-    return told("cell", ("share of the error", size, ""), *places)
+    return readout("cell", ("share of the error", size, ""), *places)
 
 
 def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:

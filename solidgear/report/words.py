@@ -1,4 +1,4 @@
-"""How numbers are written in the terminal, on the page and in the charts."""
+"""Numbers as they are written in the terminal, on the page and in the charts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DASH = "–"
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Whether `value` is a finite number (a truth value is none)."""
+    """True for a finite number (a truth value is none)."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -92,7 +92,7 @@ def count(value: float | None) -> str:
 
 def plus_minus(bar: float) -> str:
     """A bar that lies on both sides."""
-    return f"± {band_percent(bar)}"
+    return f"± {bar_percent(bar)}"
 
 
 def as_text(value: Any) -> str:
@@ -141,8 +141,8 @@ def by_plane(names: Iterable[str]) -> str:
     )
 
 
-def band_percent(value: float | None) -> str:
-    """A band in per cent; one beyond 100 % says nothing but that."""
+def bar_percent(value: float | None) -> str:
+    """An error bar in per cent; one beyond 100 % says nothing but that."""
     if is_number(value) and value > 1:
         return "> 100 %"
     return percent(value, signed=False)

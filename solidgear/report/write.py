@@ -45,7 +45,7 @@ def write_all(
 
     record = comparison.record
     record.left_out = []
-    shapes = comparison.rungs if record.complete else {}
+    shapes = comparison.solutions if record.complete else {}
     with held(out) as folder:
         try:
             # Nothing of an earlier run must stand beside the numbers of this one, should it end
@@ -66,9 +66,9 @@ def write_all(
             jobs = _jobs(comparison, folder) if renders else {}
             # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
             with Drawing(jobs.values()) as drawing:
-                for model, rung in shapes.items():
+                for model, solution in shapes.items():
                     target = folder / f"modes_{model}.vtu"
-                    _try(record, f"vtu of {model}", _write_vtu, rung, target)
+                    _try(record, f"vtu of {model}", _write_vtu, solution, target)
                 progress("report")
                 drawn = drawn_charts(record, folder)
                 _note(record, jobs, drawing.results())
@@ -108,10 +108,10 @@ def _leave_out(record: Record, sentence: str) -> None:
     record.warnings.append(sentence)
 
 
-def _write_vtu(rung, path: Path) -> None:
+def _write_vtu(solution, path: Path) -> None:
     from solidgear.report.export import write_vtu
 
-    write_vtu(rung.body, rung.modes, path)
+    write_vtu(solution.body, solution.modes, path)
 
 
 def _job(body, modes, name: str, path: Path, model: str):
@@ -129,22 +129,22 @@ def _jobs(comparison: Comparison, folder: Path) -> dict[str, RenderJob]:
     """The pictures to be drawn, by model."""
     record = comparison.record
     jobs: dict[str, RenderJob] = {}
-    for model, rung in (comparison.rungs if record.complete else {}).items():
-        name = _drawn_mode(rung.modes)
+    for model, solution in (comparison.solutions if record.complete else {}).items():
+        name = _drawn_mode(solution.modes)
         if name is None:
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
 
-        def add(model=model, rung=rung, name=name, path=path) -> None:
-            jobs[model] = _job(rung.body, rung.modes, name, path, model_name(record, model))
+        def add(model=model, solution=solution, name=name, path=path) -> None:
+            jobs[model] = _job(solution.body, solution.modes, name, path, model_name(record, model))
 
         _try(record, f"render of {model}", add)
     return jobs
 
 
 def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) -> None:
-    """What became of the pictures."""
+    """Note in the record the pictures that were drawn, and why others were left out."""
     reasons: dict[str, list[str]] = {}
     for model, done in zip(jobs, results):
         if done.ok:
@@ -164,10 +164,10 @@ def _write_turned(comparison: Comparison, folder: Path) -> None:
 
     record, still = comparison.record, ""
     models: list[Turned] = []
-    for key, rung in reversed(comparison.rungs.items()):
-        if rung.body.geometry is None or _drawn_mode(rung.modes) is None:
+    for key, solution in reversed(comparison.solutions.items()):
+        if solution.body.geometry is None or _drawn_mode(solution.modes) is None:
             continue
-        models.append(turned(rung.body, rung.modes, model_name(record, key), models))
+        models.append(turned(solution.body, solution.modes, model_name(record, key), models))
         if not still and key in record.images:
             still = data_uri(key, folder / record.images[key]) or ""
     if models:

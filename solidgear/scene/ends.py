@@ -22,7 +22,7 @@ SHARE = 0.25
 Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 
 
-def met(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
+def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
     hair; the same ones where there are none.
 
@@ -30,15 +30,15 @@ def met(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Stati
     --------
     >>> from solidgear import Bearing, Segment
     >>> shaft = [Segment.cylinder("shaft", length=0.3, diameter=0.04)]
-    >>> (seat,) = met([Bearing(name="A", y=0.0481584, seat_width=0.0963167, stiffness={})], shaft)
+    >>> (seat,) = snapped([Bearing(name="A", y=0.0481584, seat_width=0.0963167, stiffness={})], shaft)
     >>> seat.lo, seat.y  # 50 nm beside the face as written
     (0.0, 0.048158375)
     """
     marks = [segments[0].y0, *(s.y1 for s in segments)]
-    return tuple(_met(station, marks) for station in stations)
+    return tuple(_snapped(station, marks) for station in stations)
 
 
-def _met(station: Station, marks: Sequence[float]) -> Station:
+def _snapped(station: Station, marks: Sequence[float]) -> Station:
     if getattr(station, "seat_width", 0.0) is None:  # a mass on another's seat
         return station
     hair = min(

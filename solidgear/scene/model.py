@@ -20,7 +20,7 @@ from solidgear.scene.between import problems_between
 from solidgear.scene.blends import Blend, Corner, corners_of_blends
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
-from solidgear.scene.ends import met
+from solidgear.scene.ends import snapped
 from solidgear.scene.features import Feature
 from solidgear.scene.housing import Housing
 from solidgear.scene.parts import STEEL, Material, Segment
@@ -109,8 +109,8 @@ class Scene(Displayed, Model):
         problems = shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
             for name in ("bearings", "masses", "further_ports"):
-                object.__setattr__(self, name, met(getattr(self, name), self.segments))
-            object.__setattr__(self, "port", met([self.port], self.segments)[0])
+                object.__setattr__(self, name, snapped(getattr(self, name), self.segments))
+            object.__setattr__(self, "port", snapped([self.port], self.segments)[0])
             problems += problems_between(
                 self.segments,
                 ports=self.ports,

@@ -1,4 +1,4 @@
-"""Which back end factors a matrix, and why."""
+"""Choice of the back end that factors a matrix, with its reason."""
 
 from __future__ import annotations
 

@@ -170,7 +170,7 @@ class Names:
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
         self.body, self.project = body, project
-        self._laden = supports.inertia is not None
+        self._with_masses = supports.inertia is not None
         self.promised = alike(supports)
         # a part that is not round promises no twins, however near its frequencies lie
         self._split = not body.mesh.get("round", True)
@@ -208,7 +208,7 @@ class Names:
         if self._round is not None:
             profile = profile[waves]
         captured = sum(shares.values())
-        if self._laden:
+        if self._with_masses:
             # shares are of the mass of the shaft, of which unit shapes have less than one
             moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
             captured /= float(sum(moved))

@@ -97,9 +97,9 @@ def _factored(body: Body) -> Factored:
         made = dict(zip(found, factored([*found.values()], free)))
     except NoRoom as error:
         found.clear()  # ways out are analysed in their place
-        if body.ways_out is None:
+        if body.remedies is None:
             raise
-        raise body.ways_out(body, error) from None
+        raise body.remedies(body, error) from None
     return Factored([made[id(block.stiffness)] for block in body.blocks])
 
 

@@ -267,7 +267,7 @@ class BearingRange:
         return {
             "model": self.model,
             "points": self.points,
-            "varied": self.ranges.told,
+            "varied": self.ranges.text,
             "bounds": [
                 {"mode": b.mode, "frequency_hz": b.middle, "low": b.low, "high": b.high}
                 for b in self.bounds

@@ -73,7 +73,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     ----------
     scene : Scene
     body : Body
-        The fidelity asked for; its mesh is held against the closed form.
+        The model asked for; its mesh is held against the closed form.
     probe : Probe, optional
         Of the plain part of the scene and that body, for what it has solved or will have.
 
@@ -107,14 +107,14 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
 
 
 def notices(
-    scene: Scene, rungs: dict[str, Solution], names: tuple[str, ...] | None = None
+    scene: Scene, solutions: dict[str, Solution], names: tuple[str, ...] | None = None
 ) -> list[GuardRecord]:
     """Notices of the guards on models that are solved, facts left out.
 
     Parameters
     ----------
     scene : Scene
-    rungs : dict of str to Solution
+    solutions : dict of str to Solution
     names : tuple of str, optional
         Guards to ask; by default all that a comparison does not answer by itself.
 
@@ -125,17 +125,17 @@ def notices(
     """
     plain = scene.plain
     # quick solutions are of the plain part; what is solved with features is no stand-in for them
-    known = rungs if plain is scene else {}
-    probes = [Probe(plain, r.body, known, scene) for r in rungs.values()]
+    known = solutions if plain is scene else {}
+    probes = [Probe(plain, r.body, known, scene) for r in solutions.values()]
     out: dict[str, GuardRecord] = {}
     if names is None and scene.body is not None and probes:
-        heard = [*described(scene), *against_the_part(scene, rungs, probes[-1])]
+        heard = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
         for notice in (n for n in heard if n.level != "fact"):
-            out[notice.sentence] = _record("round_part", notice, _about(notice, rungs))
+            out[notice.sentence] = _record("round_part", notice, _about(notice, solutions))
     for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
-                about = _about(notice, rungs)
+                about = _about(notice, solutions)
                 mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
                 if notice.level != "fact" and mine and (about or not notice.models):
                     out.setdefault(notice.sentence, _record(name, notice, about))
@@ -148,13 +148,13 @@ def _record(guard: str, notice: Notice, models: Iterable[str]) -> GuardRecord:
     )
 
 
-def _about(notice: Notice, rungs: dict[str, Solution]) -> list[str]:
+def _about(notice: Notice, solutions: dict[str, Solution]) -> list[str]:
     """Solved models that a notice is about; what is said of beams is not said of a lumped model
     that rests on a solid.
     """
     meant = set(notice.models) & set(LADDER.of(BEAM))
-    lumped = () if meant and not meant & set(rungs) else LADDER.of(LUMPED)
-    return [m for m in notice.models if m in rungs or m in lumped]
+    lumped = () if meant and not meant & set(solutions) else LADDER.of(LUMPED)
+    return [m for m in notice.models if m in solutions or m in lumped]
 
 
 def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:

@@ -1,4 +1,4 @@
-"""The main job: one scene, every rung, one verdict."""
+"""The main job: one scene, every model, one verdict."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Comparison(Displayed):
     scene : Scene
     record : Record
         What ``results.json`` holds.
-    rungs : dict of str to Solution
+    solutions : dict of str to Solution
         The bodies and mode shapes behind it.
     """
 
@@ -52,7 +52,7 @@ class Comparison(Displayed):
 
     scene: Scene
     record: Record
-    rungs: dict[str, Solution]
+    solutions: dict[str, Solution]
 
     @property
     def results(self) -> dict:
@@ -105,16 +105,16 @@ def compare(
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
 ) -> Comparison:
-    """Solve a scene with several fidelities and compare them.
+    """Solve a scene with several models and compare them.
 
-    Solids are solved on ever finer meshes until their bands meet the tolerance of the scene: that
+    Solids are solved on ever finer meshes until their error bars meet the tolerance of the scene: that
     of the harmonic solid, which judges, a tenth of it, that of the 3D solid the whole.
 
     Parameters
     ----------
     scene : Scene
     models : tuple of str, optional
-        Rungs of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
+        Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
         lumped one needs one of the others to rest on.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
@@ -155,14 +155,14 @@ def compare(
             complete = False
             progress("interrupted; keeping what is there")
     record = recorded(
-        scene, found.rungs, found.failed, found.causes, found.lumped, found.guards, complete
+        scene, found.solutions, found.failed, found.causes, found.lumped, found.guards, complete
     )
     record.where = found.where
     record.bearing_range = ranged
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
-    return Comparison(scene, record, found.rungs)
+    return Comparison(scene, record, found.solutions)
 
 
 def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
@@ -183,7 +183,7 @@ def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
 class _Found:
     """Findings of a comparison so far; an interrupt leaves it whole."""
 
-    rungs: dict[str, Solution]
+    solutions: dict[str, Solution]
     failed: dict[str, str]
     causes: list[CauseRecord]
     lumped: dict[str, LumpedRecord]
@@ -202,34 +202,34 @@ def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> No
             chosen = _circumference(scene, model, options[model], found)
             # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose
             # modes are paired with its own.
-            counted = not _after_a_solid(model, found.rungs)
-            rung = study(
+            counted = not _after_a_solid(model, found.solutions)
+            solution = study(
                 scene,
                 model,
                 chosen,
                 counted=counted,
                 progress=progress,
-                keep=functools.partial(found.rungs.__setitem__, model),
+                keep=functools.partial(found.solutions.__setitem__, model),
             )
         except (SolidgearError, MemoryError) as error:
             found.failed[model] = str(error) or "not enough memory"
             log.warning("%s failed: %s", model, found.failed[model])
             continue
-        found.rungs[model] = rung
-        # A dearer solid's lumped models are those of the cheaper one within the bands, at ten times
+        found.solutions[model] = solution
+        # A dearer solid's lumped models are those of the cheaper one within the bars, at ten times
         # the price.
         if lumped and not _after_a_solid(model, found.lumped):
             progress(f"lumped: synthesis from {model}")
-            found.lumped |= synthesise_all(scene, {model: rung}, log.info)
+            found.lumped |= synthesise_all(scene, {model: solution}, log.info)
         # Factors are the largest thing a body holds, and no further solution is needed.
-        rung.body.cache.clear()
-    if found.rungs:
+        solution.body.cache.clear()
+    if found.solutions:
         progress("guards")
-        found.guards = notices(scene, found.rungs)
-    if "harmonic" in found.rungs:
+        found.guards = notices(scene, found.solutions)
+    if "harmonic" in found.solutions:
         progress("where the error sits")
-        found.where = recorded_places(scene, found.rungs["harmonic"])
-    found.causes = _causes(scene, found.rungs, options, progress)
+        found.where = recorded_places(scene, found.solutions["harmonic"])
+    found.causes = _causes(scene, found.solutions, options, progress)
 
 
 def _after_a_solid(model: str, done: Collection[str]) -> bool:
@@ -239,10 +239,10 @@ def _after_a_solid(model: str, done: Collection[str]) -> bool:
 
 
 def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> dict:
-    """Options of a rung that divides the circumference into cells, with as many as the modes need
+    """Options of a model that divides the circumference into cells, with as many as the modes need
     that the harmonic solid found in the range asked for.
     """
-    harmonic = found.rungs.get("harmonic")
+    harmonic = found.solutions.get("harmonic")
     if "around" not in LADDER[model].options or harmonic is None or "around" in options:
         return options
     waves = max(
@@ -270,18 +270,18 @@ def check_models(models: tuple[str, ...]) -> None:
         )
 
 
-def _causes(scene: Scene, rungs: dict[str, Solution], options, progress: Progress) -> list:
+def _causes(scene: Scene, solutions: dict[str, Solution], options, progress: Progress) -> list:
     out = []
     progress("causes: switching assumptions one at a time")
     try:
-        if "timoshenko" in rungs:
+        if "timoshenko" in solutions:
             out += beam_causes(scene)
         for model in LADDER.of(SOLID):
-            if model in rungs:
+            if model in solutions:
                 out += attachment_causes(
-                    {a: v.quantities for a, v in rungs[model].variants.items()}, model
+                    {a: v.quantities for a, v in solutions[model].variants.items()}, model
                 )
-        harmonic, beam = rungs.get("harmonic"), rungs.get("timoshenko")
+        harmonic, beam = solutions.get("harmonic"), solutions.get("timoshenko")
         if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
             section, own = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
             gap = {name: change(own, section, name) for name in SHOWN}

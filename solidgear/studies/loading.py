@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from solidgear.scene.recognised import Recognised
     from solidgear.scene.train import Train
 
-#: rung on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
+#: model on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
 #: shoulders are modelled
 SHAFT = "timoshenko"
 

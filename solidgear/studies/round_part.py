@@ -92,14 +92,16 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
         )
 
 
-def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> Iterator[Notice]:
+def against_the_part(
+    scene: Scene, solutions: dict[str, Solution], probe: Probe
+) -> Iterator[Notice]:
     """The light harmonic solid of the round part against the solids of the part itself.
 
     Parameters
     ----------
     scene : Scene
         With a part from a file.
-    rungs : dict of str to Solution
+    solutions : dict of str to Solution
         Solved with the part.
     probe : Probe
         Of the round part.
@@ -108,20 +110,20 @@ def against_the_part(scene: Scene, rungs: dict[str, Solution], probe: Probe) -> 
         return
     names, tolerance = judged(scene), scene.ask.tolerance
     of_mean = ", with one mean material across," * bool(scene.body.mixed)
-    for model in (m for m in LADDER.of(SOLID) if m in rungs and PARTS in LADDER[m].holds):
-        mine, theirs = probe.rung(ROUND_MODEL), rungs[model]
+    for model in (m for m in LADDER.of(SOLID) if m in solutions and PARTS in LADDER[m].holds):
+        mine, theirs = probe.solution(ROUND_MODEL), solutions[model]
         told, verdicts = [], []
         for name in names:
             gap = change(mine.quantities, theirs.quantities, name)
             if gap is None:
                 continue
-            bands = [r.bands.get(SCENE, {}).get(name) for r in (mine, theirs)]
-            band = sum(b.gci for b in bands if b is not None)
+            bars = [r.error_bars.get(SCENE, {}).get(name) for r in (mine, theirs)]
+            bar = sum(b.width for b in bars if b is not None)
             told.append(
                 f"{name} {mine.quantities[name]:.5g} {name.unit} ({'+' * (gap > 0)}{percent(gap)}"
-                + (f" +- {percent(band)})" if all(bands) else ", part without a band)")
+                + (f" +- {percent(bar)})" if all(bars) else ", part without an error bar)")
             )
-            verdicts.append(gap_verdict(gap, band, tolerance))
+            verdicts.append(gap_verdict(gap, bar, tolerance))
         if not told:
             continue
         if all(v == WITHIN for v in verdicts):

@@ -145,7 +145,7 @@ def measure(quick: bool = False) -> Finding:
         f"{abs(longest['C_thx']):.0%} at {longest['length over width']:.1f} (HEX20 "
         f"{abs(straight['C_thx']):.2%}); "
         f"HEX8 lacks {abs(light[0]['mass']):.1%} of the mass with {light[0]['HEX8, cells around']} cells around.",
-        "`solidgear check --fidelity solid` cautions on element = tet4 or hex8 and calls the "
+        "`solidgear check --model solid` cautions on element = tet4 or hex8 and calls the "
         "lost mass a fault; HEX20 is the default everywhere.",
         "tests/test_check_guards.py::test_guard[hex8]",
         rows

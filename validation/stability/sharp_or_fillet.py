@@ -189,8 +189,8 @@ def measure(quick: bool = False) -> Finding:
         f"a fillet of {softer[0]['fillet over d']:g} d changes the tilt by "
         f"{softer[0]['tilt over sharp']:+.1%}, one of {softer[-1]['fillet over d']:g} d by "
         f"{softer[-1]['tilt over sharp']:+.1%}.",
-        "All solid rungs grade their meshes towards shoulders; `solidgear compare` prints "
-        "the expected order beside the observed one and widens its band by a factor of 3 "
+        "All solids grade their meshes towards shoulders; `solidgear compare` prints "
+        "the expected order beside the observed one and widens its error bar by a factor of 3 "
         "when they do not agree; "
         "`solidgear check` cautions where a mesh is not graded towards one.",
         "tests/test_check_guards.py::test_guard[uniform mesh]",

@@ -29,9 +29,9 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
         More levels, up to solids of several hundred thousand unknowns.
     """
     rows = [
-        Row(family, label, level, rung.name, options)
-        for rung in LADDER
-        for family, label, all_options in rung.series(scene, full)
+        Row(family, label, level, model.name, options)
+        for model in LADDER
+        for family, label, all_options in model.series(scene, full)
         for level, options in enumerate(all_options, start=1)
     ]
     return sorted(rows, key=lambda row: row.level)

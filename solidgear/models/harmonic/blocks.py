@@ -158,7 +158,7 @@ class _Work:
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
         m = sp.kron(heavy.matrix(), sp.diags(share)).tocsr()
 
-        keep = self.kept(n)
+        keep = self.free_unknowns(n)
         y = np.repeat(self.y, c)[keep]
         rigid = np.zeros((self.n, c, len(components)))
         on = self.point
@@ -208,7 +208,7 @@ class _Work:
             expand=to,
         )
 
-    def kept(self, n: int) -> np.ndarray:
+    def free_unknowns(self, n: int) -> np.ndarray:
         """Mask of the unknowns of harmonic n, numbered together at each node, that the axis leaves
         free.
         """

@@ -120,4 +120,4 @@ class PatchMotion:
         # u_r = p + q, u_t = p - q, u_y = w
         parts = np.array([[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
         every = np.einsum("k,ic->ikc", self._mean * np.sinc(half / np.pi), parts)
-        return every.reshape(3, -1)[:, self._work.kept(n)]
+        return every.reshape(3, -1)[:, self._work.free_unknowns(n)]

@@ -1,4 +1,4 @@
-"""Where lines of a 3D mesh go and how large its elements are, before it is made."""
+"""Plan of a 3D mesh: places of its lines and sizes of its elements, before it is made."""
 
 from __future__ import annotations
 

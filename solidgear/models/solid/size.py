@@ -1,4 +1,4 @@
-"""How large the 3D solid of a scene is, counted on its mesh."""
+"""Size of the 3D solid of a scene, counted on its mesh."""
 
 from __future__ import annotations
 

@@ -105,14 +105,14 @@ def linear_elements(probe: Probe) -> Notices:
 
 
 def hexahedra_at_fillets(probe: Probe) -> Notices:
-    """Hexahedra whose layers do not converge beside fillets as their bands would ask."""
+    """Hexahedra whose layers do not converge beside fillets as error bars ask."""
     element, corners = str(probe.body.mesh.get("element", "")), probe.scene.corners
     if probe.body.fidelity == "solid" and element.startswith("hex") and corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in corners)
         yield Notice(
             "open",
             ("solid",),
-            f"element = {element} converges slowly and unevenly beside {names}: no band can be told; "
+            f"element = {element} converges slowly and unevenly beside {names}: no error bar can be told; "
             "use element = tet10, which is the default here, or the harmonic solid",
         )
 

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 BEAM_OR_SOLID = "a beam or a solid"
 
 
-def _sure(band: float | None) -> str:
-    return f", give or take {100 * band:.1g} %" if band else ""
+def _sure(bar: float | None) -> str:
+    return f", give or take {100 * bar:.1g} %" if bar else ""
 
 
 def beam_against_solid(probe: Probe) -> Notices:
@@ -353,17 +353,17 @@ def lumped_against_solid(probe: Probe) -> Notices:
         _, found = probe.lumped
     except SolidgearError:
         return  # `effective_mass` says so
-    lumped, solid = preferred(found), probe.rung("harmonic")
+    lumped, solid = preferred(found), probe.solution("harmonic")
     truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
     if not truth or lumped is None or lumped.frequency_hz is None:
         return
     gap = lumped.frequency_hz / truth - 1
-    bands = solid.bands.get(SCENE, {})
-    band = bands[FIRST_BENDING].gci if FIRST_BENDING in bands else 0.0
-    kind = gap_verdict(gap, band, tolerance)
+    bars = solid.error_bars.get(SCENE, {})
+    bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
+    kind = gap_verdict(gap, bar, tolerance)
     text = (
         f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
-        f"that of a light harmonic solid{_sure(band)}"
+        f"that of a light harmonic solid{_sure(bar)}"
     )
     if kind == deviations.BEYOND:
         yield Notice(

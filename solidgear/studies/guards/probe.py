@@ -61,7 +61,7 @@ class Probe:
     scene : Scene
     body : Body
         The body the user asked for; it is read, not solved.
-    rungs : dict of str to Solution, optional
+    solutions : dict of str to Solution, optional
         What is solved already.
     whole : Scene, optional
         With the features that ``scene`` leaves out; by default there are none.
@@ -71,12 +71,12 @@ class Probe:
         self,
         scene: Scene,
         body: Body,
-        rungs: dict[str, Solution] | None = None,
+        solutions: dict[str, Solution] | None = None,
         whole: Scene | None = None,
     ):
         self.scene, self.body, self.whole = scene, body, whole or scene
         self.supports = as_supports(scene).on_stations(scene.stations)
-        self.rungs = dict(rungs or {})
+        self.solutions = dict(solutions or {})
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
@@ -133,32 +133,32 @@ class Probe:
             for a, b in pairwise(ends)
         ]
 
-    def rung(self, model: str) -> Solution:
+    def solution(self, model: str) -> Solution:
         """A beam, or the harmonic solid on one mesh or two."""
-        if model not in self.rungs:
+        if model not in self.solutions:
             options = {name: True for name in SOFT if self.asked(model).get(name)}
-            self.rungs[model] = study(
+            self.solutions[model] = study(
                 self.scene, model, options, share=SHARE, most=LIGHT, evidence=False
             )
-        return self.rungs[model]
+        return self.solutions[model]
 
     def asked(self, model: str) -> Mapping[str, Any]:
         """Facts of the mesh of a model, as far as the user has asked for it."""
         if self.body.fidelity == model:
             return self.body.mesh
-        return self.rungs[model].body.mesh if model in self.rungs else {}
+        return self.solutions[model].body.mesh if model in self.solutions else {}
 
     def beam(self, model: str) -> tuple[Body, ModeSet, Values]:
         """A beam tied as in the scene: body, modes and compared numbers."""
-        rung = self.rung(model)
-        return rung.body, rung.modes, rung.quantities
+        solution = self.solution(model)
+        return solution.body, solution.modes, solution.quantities
 
     def _tied(self, attachment: str | None) -> Values:
         """Numbers of a harmonic solid, on one mesh for all, with one attachment (``rigid``: at the
         bearings), or as the scene has it (None).
         """
         if attachment is None:
-            return self.rung("harmonic").quantities
+            return self.solution("harmonic").quantities
         scene = (
             rigid_seats(self.scene)
             if attachment == "rigid"
@@ -169,9 +169,9 @@ class Probe:
 
     def _gaps(self, model: str) -> list[Deviation]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
-        rungs = {model: self.rung(model), "harmonic": self.rung("harmonic")}
+        solutions = {model: self.solution(model), "harmonic": self.solution("harmonic")}
         names = judged(self.scene)
-        found = [g for g in deviations(rungs, "harmonic") if g.quantity in names]
+        found = [g for g in deviations(solutions, "harmonic") if g.quantity in names]
         return sorted(found, key=lambda g: -g.size)
 
     @property
@@ -232,7 +232,7 @@ class Probe:
         """Lowest frequency (Hz) of families of two waves around and more, as far as they are
         solved; bearings do not enter.
         """
-        harmonic = self.rungs.get("harmonic")
+        harmonic = self.solutions.get("harmonic")
         solved = (
             [
                 r

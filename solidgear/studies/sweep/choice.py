@@ -36,7 +36,7 @@ def settled_for_sweep(
     seed: int = 0,
     progress: Progress = lambda _: None,
 ) -> Settled:
-    """The cheapest body whose bands are within a tolerance on the scene and at the ends of a sweep.
+    """The cheapest body whose error bars are within a tolerance on the scene and at the ends of a sweep.
 
     Parameters
     ----------

@@ -243,11 +243,11 @@ def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, nu
     if basis is not None:
         held, heavy = basis.T @ held, basis.T @ heavy
         mass, defect = basis.T @ mass @ basis, basis.T @ defect @ basis
-    laden = mass + heavy @ heavy.T if heavy.shape[1] else mass
+    total = mass + heavy @ heavy.T if heavy.shape[1] else mass
     both = np.hstack([held, np.sqrt(reduced.shift) * heavy]) if heavy.shape[1] else held
     left, s, _ = np.linalg.svd(both, full_matrices=False)
     half = np.eye(len(mass)) + left @ ((1 / np.sqrt(1 + s * s) - 1)[:, None] * left.T)
-    small = half @ laden @ half
+    small = half @ total @ half
     theta, vector = np.linalg.eigh((small + small.T) / 2)
     theta, vector = theta[::-1], vector[:, ::-1]
     good = theta > 0
@@ -281,8 +281,8 @@ def _soft(shape, mass, held, heavy, shift) -> np.ndarray:
     small[r:, r:] = rest.T @ rest - shift * rest.T @ mass @ rest
     basis = np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), rest])
     reach, moved = held.T @ basis, heavy.T @ basis
-    laden = np.eye(len(small)) + moved.T @ moved if heavy.shape[1] else None
-    return sla.eigh(small + reach.T @ reach, laden, eigvals_only=True)[: shape.shape[1]]
+    total = np.eye(len(small)) + moved.T @ moved if heavy.shape[1] else None
+    return sla.eigh(small + reach.T @ reach, total, eigvals_only=True)[: shape.shape[1]]
 
 
 def _bound(part: _Group, count: int, last: float, shift: float, slack: float) -> float:

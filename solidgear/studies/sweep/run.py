@@ -110,7 +110,7 @@ def sweep(
     overwrite : bool
         Discard rows that are there.
     build : callable
-        Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a fidelity and options.
+        Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a model and options.
     progress : callable
         Called with rows that are there, rows in all, and what is being done.
     tell : callable

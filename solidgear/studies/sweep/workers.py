@@ -1,4 +1,4 @@
-"""Who turns variants into rows: this process, others on this machine, or a Dask cluster."""
+"""Workers that turn variants into rows: this process, others on this machine, or a Dask cluster."""
 
 from __future__ import annotations
 

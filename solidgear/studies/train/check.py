@@ -74,7 +74,7 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
         scene = _asked(workshop.scenes[side], train, limit)
         probe = Probe(scene.plain, build(scene.plain, JUDGE), whole=scene)
         out[side] = check_scene(scene, probe.body, probe)
-        light.take(side, JUDGE, probe.rung(JUDGE).body)
+        light.take(side, JUDGE, probe.solution(JUDGE).body)
     faults: list[str] = []
     facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
     cautions = [*workshop.cautions]

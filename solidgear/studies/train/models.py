@@ -1,4 +1,4 @@
-"""Each shaft of a train at any model, and the system that any two of them make."""
+"""Each shaft of a train by any model, and the system that any two of them make."""
 
 from __future__ import annotations
 
@@ -47,8 +47,7 @@ class Workshop:
     kept : int
         Modes of each shaft.
     settings : mapping
-        Builder options of rungs, by their names; of one shaft at a rung by (side, rung), before
-        those of the rung.
+        Builder options of models, by their names; of one shaft by (side, model), before those.
 
     Examples
     --------
@@ -121,7 +120,7 @@ class Workshop:
         ----------
         side, rung : str
         body : Body
-            Of that rung, on any mesh.
+            Of that model, on any mesh.
         """
         self.bars.clear()
         start = perf_counter()
@@ -214,7 +213,7 @@ class Workshop:
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """What does not fit together but can be solved, and bearings without load."""
+        """Warnings of data that do not fit together but can be solved, and of bearings without load."""
         lost = [
             f"bearing {end} carries nothing at {self.train.point.label}: it has no stiffness there"
             for end in self.train.unloaded
@@ -273,12 +272,12 @@ class Workshop:
         return whole.with_mass(mass)
 
     def system(self, pinion: str, gear: str, bearings: bool = True) -> System:
-        """The train with its shafts at two rungs.
+        """The train with its shafts by two models.
 
         Parameters
         ----------
         pinion, gear : str
-            Rungs.
+            Models.
         bearings : bool
             False leaves them out: what rests on them is then free.
 

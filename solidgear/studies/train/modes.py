@@ -53,7 +53,7 @@ class TrainMode:
 
 @dataclass(frozen=True, eq=False)
 class TrainModes:
-    """Modes of a train at two rungs.
+    """Modes of a train by two models.
 
     Attributes
     ----------
@@ -196,7 +196,7 @@ def wrench_lines(met: Contact) -> tuple[str, ...]:
 def train_modes(
     workshop: Workshop, pinion: str, gear: str, max_frequency: float | None = None
 ) -> TrainModes:
-    """Modes of a train with its shafts at two rungs.
+    """Modes of a train with its shafts by two models.
 
     Parameters
     ----------

@@ -99,7 +99,7 @@ def _total(system: System, shapes: np.ndarray) -> np.ndarray:
 
 
 def workshop_rung(workshop: Workshop, side: str) -> str:
-    """Any rung that the shop has made of a shaft: rigid masses are all alike."""
+    """Any model that the shop has made of a shaft: rigid masses are all alike."""
     return next(rung for (own, rung) in workshop._made if own == side)
 
 

@@ -95,7 +95,7 @@ def order_map(
     mesh_orders: int | None = None,
     shaft_orders: Sequence[int] = SHAFT_ORDERS,
 ) -> OrderMap:
-    """Order lines of a train with its shafts at two rungs.
+    """Order lines of a train with its shafts by two models.
 
     Parameters
     ----------

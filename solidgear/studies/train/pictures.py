@@ -38,7 +38,7 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
     ----------
     workshop : Workshop
     system : System
-        Of these rungs.
+        Of these models.
     rungs : (str, str)
         Of pinion and gear.
     shape : (N,) ndarray
@@ -46,7 +46,7 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
     Raises
     ------
     SolidgearError
-        For a rung without a shape, such as a lumped one.
+        For a model without a shape, such as a lumped one.
 
     Examples
     --------
@@ -94,14 +94,14 @@ def turned_modes(
     ----------
     workshop : Workshop
     pinion, gear : str
-        Rungs.
+        Models.
     highest_hz : float, optional
         Of the modes; that of the file by default. The first elastic mode is always there.
 
     Raises
     ------
     SolidgearError
-        For a rung without a shape.
+        For a model without a shape.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def turned_beside(
     ----------
     workshop : Workshop
     first, second : (str, str)
-        Rungs of pinion and gear.
+        Models of pinion and gear.
     highest_hz : float, optional
         Of the modes of both; a partner may lie beyond it.
 
@@ -144,7 +144,7 @@ def turned_beside(
     Raises
     ------
     SolidgearError
-        For a rung without a shape.
+        For a model without a shape.
     """
     limit = highest_hz or workshop.train.ask.max_frequency
     one, other = workshop.system(*first), workshop.system(*second)
@@ -199,7 +199,7 @@ def draw_modes(
     ----------
     workshop : Workshop
     pinion, gear : str
-        Rungs.
+        Models.
     folder : path
     numbers : sequence of int
         Of modes as system-modes lists them, from 1.
@@ -212,7 +212,7 @@ def draw_modes(
     Raises
     ------
     SolidgearError
-        For a rung without a shape, a number that there is not, or a folder that cannot be written.
+        For a model without a shape, a number that there is not, or a folder that cannot be written.
     """
     system = workshop.system(pinion, gear)
     most = system.free.shape[1] + len(system.elastic[0])

@@ -63,13 +63,13 @@ def receptance(
     matched_hz: float = 0.0,
     frequency_hz: np.ndarray | None = None,
 ) -> TrainReceptance:
-    """Receptance between two ports of a train with its shafts at two rungs.
+    """Receptance between two ports of a train with its shafts by two models.
 
     Parameters
     ----------
     workshop : Workshop
     pinion, gear : str
-        Rungs.
+        Models.
     from_, to : (str, str)
         Port and direction of the force and of the motion, such as ``("gear.gear", "z")``.
     highest_hz : float, optional

@@ -102,13 +102,13 @@ class TrainResponse:
 
 
 class Drive:
-    """A train at two rungs with its losses and its excitation.
+    """A train by two models with its losses and its excitation.
 
     Parameters
     ----------
     workshop : Workshop
     pinion, gear : str
-        Rungs.
+        Models.
     damping : {'hysteretic', 'viscous', 'modal', 'literal'}
     matched_hz : float
         Of viscous losses, Hz.
@@ -315,7 +315,7 @@ def respond(
     forces: Mapping[str, np.ndarray] | None = None,
     frequency_hz: np.ndarray | None = None,
 ) -> TrainResponse:
-    """Steady response of a train with its shafts at two rungs.
+    """Steady response of a train with its shafts by two models.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Models of one shaft of a train.
 
-A rung of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
+A model of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, ``solid``), ``rigid``,
 or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
 (``lumped/euler``), with one of these masses:
 
@@ -52,7 +52,7 @@ def checked_rung(name: str) -> tuple[str, str]:
 
 @dataclass(frozen=True, eq=False)
 class ShaftModel:
-    """One shaft at one rung, a part of a system.
+    """One shaft by one model, a part of a system.
 
     Attributes
     ----------

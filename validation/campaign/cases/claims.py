@@ -116,14 +116,14 @@ def sound(scene: sg.Scene, name: str, body: sg.Body, out: Part) -> None:
     out.note("rigid", body.rigid_residual(), 1e-12, name)
     if "min_jacobian_ratio" in body.mesh and body.mesh["min_jacobian_ratio"] <= 0:
         out.fail(f"{name}: an element is inverted")
-    rung = LADDER[name]
+    model = LADDER[name]
     smeared = name != "sector"
     want, taken = expected_mass(scene, smeared)
     mass = body.mass_matrix()
     size = np.sqrt(np.outer(np.diag(want), np.diag(want)))
     # a beam knows no inertia across the shaft exactly; arcs of fillets are those of the order
-    limit = max(rung.mass_tolerance, 1e-6) + OF_CUT * taken
-    if rung.family == SOLID:
+    limit = max(model.mass_tolerance, 1e-6) + OF_CUT * taken
+    if model.family == SOLID:
         out.note("mass", float(np.abs((mass - want) / size).max()), limit, name)
     found = sg.condense(body, scene, scene.port.name)
     c = found.compliance
@@ -221,11 +221,11 @@ def agreeing(scene: sg.Scene, out: Part) -> None:
     if len(solved) == 2:
         one, other = solved.values()
         for q in JUDGED:
-            both = [s.bands.get(SCENE, {}).get(q) for s in (one, other)]
+            both = [s.error_bars.get(SCENE, {}).get(q) for s in (one, other)]
             if None in both or q not in one.quantities or q not in other.quantities:
                 continue
             a, b = one.quantities[q], other.quantities[q]
-            bars = both[0].gci + both[1].gci
+            bars = both[0].width + both[1].width
             out.note(f"gap of {q}", abs(a / b - 1), bars, " and ".join(solved))
 
 

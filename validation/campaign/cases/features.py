@@ -13,7 +13,7 @@ from pathlib import Path
 
 import solidgear as sg
 from solidgear.judge.quantities import JUDGED, size
-from solidgear.judge.sequence_bars import sequence_bands
+from solidgear.judge.sequence_bars import sequence_bars
 from solidgear.judge.solution import Solution
 from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
@@ -188,31 +188,31 @@ def judged(
     out: Found, scene: sg.Scene, model: str, meshes: list[Mesh], true: Numbers, body: str
 ) -> None:
     """Hold the bars that some meshes give, and what is valid by them, against the truth."""
-    rung, last, label = LADDER[model], meshes[-1], f"{model} {len(meshes)}"
-    bands = sequence_bands(
+    known, last, label = LADDER[model], meshes[-1], f"{model} {len(meshes)}"
+    bars = sequence_bars(
         scene,
-        rung.meshes(_options(model)),
-        rung,
+        known.meshes(_options(model)),
+        known,
         [{Quantity(q): v for q, v in one.quantities.items()} for one in meshes],
         last.solver,
         [one.mesh.get("representative_size") for one in meshes],
     )
     own, tags = last.numbers, {"model": label, "part": body}
     errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}
-    split = "bending 2" in bands and last.split
+    split = "bending 2" in bars and last.split
     called = {"pair 1": "bending 1", **({"pair 2": "bending 2"} if split else {})}
     for q, error in errors.items():
-        band = bands.get(called.get(q, q))
-        if band is not None and q != PAIR[1]:
+        bar = bars.get(called.get(q, q))
+        if bar is not None and q != PAIR[1]:
             told = {"how": "finer meshes", "rule": DECIDED}
-            out.rows.append(Row(body, q, tags, band.gci, error, true.doubt[q], **told))
+            out.rows.append(Row(body, q, tags, bar.width, error, true.doubt[q], **told))
     names = {q: "pair 1" if q == "bending 1" else q for q in JUDGED}
     asked = {q: n for q, n in names.items() if n in errors}
-    if not asked or any(q not in bands for q in asked):
+    if not asked or any(q not in bars for q in asked):
         return
     found = {n: (errors[n], true.doubt[n]) for n in asked.values()}
     for tolerance in TOLERANCES:
-        valid = all(bands[q].gci <= tolerance for q in asked)
+        valid = all(bars[q].width <= tolerance for q in asked)
         sort = sorted_verdict(valid, within(found, tolerance))
         why = "a bar is within the tolerance, its error is not" if sort == FALSE_VALID else ""
         out.verdicts.append(Verdict(body, label, tolerance, sort, why))

@@ -84,17 +84,17 @@ def solutions(scene: Scene, most: int | None = None) -> dict[int, dict]:
 
     def keep(one: Solution) -> None:
         count = next(meshes)
-        if bands := one.bands.get(SCENE):
-            said = _statics(one.quantities, bands)
+        if bars := one.error_bars.get(SCENE):
+            said = _statics(one.quantities, bars)
             out[count] = {"said": said, "seconds": time.process_time() - start}
 
     study(scene, "harmonic", evidence=False, counted=False, most=most, keep=keep)
     return out
 
 
-def _statics(values: Values, bands: dict) -> list[Said]:
-    names = [q for q in bands if q in values and not q.is_frequency and not q.repeats]
-    return [Said(q, values[q], bands[q].gci, size(values, q)) for q in names]
+def _statics(values: Values, bars: dict) -> list[Said]:
+    names = [q for q in bars if q in values and not q.is_frequency and not q.repeats]
+    return [Said(q, values[q], bars[q].width, size(values, q)) for q in names]
 
 
 def judged(said: list[Said], references: dict[str, Reference], body: str, mesh: int) -> list[Row]:

@@ -210,7 +210,7 @@ def outcome(
     """Verdicts, values and bars of every model, and what `check` says, as plain data."""
     comparison = compare(scene, models=models, settings=settings)
     records = comparison.results["models"]
-    out = {name: _model(record, comparison.rungs.get(name)) for name, record in records.items()}
+    out = {name: _model(record, comparison.solutions.get(name)) for name, record in records.items()}
     said = {}
     if check:
         found = check_scene(scene, build(scene, "timoshenko"))

@@ -43,11 +43,11 @@ from solidgear.solve.mixtures import mixtures
 #: of the plain part, and a coarser one whose distance tells how sure it is
 PLAIN = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
 COARSER = {"order": 4, "layers": 2, "edge_layers": 1, "relative_size": 4.0}
-#: share of that distance that is left: what the bands of the harmonic solid count on
+#: share of that distance that is left: what the bars of the harmonic solid count on
 LEFT = 0.25
 #: refinement away from features and at them
 CUT_LEVELS = ((0.22, 0.45), (0.3, 0.64), (0.42, 0.9))
-#: refinement of sectors: the rung's meshes from the third on, which is the last that is judged, or
+#: refinement of sectors: the model's meshes from the third on, which is the last that is judged, or
 #: from the second on
 SECTOR_LEVELS = ((1.4, 2.0, 2.8), (1.0, 1.4, 2.0))
 #: estimated unknowns of the first of these above which the second are taken

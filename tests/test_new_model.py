@@ -82,7 +82,7 @@ def test_it_is_in_the_tables_and_on_the_page(found, tmp_path):
 
 @pytest.mark.long
 def test_it_is_drawn_and_written(found, ladder, tmp_path):
-    body, modes = found.rungs["coarse"].body, found.rungs["coarse"].modes
+    body, modes = found.solutions["coarse"].body, found.solutions["coarse"].modes
     assert body.fidelity == "coarse"
     assert len(body.surface(modes.named("bending 1").vectors[0]).points) > 100
     try:
