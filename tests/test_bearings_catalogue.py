@@ -9,8 +9,9 @@ from shafts import moved_by
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range, mounting_change
-from solidgear.bearings.geometry import Inside, ball_rating, inner_geometry, roller_rating
+from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
+from solidgear.bearings.rating import ball_rating, roller_rating
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls

@@ -183,4 +183,5 @@ class BallRow:
         load = self.constant * approach**POINT_POWER
         angle = np.where(load > 0, np.arctan2(axial, radial), np.nan)
         inner, outer = (ring.pressure(load) for ring in self.rings)
-        return Contacts(self.azimuth, load, angle, inner, outer)
+        slices = load[..., None]
+        return Contacts(self.azimuth, load, angle, inner, outer, slices, slices)

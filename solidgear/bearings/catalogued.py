@@ -10,6 +10,7 @@ import numpy as np
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.clearance import clearance_at_work
+from solidgear.bearings.equivalent import static_factors
 from solidgear.bearings.geometry import Geometry, Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.roller import RollerRow
@@ -150,10 +151,10 @@ def _preloaded(data: Catalogue, rows: list[BallRow | RollerRow], factor: float) 
 
 
 def _within_rating(data: Catalogue, inside: Inside, factor: float) -> None:
-    """ISO 76: the equivalent static load of a preload, P0 = 0.22 cot(a) F, against C0."""
+    """The equivalent static load of a preload, ``P0 = Y0 F`` by ISO 76, against C0."""
     if data.preload is None or data.preload.force is None or data.static_rating is None:
         return
-    equivalent = 0.22 / math.tan(inside.angle) * factor * data.preload.force
+    equivalent = static_factors(data, inside)[1] * factor * data.preload.force
     if data.arrangement == "tandem":
         equivalent /= 2
     if equivalent > data.static_rating:

@@ -3,15 +3,10 @@
 A catalogue gives bore, outside diameter, width and load ratings; the number and size of the rolling
 elements are the maker's.  Three things tie them down: room (an element takes a usual share of
 ``D - d``), filling (how many are usually put in), and the rating, of which ISO 281:2007 and
-ISO 76:2006 say how it is computed from them,
-
-    balls     C = 1.3 f_c cos(a)^0.7 Z^(2/3) Dw^1.8
-    rollers   C = b_m f_c (l cos(a))^(7/9) Z^(3/4) Dw^(29/27),    C_0 = 44 (1 - g) Z l Dw cos(a)
-
-(N, mm; g = Dw cos(a) / Dpw).  The shares were read off bearings whose inside is published (6203 to
-6311, 7208, 218, NU205 to NU312, 30206 to 32310): :data:`SHARES` holds their middle and their
-spread. What is estimated is marked, and comes with a softer and a stiffer inside at the ends of the
-spread.
+ISO 76:2006 say how it is computed from them (:mod:`solidgear.bearings.rating`).  The shares were
+read off bearings whose inside is published (6203 to 6311, 7208, 218, NU205 to NU312, 30206 to
+32310): :data:`SHARES` holds their middle and their spread.  What is estimated is marked, and comes
+with a softer and a stiffer inside at the ends of the spread.
 """
 
 from __future__ import annotations
@@ -20,6 +15,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from solidgear.bearings.rating import RATED_CONFORMITY, rated, static_roller_rating
 from solidgear.errors import SceneError
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.designation import usual_angle
@@ -43,29 +39,26 @@ class Shares(NamedTuple):
         Effective roller length over width.
     filling : Share
         Elements over those that would touch all around.
-    factor : float
-        b_m of ISO 281.
     """
 
     diameter: Share
     length: Share
     filling: Share
-    factor: float
 
 
 NONE = Share(0.0, 0.0)
 SHARES = {
-    "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06), 1.3),
-    "angular_contact": Shares(Share(0.30, 0.02), NONE, Share(0.88, 0.05), 1.3),
-    "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06), 1.1),
-    "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), 1.1),
-    "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10), 1.0),
+    "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06)),
+    "angular_contact": Shares(Share(0.30, 0.02), NONE, Share(0.88, 0.05)),
+    "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06)),
+    "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04)),
+    "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10)),
 }
 #: rad; of a contact angle that nothing tells.  It has no spread here: a steeper one is stiffer
 #: along y and softer across it
 ANGLE = {"angular_contact": math.radians(40), "tapered": math.radians(15)}
 #: groove radius over ball diameter: ISO 281's own, and the range in use
-CONFORMITY = {"middle": (0.52, 0.53), "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}
+CONFORMITY = {"middle": RATED_CONFORMITY, "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}
 #: of a filling slot-free deep groove the balls span this much of the circle, rad
 CONRAD = math.radians(186)
 #: relative; of ratings that makers give on their own experience
@@ -113,55 +106,6 @@ class Geometry(NamedTuple):
     softer: Inside
     stiffer: Inside
     estimated: tuple[str, ...]
-
-
-def ball_rating(inside: Inside, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a ball bearing by ISO 281, N.
-
-    Examples
-    --------
-    A 6206 has nine balls of 9.525 mm on 46 mm; makers give 19.5 to 20.3 kN:
-
-    >>> round(ball_rating(Inside(9, 9.525e-3, 0.0, 46e-3, 0.0, (0.52, 0.53))) / 1e3, 1)
-    19.9
-    """
-    g = inside.gamma
-    inner, outer = inside.conformity
-    grooves = (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
-    ratio = 1.04 * ((1 - g) / (1 + g)) ** 1.72 * grooves
-    both = (1 + ratio ** (10 / 3)) ** -0.3
-    factor = 39.9 * both * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
-    factor *= (2 * inner / (2 * inner - 1)) ** 0.41
-    size = inside.diameter * 1e3
-    # above 25.4 mm the rating grows less
-    size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
-    angle = math.cos(inside.angle)
-    return 1.3 * factor * (rows * angle) ** 0.7 * inside.elements ** (2 / 3) * size
-
-
-def roller_rating(inside: Inside, factor: float = 1.1, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a roller bearing by ISO 281, N.
-
-    Examples
-    --------
-    Thirteen rollers of 9 x 10 mm on 46.5 mm, an NU 206:
-
-    >>> round(roller_rating(Inside(13, 9e-3, 10e-3, 46.5e-3, 0.0, (0.5, 0.5))) / 1e3)
-    42
-    """
-    g = inside.gamma
-    ratio = 1.04 * ((1 - g) / (1 + g)) ** (143 / 108)
-    both = (1 + ratio ** (9 / 2)) ** (-2 / 9)
-    material = 207.0 * 0.83 * both * g ** (2 / 9) * (1 - g) ** (29 / 27) / (1 + g) ** 0.25
-    length = rows * inside.length * 1e3 * math.cos(inside.angle)
-    size = (inside.diameter * 1e3) ** (29 / 27)
-    return factor * material * length ** (7 / 9) * inside.elements**0.75 * size
-
-
-def static_roller_rating(inside: Inside) -> float:
-    """Basic static radial load rating of a row of rollers by ISO 76, N."""
-    mm = inside.length * inside.diameter * 1e6
-    return 44.0 * (1 - inside.gamma) * inside.elements * mm * math.cos(inside.angle)
 
 
 def inner_geometry(data: Catalogue) -> Geometry:
@@ -235,11 +179,6 @@ def _start(data: Catalogue, end: str) -> Inside:
     return Inside(elements, diameter, length, pitch, _angle(data), conformity)
 
 
-def _rows(data: Catalogue) -> int:
-    """Rows that a load rating is told for: of a pair it is that of a single bearing."""
-    return 2 if data.arrangement == "double_row" else 1
-
-
 def _balls(data: Catalogue, end: str) -> Inside:
     guess = _start(data, end)
     if data.load_rating is None or (data.elements and data.element_diameter):
@@ -262,14 +201,8 @@ def _balls(data: Catalogue, end: str) -> Inside:
     return best
 
 
-def _rated(inside: Inside, data: Catalogue) -> float:
-    """Rating as makers tell it: ISO 281 grants tighter grooves than its own nothing."""
-    own = replace(inside, conformity=CONFORMITY["middle"])
-    return ball_rating(own, _rows(data))
-
-
 def _misfit(inside: Inside, rating: float, usual: float, data: Catalogue) -> float:
-    own = _rated(inside, data)
+    own = rated(data, inside)
     filling = inside.elements * math.asin(inside.diameter / inside.pitch) / math.pi
     share = SHARES[data.kind].filling
     return (
@@ -284,7 +217,7 @@ def _ball_for(inside: Inside, rating: float, data: Catalogue) -> float:
     diameter = inside.diameter
     widest = 0.48 * (data.outer_diameter - data.bore)
     for _ in range(40):
-        own = _rated(replace(inside, diameter=diameter), data)
+        own = rated(data, replace(inside, diameter=diameter))
         diameter = min(diameter * (rating / own) ** (1 / 1.8), widest)
     return diameter
 
@@ -296,11 +229,10 @@ def _rollers(data: Catalogue, end: str) -> Inside:
     # what the ratings tie down best is the length of all rollers together
     own: float
     if data.static_rating is not None:
-        rating, own, power = data.static_rating, _rows(data) * static_roller_rating(guess), 1.0
+        rating, own, power = data.static_rating, data.rated_rows * static_roller_rating(guess), 1.0
     else:
         assert data.load_rating is not None
-        factor = SHARES[data.kind].factor
-        rating, own = data.load_rating, roller_rating(guess, factor, _rows(data))
+        rating, own = data.load_rating, rated(data, guess)
         power = 9 / 7
     wanted = rating * (1 + _SIGN[end] * RATING_SPREAD)
     length = guess.length * (wanted / own) ** power

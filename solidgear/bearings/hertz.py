@@ -57,6 +57,10 @@ class Point(NamedTuple):
         """Largest pressure under a load in N, Pa."""
         return 1.5 * np.cbrt(load) / (np.pi * self.long * self.short)
 
+    def load(self, pressure: float) -> float:
+        """Load under which the largest pressure is that in Pa, N."""
+        return float((pressure * np.pi * self.long * self.short / 1.5) ** 3)
+
 
 @functools.lru_cache(maxsize=4096)
 def point_contact(rolling: float, across: float, E: float = STEEL_E, nu: float = STEEL_NU) -> Point:

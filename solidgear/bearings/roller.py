@@ -176,4 +176,4 @@ class RollerRow:
             for ring in (-gamma, gamma)
         )
         angle = np.where(load > 0, self.side * self.angle, np.nan)
-        return Contacts(self.azimuth, load, angle, inner, outer)
+        return Contacts(self.azimuth, load, angle, inner, outer, press, press)

@@ -41,6 +41,8 @@ class Contacts(NamedTuple):
         Contact angle, rad, positive where the shaft is pressed towards +y; NaN where unloaded.
     inner, outer : (..., n) ndarray
         Largest pressure at both rings, Pa.
+    on_inner, on_outer : (..., n, slices) ndarray
+        N, on the slices of each element at both rings; a ball is one slice.
     """
 
     azimuth: np.ndarray
@@ -48,6 +50,8 @@ class Contacts(NamedTuple):
     angle: np.ndarray
     inner: np.ndarray
     outer: np.ndarray
+    on_inner: np.ndarray
+    on_outer: np.ndarray
 
 
 def azimuths(count: int, first: float) -> np.ndarray:

@@ -189,7 +189,15 @@ class SpinningBalls:
         q_i, q_o, _, _ = self._contacts(s, o)
         load, under = np.linalg.norm(q_i, axis=-1), np.linalg.norm(q_o, axis=-1)
         angle = np.where(load > 0, np.arctan2(i[..., 1], i[..., 0]), np.nan)
-        return Contacts(self.row.azimuth, load, angle, inner.pressure(load), outer.pressure(under))
+        return Contacts(
+            self.row.azimuth,
+            load,
+            angle,
+            inner.pressure(load),
+            outer.pressure(under),
+            load[..., None],
+            under[..., None],
+        )
 
 
 def _moved(o: np.ndarray, step: np.ndarray) -> np.ndarray:

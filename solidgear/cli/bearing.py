@@ -35,6 +35,10 @@ def bearing(
     name: Annotated[
         str | None, typer.Option("--bearing", help="Only this bearing; --load is then its own.")
     ] = None,
+    speed: Annotated[
+        str | None,
+        typer.Option("--speed", help='Of the shaft, such as "3000 rpm", for lives in hours.'),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -53,16 +57,26 @@ def bearing(
     ] = USUAL_PRELOAD,
     as_json: JsonFlag = False,
 ) -> None:
-    """Bearings of catalogue data: stiffness at load, load of every element, angles, pressure."""
+    """Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of a
+    train with an [operation] their lives over its points.
+    """
+    from solidgear.cli.bearing_life import plain_life, print_life, speed_of
+    from solidgear.cli.train_life import show_train
     from solidgear.scene.file import load as read
+    from solidgear.scene.toml_file import describes_train, parse
+    from solidgear.studies.bearing_life import bearing_lives
     from solidgear.studies.bearing_study import bearing_facts, bearing_range
     from solidgear.studies.loading import explained, shaft
 
+    if describes_train(parse(str(scene))):
+        of_scenes = {"--load": load, "--speed": speed, "--out": out, "--range": ranged}
+        show_train(scene, name, of_scenes, as_json)
+        return
     if out is not None:
         from solidgear.report.plot import check_ending
 
         check_ending(out)
-    ranges = _ranges(load_range, preload_range)
+    ranges, turns = _ranges(load_range, preload_range), speed_of(speed)
     loaded = read(scene)
     if load is not None:
         loaded = loaded_by(loaded, load, name)
@@ -71,17 +85,20 @@ def bearing(
         facts = [fact for fact in bearing_facts(loaded, body) if name in (None, fact.name)]
         if not facts:
             raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
+        lives = {one.name: one for one in bearing_lives(loaded, body, turns)}
         found = bearing_range(loaded, ranges) if ranged else None
         if out is not None:
             _draw(out, loaded, body, facts)
     if as_json:
-        record: dict[str, Any] = {"scene": loaded.name, "bearings": [_plain(f) for f in facts]}
+        bearings = [_plain(fact) | {"life": plain_life(lives[fact.name])} for fact in facts]
+        record: dict[str, Any] = {"scene": loaded.name, "bearings": bearings}
         if found is not None:
             record["range"] = found.as_dict()
         print(json.dumps(record, allow_nan=False))
         return
     for fact in facts:
         _print(fact)
+        print_life(lives[fact.name])
     if found is not None:
         _print_range(found)
     if out is not None:

@@ -14,6 +14,7 @@ from solidgear.scene.features import (
     Teeth,
 )
 from solidgear.scene.housing import Elastic, Housing
+from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.point_mass import PointMass
@@ -36,6 +37,7 @@ __all__ = [
     "Flat",
     "Housing",
     "Keyway",
+    "Lubrication",
     "Material",
     "PointMass",
     "Port",

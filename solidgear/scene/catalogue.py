@@ -5,12 +5,12 @@ The 6x6 at a load is worked out from these data by :mod:`solidgear.bearings`.
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
+from solidgear.scene.catalogue_rules import problems
 from solidgear.scene.designation import boundary
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
@@ -20,6 +20,7 @@ from solidgear.scene.units import (
     Newtons,
     PositiveLength,
     PositiveLoad,
+    RatingFactor,
     SignedAngle,
     Speed,
     TemperatureRise,
@@ -35,6 +36,7 @@ CLASSES = ("C2", "CN", "C3", "C4")
 BALLS = ("deep_groove", "angular_contact")
 #: kinds whose rows hold the shaft in one direction along y
 ONE_SIDED = ("angular_contact", "tapered")
+PAIRED = ("tandem", "back_to_back", "face_to_face")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -169,7 +171,11 @@ class Catalogue(Model):
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
-        Basic dynamic and static radial load rating, N.
+        Basic dynamic and static radial load rating, N; of a pair those of one bearing.
+    fatigue_limit : float or None
+        Fatigue load limit C_u, N, of the same.
+    rating_factor : float or None
+        b_m of ISO 281; where none is given that of its kind.
     elements : int or None
         Rolling elements of one row.
     element_diameter, element_length, pitch_diameter : float or None
@@ -223,6 +229,8 @@ class Catalogue(Model):
     width: PositiveLength
     load_rating: PositiveLoad | None = None
     static_rating: PositiveLoad | None = None
+    fatigue_limit: PositiveLoad | None = None
+    rating_factor: RatingFactor | None = None
     elements: Annotated[int, Field(strict=True, ge=FEWEST, le=MOST)] | None = None
     element_diameter: PositiveLength | None = None
     element_length: PositiveLength | None = None
@@ -264,6 +272,21 @@ class Catalogue(Model):
         return self.kind in BALLS
 
     @property
+    def paired(self) -> bool:
+        """True where it is two bearings side by side."""
+        return self.arrangement in PAIRED
+
+    @property
+    def opposed(self) -> bool:
+        """True where two rows hold the shaft against each other."""
+        return self.paired and self.arrangement != "tandem"
+
+    @property
+    def rated_rows(self) -> int:
+        """Rows that its load ratings are told for."""
+        return 2 if self.arrangement == "double_row" else 1
+
+    @property
     def estimated(self) -> tuple[str, ...]:
         """Inner dimensions that are not given, by their names here."""
         inner = ["elements", "element_diameter", "pitch_diameter"]
@@ -274,9 +297,9 @@ class Catalogue(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:
-        problems = list(_problems(self))
-        if problems:
-            raise SceneError.of(problems)
+        found = list(problems(self))
+        if found:
+            raise SceneError.of(found)
         return self
 
 
@@ -296,93 +319,3 @@ def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in told.items() if data.get(key) is None} | {
         key: value for key, value in data.items() if value is not None or key not in told
     }
-
-
-def _problems(data: Catalogue):
-    if data.outer_diameter <= data.bore:
-        yield SceneError(
-            f"must be larger than the bore ({data.bore:.6g} m)", path=("outer_diameter",)
-        )
-        return
-    yield from _belongs(data)
-    yield from _fits(data)
-    if data.load is not None and data.displacement is not None:
-        yield SceneError("give either load or displacement, not both", path=("displacement",))
-
-
-def _belongs(data: Catalogue):
-    """Keys that the kind or the arrangement has no use for."""
-    what = data.kind.replace("_", " ")
-    if not data.angled:
-        if data.contact_angle is not None:
-            yield SceneError(
-                f"a {what} bearing has no contact angle of its own: leave it out, or write "
-                f'kind = "{"angular_contact" if data.balls else "tapered"}"',
-                path=("contact_angle",),
-            )
-        if data.arrangement not in ("single", "double_row"):
-            yield SceneError(
-                f"{what} bearings have no contact angle to pair: write single or double_row",
-                path=("arrangement",),
-            )
-        if data.preload is not None:
-            yield SceneError(
-                f"a {what} bearing is not preloaded along y: write a negative clearance",
-                path=("preload",),
-            )
-    elif data.arrangement == "double_row":
-        yield SceneError(
-            f"two rows of {what} bearings are back_to_back, face_to_face or tandem",
-            path=("arrangement",),
-        )
-    for key, wanted in (("conformity", True), ("element_length", False), ("speed", True)):
-        if getattr(data, key) and data.balls is not wanted:
-            owner = "balls" if wanted else "rollers"
-            yield SceneError(
-                f"belongs to {owner}; a {what} bearing has none: leave it out", path=(key,)
-            )
-    if data.preload_spring is not None and data.speed:
-        yield SceneError(
-            "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
-            path=("speed",),
-        )
-    if data.preload_spring is not None and (
-        data.arrangement not in ("back_to_back", "face_to_face")
-        or data.preload is None
-        or data.preload.force is None
-    ):
-        yield SceneError(
-            'presses one row of a pair with a force: it needs arrangement = "back_to_back" or '
-            '"face_to_face" and a preload such as "500 N"',
-            path=("preload_spring",),
-        )
-
-
-def _fits(data: Catalogue):
-    """Sizes that leave no room for each other."""
-    room = (data.outer_diameter - data.bore) / 2
-    if data.element_diameter is not None and data.element_diameter >= room:
-        yield SceneError(
-            f"does not fit between bore and outer_diameter, {room:.6g} m apart",
-            path=("element_diameter",),
-        )
-        return
-    if data.element_length is not None and data.element_length > data.width:
-        yield SceneError(
-            f"must not be longer than the width ({data.width:.6g} m)", path=("element_length",)
-        )
-    pitch = data.pitch_diameter or (data.bore + data.outer_diameter) / 2
-    if not data.bore < pitch < data.outer_diameter:
-        yield SceneError(
-            f"must lie between bore and outer_diameter ({data.bore:.6g} and "
-            f"{data.outer_diameter:.6g} m)",
-            path=("pitch_diameter",),
-        )
-    elif data.elements is not None and data.element_diameter is not None:
-        most = int(math.pi / math.asin(min(data.element_diameter / pitch, 1.0)) + 1e-9)
-        if data.elements > most:
-            yield SceneError(
-                f"more than fit on the pitch circle of {pitch:.6g} m: at most {most} elements of "
-                f"{data.element_diameter:.6g} m",
-                path=("elements",),
-            )

@@ -22,6 +22,7 @@ from solidgear.scene.body_file import BodyTable
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import FEATURES
 from solidgear.scene.housing import Housing, housing_of
+from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.materials import by_name
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import STEEL, Material, Segment
@@ -74,6 +75,7 @@ class _File(Model):
     housing: Annotated[Table | None, Holds(Housing)] = None
     port: Annotated[list[Table], BeforeValidator(_several), Holds(Port)]
     load: BearingLoad | None = None
+    lubrication: Lubrication | None = None
     ask: _Ask = _Ask()
 
 
@@ -221,6 +223,7 @@ class _Reading:
             housing_axial=housing if isinstance(housing, float) else None,
             housing=None if isinstance(housing, float) else housing,
             load=file.load,
+            lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
 

@@ -23,6 +23,7 @@ from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.ends import snapped
 from solidgear.scene.features import Feature
 from solidgear.scene.housing import Housing
+from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import (
@@ -66,6 +67,7 @@ class Scene(Displayed, Model):
         Other lumped points, such as a second gear.
     load : BearingLoad or None
         Load on the shaft at the main port, under which bearings of catalogue data settle.
+    lubrication : Lubrication or None
     ask : Ask
 
     Raises
@@ -102,6 +104,7 @@ class Scene(Displayed, Model):
     port: Port
     further_ports: tuple[Port, ...] = ()
     load: BearingLoad | None = None
+    lubrication: Lubrication | None = None
     ask: Ask = Ask()
 
     @model_validator(mode="after")

@@ -37,7 +37,7 @@ def plain_data(scene: Scene) -> dict[str, Any]:
             row["housing"] = bearing.housing.entries
     if scene.housing is not None:
         data["housing"] = {"y": scene.housing.y, "entries": scene.housing.entries}
-    for key in ("load", "body", "housing"):
+    for key in ("load", "lubrication", "body", "housing"):
         if data[key] is None:
             del data[key]
     for key in ("groups", "told", "mixed", "remarks"):

@@ -34,6 +34,7 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "load": ("N", "2 kN", (0,)),
     "torque": ("N*m", "15 N*m", (0,)),
     "speed": ("rad/s", "3000 rpm", (1,)),
+    "viscosity": ("m^2/s", "68 mm^2/s", (0,)),
     "temperature": ("K", "10 K", (0,)),
     "dimensionless": ("", "0.3", (0,)),
 }
@@ -50,6 +51,7 @@ def _dimension(*, length: int = 0, mass: int = 0, time: int = 0) -> Dimension:
 _LENGTH, _ANGLE, _RATE = _dimension(length=1), _dimension(), _dimension(time=-1)
 _STRESS, _DENSITY = _dimension(mass=1, length=-1, time=-2), _dimension(mass=1, length=-3)
 _PER_LENGTH, _FORCE = _dimension(mass=1, time=-2), _dimension(mass=1, length=1, time=-2)
+_VISCOSITY = _dimension(length=2, time=-1)
 _MOMENT, _INERTIA = _dimension(mass=1, length=2, time=-2), _dimension(mass=1, length=2)
 #: units that nearly every scene is written in: (SI units in one, power of the radian, dimension).
 #: What pint says of each (a test compares), without the half second that pint takes to start
@@ -78,6 +80,9 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     "N m/rad": (1.0, -1.0, _MOMENT),
     "Hz": (1.0, 0.0, _RATE),
     "kHz": (1e3, 0.0, _RATE),
+    "m^2/s": (1.0, 0.0, _VISCOSITY),
+    "mm^2/s": (1e-6, 0.0, _VISCOSITY),
+    "cSt": (1e-6, 0.0, _VISCOSITY),
 }
 
 #: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of
@@ -107,8 +112,8 @@ def quantity(value: Any, dimension: str) -> float:
     dimension : str
         One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
         force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), mass (kg), inertia
-        (kg m2), frequency (Hz), load (N), torque (N m), speed (rad/s), temperature (K, a
-        difference), dimensionless.
+        (kg m2), frequency (Hz), load (N), torque (N m), speed (rad/s), viscosity (m2/s),
+        temperature (K, a difference), dimensionless.
 
     Returns
     -------
@@ -346,6 +351,24 @@ Torque = Annotated[float, _in("torque")]
 SignedAngle = Annotated[float, _in("angle")]
 Speed = Annotated[float, _in("speed"), _NOT_NEGATIVE]
 TemperatureRise = Annotated[float, _in("temperature")]
+Viscosity = Annotated[
+    float,
+    _in("viscosity"),
+    _POSITIVE,
+    _must(
+        lambda v: 1e-7 <= v <= 1e-1,
+        "is no viscosity of an oil at work, which are 1 to 10000 mm^2/s: probably wrong units",
+    ),
+]
+PositiveSpeed = Annotated[Speed, _POSITIVE]
+Reliability = Annotated[
+    float, _in("dimensionless"), _between(0.9, 0.9995, "0.90 and 0.9995, the range of ISO 281")
+]
+RatingFactor = Annotated[
+    float,
+    _in("dimensionless"),
+    _must(lambda v: 0.5 <= v <= 2, "is b_m of ISO 281, 1.0 to 1.3: must lie between 0.5 and 2"),
+]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Mass = Annotated[float, _in("mass"), _POSITIVE]
 Tolerance = Annotated[

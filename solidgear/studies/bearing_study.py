@@ -19,8 +19,6 @@ from solidgear.studies.loading import SHAFT
 
 #: times the load that the scene says
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
-#: Pa, ISO 76: beyond it the dent is above 1e-4 of the element's diameter
-STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
 
 
 @dataclass(frozen=True)
@@ -135,7 +133,7 @@ def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
         np.array(bearing.matrix),
         spread,
         rows,
-        tuple(_notes(rows, data.balls)),
+        tuple(_notes(rows)),
     )
 
 
@@ -143,7 +141,7 @@ def _named(found: Solved, name: str):
     return next(b for b in found.scene.bearings if b.name == name)
 
 
-def _notes(rows: Sequence[Contacts], balls: bool):
+def _notes(rows: Sequence[Contacts]):
     if not any(row.load.any() for row in rows):
         yield "it carries nothing: it has lost its load, and has no stiffness"
         return
@@ -151,12 +149,6 @@ def _notes(rows: Sequence[Contacts], balls: bool):
         if not row.load.any():
             place = "lower" if k == 0 else "upper"
             yield f"the row at the {place} end of y carries nothing: the pair has lost its preload"
-    most = max(float(max(row.inner.max(), row.outer.max())) for row in rows)
-    if most > STATIC_PRESSURE[balls]:
-        yield (
-            f"a contact pressure of {most / 1e6:.0f} MPa is beyond the "
-            f"{STATIC_PRESSURE[balls] / 1e6:.0f} MPa of its static rating (ISO 76)"
-        )
 
 
 @dataclass(frozen=True)

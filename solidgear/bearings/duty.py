@@ -1,0 +1,125 @@
+"""Life over a table of duty: damage of its points adds up (Palmgren 1924, Miner 1945).
+
+A point with the share q of the time, at n turns an hour and with a life of L turns, uses up
+``q n / L`` of the bearing an hour; the life in hours is one over the sum.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from solidgear.errors import SceneError
+from solidgear.scene.operation import TYPED
+
+
+@dataclass(frozen=True)
+class DutyPoint:
+    """Point of a duty table of one bearing.
+
+    Attributes
+    ----------
+    life : float
+        Of the bearing there, revolutions; infinite where it carries nothing.
+    speed : float
+        rad/s.
+    share : float or None
+        Of the time.
+    hours : float or None
+        In place of a share.
+    """
+
+    life: float
+    speed: float
+    share: float | None = None
+    hours: float | None = None
+
+    @property
+    def turns(self) -> float:
+        """Revolutions an hour."""
+        return abs(self.speed) / (2 * math.pi) * 3600
+
+
+@dataclass(frozen=True)
+class DutyLife:
+    """Life over a duty table.
+
+    Attributes
+    ----------
+    hours, revolutions : float
+    damage : tuple of float
+        Share of the damage that each point does; they sum to one, or are zero where none does any.
+    worst : int
+        Place of the point that does most.
+    """
+
+    hours: float
+    revolutions: float
+    damage: tuple[float, ...]
+    worst: int
+
+
+def duty_life(points: Sequence[DutyPoint]) -> DutyLife:
+    """Life of a bearing over the points of a duty table.
+
+    Parameters
+    ----------
+    points : sequence of DutyPoint
+        All with shares of the time that sum to one, or all with hours.
+
+    Returns
+    -------
+    DutyLife
+
+    Raises
+    ------
+    SceneError
+        No points, shares that do not sum to one, shares beside hours, or numbers below zero.
+
+    Examples
+    --------
+    A tenth of the time under a load that is lived through in 1e7 turns, and the rest in 1e9:
+
+    >>> table = [DutyPoint(1e7, 100.0, share=0.1), DutyPoint(1e9, 100.0, share=0.9)]
+    >>> found = duty_life(table)
+    >>> round(found.revolutions / 1e6, 2), found.worst, round(found.damage[0], 3)
+    (91.74, 0, 0.917)
+    """
+    shares = _shares(points)
+    rates = [share * point.turns / point.life for share, point in zip(shares, points)]
+    total, turns = sum(rates), sum(share * point.turns for share, point in zip(shares, points))
+    worst = max(range(len(points)), key=lambda k: rates[k])
+    if total == 0:
+        return DutyLife(math.inf, math.inf, (0.0,) * len(points), worst)
+    damage = tuple(rate / total for rate in rates)
+    return DutyLife(1 / total, turns / total, damage, worst)
+
+
+def _shares(points: Sequence[DutyPoint]) -> list[float]:
+    """Shares of the time, exactly one in sum."""
+    if not points:
+        raise SceneError("a duty table needs at least one point")
+    for k, point in enumerate(points):
+        if not point.life > 0:
+            raise SceneError("a life must be greater than zero", path=(k, "life"))
+    given = [point.share for point in points if point.share is not None]
+    hours = [point.hours for point in points if point.hours is not None]
+    if given and hours or len(given) + len(hours) != len(points):
+        raise SceneError(
+            "give every point of a duty table its share of the time, or every point its hours"
+        )
+    parts = given or hours
+    for k, part in enumerate(parts):
+        if not 0 <= part < math.inf:
+            key = "share" if given else "hours"
+            raise SceneError("must not be negative, and finite", path=(k, key), value=f"{part:g}")
+    total = sum(parts)
+    if given and abs(total - 1) > TYPED:
+        raise SceneError(
+            f"the shares of a duty table sum to {total:.6g}; they must sum to one (write hours for "
+            "times that do not)"
+        )
+    if total == 0:
+        raise SceneError("the hours of a duty table sum to zero; at least one point must last")
+    return [part / total for part in parts]

@@ -1,0 +1,241 @@
+"""Basic reference rating life by ISO/TS 16281:2008: fatigue of a row from the loads of its elements.
+
+A raceway whose every element presses with its capacity Q_c lives one million revolutions.  The
+capacities of the inner and the outer raceway follow from the basic dynamic load rating C of the row
+(one that nothing but a radial load presses, half of it loaded):
+
+    balls     Q_ci = C / (0.407 Z cos(a)) (1 + v^(10/3))^(3/10),
+              Q_ce = C / (0.389 Z cos(a)) (1 + v^(-10/3))^(3/10),
+              v = 1.044 ((1 - g) / (1 + g))^1.72 (r_i / r_e (2 r_e - Dw) / (2 r_i - Dw))^0.41
+    rollers   Q_ci = C / (0.83 0.378 Z cos(a)) (1 + v^(9/2))^(2/9),
+              Q_ce = C / (0.83 0.364 Z cos(a)) (1 + v^(-9/2))^(2/9),
+              v = 1.038 ((1 - g) / (1 + g))^(143/108)
+
+with g = Dw cos(a) / Dpw.  The four constants are Stribeck's integrals of half a loaded row.  A slice
+(lamina) of a roller has ``Q_c / n^(7/9)``.
+
+The ring that turns against the load feels all elements in turn, ``Q = (mean Q_j^p)^(1/p)``; the one
+that stands is ruled by its worst loaded places, ``Q = (mean Q_j^s)^(1/s)``: p, s = 3, 10/3 for points
+and 4, 9/2 for lines.  Then, over both rings and all slices and rows,
+
+    L_10r = (sum of (Q / Q_c)^s)^(-p / s)      million revolutions.
+
+Rollers press harder at their ends than their slices do: each slice is raised by
+``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, k = 1 .. n.
+
+Of ISO/TS 16281:2008 these are equations (19), (20), (25) to (29) for balls and (47), (48), (58) to
+(65) for rollers.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from solidgear.bearings.geometry import Inside
+from solidgear.bearings.row import Contacts
+
+Ring = Literal["inner", "outer"]
+
+
+class Fatigue(NamedTuple):
+    """Laws of fatigue of a kind of contact.
+
+    Attributes
+    ----------
+    turning, standing : float
+        Powers p and s of the mean load on a ring.
+    slices : float
+        Power of the number of slices in the capacity of one.
+    inner, outer : float
+        Integrals that turn the rating of half a loaded row into the capacity of an element.
+    edge : float
+        What uneven loads along an element have already taken off the rating.
+    """
+
+    turning: float
+    standing: float
+    slices: float
+    inner: float
+    outer: float
+    edge: float
+
+
+POINT = Fatigue(3.0, 10 / 3, 0.0, 0.407, 0.389, 1.0)
+LINE = Fatigue(4.0, 9 / 2, 7 / 9, 0.378, 0.364, 0.83)
+
+
+class Raceways(NamedTuple):
+    """Load of an element for which a raceway lives one million revolutions.
+
+    Attributes
+    ----------
+    inner, outer : float
+        Q_ci and Q_ce, N.
+    law : Fatigue
+    rating : float
+        Of the row, N.
+    """
+
+    inner: float
+    outer: float
+    law: Fatigue
+    rating: float
+
+
+def raceways(inside: Inside, rating: float) -> Raceways:
+    """Capacities of both raceways of a row.
+
+    Parameters
+    ----------
+    inside : Inside
+    rating : float
+        Basic dynamic radial load rating of this row alone, N.
+
+    Returns
+    -------
+    Raceways
+
+    Examples
+    --------
+    >>> found = raceways(Inside(7, 11.5e-3, 0.0, 43.5e-3, 0.0, (0.52, 0.53)), 23.4e3)
+    >>> round(found.inner), round(found.outer)
+    (8423, 18289)
+    """
+    g = inside.gamma
+    if inside.length:
+        law, ratio = LINE, 1.038 * ((1 - g) / (1 + g)) ** (143 / 108)
+    else:
+        inner, outer = inside.conformity
+        grooves = (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
+        law, ratio = POINT, 1.044 * ((1 - g) / (1 + g)) ** 1.72 * grooves
+    each = rating / law.edge / (inside.elements * math.cos(inside.angle))
+    s = law.standing
+    return Raceways(
+        each / law.inner * (1 + ratio**s) ** (1 / s),
+        each / law.outer * (1 + ratio**-s) ** (1 / s),
+        law,
+        rating,
+    )
+
+
+@functools.cache
+def edge_stress(slices: int) -> np.ndarray:
+    """Factors (slices,) by which the ends of a roller press harder than its slices.
+
+    Examples
+    --------
+    >>> edge_stress(30)[[0, 1, 14]].round(3)
+    array([2.328, 1.127, 1.003])
+    >>> edge_stress(1)  # a ball
+    array([1.])
+    """
+    if slices == 1:
+        return np.ones(1)
+    place = np.abs(2 * np.arange(slices) - slices + 1) / (2 * slices - 2)
+    # the middle one of an odd number is not raised
+    return 1 - 0.01 / np.log(1.985 * np.maximum(place, 1e-300))
+
+
+def reference_life(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> float:
+    """Basic reference rating life of rows of one make that turn together, in revolutions.
+
+    Parameters
+    ----------
+    rows : sequence of Contacts
+        Loads of their elements at one motion.
+    capacity : Raceways
+        Of each row.
+    turning : {'inner', 'outer'}
+        The ring that turns against the load.
+
+    Returns
+    -------
+    float
+        For 90 % reliability; infinite where nothing is loaded.
+
+    Examples
+    --------
+    Seven balls under 1 kN, 13163e6 revolutions by a commercial program:
+
+    >>> from solidgear.bearings.ball import BallRow
+    >>> from solidgear.bearings.rolling import RollingBearing
+    >>> bearing = RollingBearing((BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3),))
+    >>> rows = bearing.contacts(bearing.motion([1000.0, 0, 0, 0, 0, 0]))
+    >>> inside = Inside(7, 11.5e-3, 0.0, 43.5e-3, 0.0, (0.52, 0.53))
+    >>> round(reference_life(rows, raceways(inside, 23.4e3)) / 1e6)
+    13163
+    """
+    return damage(rows, capacity, turning).life
+
+
+@dataclass(frozen=True)
+class Damage:
+    """Damage of the rows of a bearing in a million revolutions, slice by slice.
+
+    Attributes
+    ----------
+    each : (rows, slices) ndarray
+        Sum of ``(Q / Q_c)^s`` over both rings.
+    law : Fatigue
+    rating : float
+        Basic dynamic radial load rating of a row, N.
+    """
+
+    each: np.ndarray
+    law: Fatigue
+    rating: float
+
+    @property
+    def life(self) -> float:
+        """Reference life, revolutions; infinite where nothing is loaded."""
+        return self.modified(np.ones_like(self.each)) if self.each.any() else math.inf
+
+    def modified(self, factor: np.ndarray) -> float:
+        """Life in revolutions whose slices live by factors (rows, slices) longer."""
+        p, s = self.law.turning, self.law.standing
+        return 1e6 * float(np.sum(self.each * factor ** (-s / p))) ** (-p / s)
+
+    @property
+    def load(self) -> float:
+        """Radial load, N, under which half of every row, loaded evenly, would live as long."""
+        rows = len(self.each)
+        return rows * float(self._felt(self.each.sum() / rows))
+
+    @property
+    def slice_loads(self) -> np.ndarray:
+        """(rows, slices) the same of a row whose slices were all loaded as this one, N."""
+        return self._felt(self.each * self.each.shape[-1])
+
+    def _felt(self, whole: np.ndarray) -> np.ndarray:
+        """Load of a row that is damaged so as a whole."""
+        return self.rating / self.law.edge * whole ** (1 / self.law.standing)
+
+
+def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> Damage:
+    """Damage of rows that turn together.
+
+    Parameters
+    ----------
+    rows, capacity, turning
+        As of :func:`reference_life`.
+
+    Returns
+    -------
+    Damage
+    """
+    law = capacity.law
+    inner = np.array([row.on_inner for row in rows]) / capacity.inner
+    outer = np.array([row.on_outer for row in rows]) / capacity.outer
+    slices = inner.shape[-1]
+    each = np.zeros((len(rows), slices))
+    for ring, share in (("inner", inner), ("outer", outer)):
+        power = law.turning if ring == turning else law.standing
+        felt = share * edge_stress(slices) * slices**law.slices
+        each += np.mean(felt**power, axis=1) ** (law.standing / power)
+    return Damage(each, law, capacity.rating)
