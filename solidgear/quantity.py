@@ -10,10 +10,13 @@ is the name of a mode, and means its natural frequency.
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 from solidgear.frames import DOF_NAMES
+
+if TYPE_CHECKING:
+    import numpy as np
 
 AT = "@"
 COMPLIANCE, STIFFNESS, FREQUENCY = "compliance", "stiffness", "frequency"
@@ -97,6 +100,37 @@ class Quantity(Name):
         """Row and column of an entry of a matrix."""
         assert self.row is not None and self.column is not None, f"{self} is no entry of a matrix"
         return self.row, self.column
+
+    @overload
+    def of(self, matrix: np.ndarray) -> float: ...
+
+    @overload
+    def of(self, matrix: Sequence[Sequence[float | None]]) -> float | None: ...
+
+    def of(self, matrix: Any) -> float | None:
+        """Its value in a 6x6 of its kind; None where the matrix has none there.
+
+        Parameters
+        ----------
+        matrix : (6, 6) ndarray or list of lists
+
+        Examples
+        --------
+        >>> Quantity("C_z,thx").of([[10 * i + j for j in range(6)] for i in range(6)])
+        23
+        """
+        row, column = self.place
+        return matrix[row][column]
+
+    @property
+    def loads(self) -> tuple[tuple[float, ...], ...]:
+        """Loads that its energy is of, on the point of the motion and on that of the load."""
+        return tuple(tuple(float(k == own) for k in range(6)) for own in self.place)
+
+    @property
+    def components(self) -> set[int]:
+        """Components of motion that it speaks of."""
+        return {k for load in self.loads for k, value in enumerate(load) if value}
 
     @property
     def unit(self) -> str:

@@ -291,7 +291,7 @@ def test_taking_a_slightly_bent_element_for_straight_would_be_seen(monkeypatch):
 def test_straightness_is_measured_against_the_least_extent():
     # A flat element: a bend that is small beside its length and not beside its height changes its
     # stiffness.
-    element = solid_mesh.ELEMENTS["tet10"]()
+    element = solid_mesh.basis_of("tet10")
     flat = (np.diag([1.0, 1.0, 1e-2]) @ element.doflocs.T)[:, :, None]
     assert straight(element, flat)[0].all()
     flat[2, 4] += 30 * STRAIGHT * 1e-2

@@ -2,9 +2,19 @@
 solved, and nothing that fills the screen.
 """
 
+from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Annotated
 
 import pytest
+import typer
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from solidgear.cli import app
+from solidgear.cli.app import command
+from solidgear.cli.shared import Run
+from solidgear.cli.train import Reduced
 
 SCENE = Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml"
 
@@ -81,3 +91,37 @@ def test_refused_in_a_line_that_fits_the_screen(run, tmp_path, monkeypatch, kind
     assert code == 1 and out == "" and err.startswith("solidgear: ") and err.count("\n") == 1
     assert says in err and len(err) < 1100 and err[:-1].isprintable()
     assert list(tmp_path.iterdir()) == []
+
+
+#: commands that tell no numbers of their own
+SILENT = {"new", "scenes", "options", "render"}
+TRAINS = {"system-modes", "response", "receptance", "judge-system"}
+
+
+def test_what_commands_share_all_of_them_take():
+    commands = get_command(app).commands
+    options = {
+        name: {parameter.name for parameter in command.params} for name, command in commands.items()
+    }
+    for group, without in ((Run, SILENT), (Reduced, set(commands) - TRAINS)):
+        shared = {field.name for field in fields(group)}
+        assert shared and all(shared <= options[name] for name in set(commands) - without)
+
+
+def test_a_field_more_is_an_option_more():
+    @dataclass(frozen=True)
+    class More(Run):
+        colour: Annotated[str, typer.Option("--colour")] = "red"
+
+    told = []
+
+    def paint(scene: str, *, run: More) -> None:
+        told.append((scene, run))
+
+    alone = typer.Typer()
+    # registered with the application of the test alone
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(command.__globals__, "app", alone)
+        command(paint)
+    assert CliRunner().invoke(alone, ["one", "--colour", "blue", "--json"]).exit_code == 0
+    assert told == [("one", More(as_json=True, colour="blue"))]

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
-GROUND = {"errors", "factoring", "frames", "display", "quantity", "springs"}
+GROUND = {"errors", "elements", "factoring", "frames", "display", "quantity", "springs"}
 
 #: room: what it may import, from the ground up
 MAY_IMPORT = {
     "errors": set(),
     "frames": {"errors"},
     "factoring": set(),
+    "elements": set(),
     "springs": {"errors"},
     "display": set(),
     "quantity": {"frames"},

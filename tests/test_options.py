@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.cli.app import build_body, options
+from solidgear.cli.shared import build_body, options
+from solidgear.elements import ELEMENTS
 from solidgear.ladder.registry import LADDER
+from solidgear.ladder.solid import _CHARTED
 from solidgear.models.beam.body import beam
 from solidgear.models.harmonic.body import harmonic
 from solidgear.models.options import FACTORING_OPTIONS, THINNEST_LAYER
 from solidgear.models.solid.body import solid
-from solidgear.models.solid.mesh import ELEMENTS
+from solidgear.studies.guards.elements import LINEAR, LOCKING
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
 BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": solid}
@@ -44,7 +46,14 @@ def test_every_limit_has_a_reason():
                 for limit in (option.least, option.most, option.above, option.below)
             )
             assert option.meaning and (option.why or not limited or option.kind == "flag"), name
-    assert set(LADDER["solid"].options["element"].choices) == set(ELEMENTS)
+
+
+def test_what_is_told_of_one_element_is_told_of_all():
+    # an element without a row is silently not charted, or never said to lock
+    assert set(ELEMENTS) == set(_CHARTED) == set(LOCKING) - {"Q1"}
+    first = {name for name, element in ELEMENTS.items() if element.order == 1}
+    assert set(LINEAR) == first
+    assert all(ELEMENTS[better].order == 2 for better, _ in LINEAR.values())
 
 
 REFUSED = {

@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.elements import ELEMENTS
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing import part
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.models.solid.own_mesh import solid_body
-from solidgear.report.export import CELLS, node_order
+from solidgear.report.export import node_order
 from solidgear.scene import Keyway
 from solidgear.studies import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
@@ -212,11 +213,11 @@ def test_rungs_say_whether_they_hold_a_part(shipped):
 def written(body, path, digits=9):
     """The mesh of a body in a file, in mm."""
     volume = body.geometry.volume()
-    kind, vtk_name = CELLS[body.geometry.name]
-    order = node_order(volume.local, vtk_name)
+    element = ELEMENTS[body.geometry.name]
+    order = node_order(volume.local, element.vtk)
     points = np.round(1e3 * volume.nodes.T, digits) + 0.0
     form = {".msh": {"file_format": "gmsh", "binary": False}}.get(path.suffix, {})
-    meshio.write(path, meshio.Mesh(points, [(kind, volume.cells[order].T)]), **form)
+    meshio.write(path, meshio.Mesh(points, [(element.cell, volume.cells[order].T)]), **form)
 
 
 # a Nastran field holds ten digits

@@ -4,6 +4,7 @@ import copy
 import json
 import pickle
 
+import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
@@ -33,6 +34,16 @@ def test_an_entry_is_named_by_its_row_and_column():
         assert letters in (f"{row},{column}", row + column, row)
         assert (row == column) is not name.is_coupling
     assert {q.unit for q in entries} == {unit for units in BLOCK_UNITS.values() for unit in units}
+
+
+def test_an_entry_is_the_work_of_its_loads():
+    # bars share the energy of the loads out over cells, whoever shows a quantity reads the entry
+    matrix = np.arange(36.0).reshape(6, 6)
+    for name in (q for q in (*QUANTITIES, *ACROSS) if not q.is_frequency):
+        motion, load = map(np.array, name.loads)
+        assert name.of(matrix) == matrix[name.place] == motion @ matrix @ load
+        assert name.of(matrix.tolist()) == matrix[name.place]
+        assert name.components == set(name.place)
 
 
 @pytest.mark.parametrize("text", ["C_zq", "K_", "bending 1", "pair 1", "c_zz", ""])

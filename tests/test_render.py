@@ -19,8 +19,10 @@ from skfem.refdom import RefHex, RefTet
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.meshing.closed_form import volume_of
-from solidgear.report import render
+from solidgear.report import render, write
 from solidgear.report.export import write_vtu
+from solidgear.report.folder import OWN, clear
+from solidgear.report.outputs import OUTPUTS, Output
 from solidgear.report.render import PACKAGES, Drawing, RenderJob, render_modes
 from solidgear.solve.modes import Mode
 
@@ -325,3 +327,26 @@ def test_other_bodies_are_written_as_surfaces(pinion, solved, tmp_path, fidelity
             back.point_data[f"bending 1{letter} ({bending.frequency_hz:.2f} Hz)"], s.displacement
         )
     assert len(back.point_data) == sum(len(m.vectors) for m in modes.modes)
+
+
+def test_a_file_for_other_programs_is_written_listed_and_cleared(tmp_path, monkeypatch):
+    def six(solution, path):
+        np.savetxt(path, solution.condensed.stiffness)
+
+    def refuse(solution, path):
+        raise ValueError("no licence")
+
+    own = (Output("modes as text", "modes", ".vtu", six), Output("deck", "deck", ".inp", refuse))
+    monkeypatch.setattr(write, "OUTPUTS", own)
+    scene = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    found = sg.compare(scene, models=("euler",))
+    found.write_report(tmp_path, renders=False)
+    # one that fails costs a sentence and no other file
+    assert np.loadtxt(tmp_path / "modes_euler.vtu").shape == (6, 6)
+    assert found.record.left_out == ["deck of euler left out: no licence"]
+    assert found.record.files == ["report.html", "modes_euler.vtu"]
+    clear(tmp_path)
+    assert not (tmp_path / "modes_euler.vtu").exists()
+    # a damaged list can name nothing that no output is called
+    assert all(OWN.fullmatch(output.name("solid")) for output in OUTPUTS)
+    assert not OWN.fullmatch("modes_solid.txt") and not OWN.fullmatch("../modes_solid.vtu")

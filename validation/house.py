@@ -24,9 +24,11 @@ ADDITIONS = {
     "repeated feature": r"spline",
     "bearing kind": r"needle",
     "element": r"hex27",
-    "output file": r"\.vtu\b|unv",
+    "output file": r"write_vtu",
+    "mesh format": r"\buniversal\b",
     "model": r"\bcorrected\b",
     "option of a builder": r"\bedge_layers\b",
+    "option of commands": r'"--json"',
     "quantity": r"\bk_theta\b|C_thy",
 }
 #: first words of a docstring that is no sentence about a thing

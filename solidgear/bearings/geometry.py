@@ -39,24 +39,25 @@ class Shares(NamedTuple):
         Effective roller length over width.
     filling : Share
         Elements over those that would touch all around.
+    angle : float
+        Contact angle where nothing tells it, rad.  It has no spread here: a steeper one is stiffer
+        along y and softer across it.
     """
 
     diameter: Share
     length: Share
     filling: Share
+    angle: float = 0.0
 
 
 NONE = Share(0.0, 0.0)
 SHARES = {
     "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06)),
-    "angular_contact": Shares(Share(0.30, 0.02), NONE, Share(0.88, 0.05)),
+    "angular_contact": Shares(Share(0.30, 0.02), NONE, Share(0.88, 0.05), math.radians(40)),
     "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06)),
-    "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04)),
+    "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), math.radians(15)),
     "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10)),
 }
-#: rad; of a contact angle that nothing tells.  It has no spread here: a steeper one is stiffer
-#: along y and softer across it
-ANGLE = {"angular_contact": math.radians(40), "tapered": math.radians(15)}
 #: groove radius over ball diameter: ISO 281's own, and the range in use
 CONFORMITY = {"middle": RATED_CONFORMITY, "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}
 #: of a filling slot-free deep groove the balls span this much of the circle, rad
@@ -148,12 +149,12 @@ def _at(share: Share, end: str, sign: int = 1) -> float:
 
 
 def _angle(data: Catalogue) -> float:
-    if data.kind not in ANGLE:
+    if not data.angled:
         return 0.0
     if data.contact_angle is not None:
         return data.contact_angle
     known = usual_angle(data.designation)
-    return ANGLE[data.kind] if known is None else known
+    return SHARES[data.kind].angle if known is None else known
 
 
 def _start(data: Catalogue, end: str) -> Inside:

@@ -59,7 +59,9 @@ def azimuths(count: int, first: float) -> np.ndarray:
     return first + 2 * np.pi * np.arange(count) / count
 
 
-def felt(radius: np.ndarray, height: np.ndarray, azimuth: np.ndarray) -> np.ndarray:
+def felt(
+    radius: np.ndarray | float, height: np.ndarray | float, azimuth: np.ndarray | float
+) -> np.ndarray:
     """Radial and axial motion of points of the inner ring under unit motions of it.
 
     Parameters

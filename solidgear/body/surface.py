@@ -50,7 +50,7 @@ class Volume:
     Attributes
     ----------
     element : str
-        ``tet4``, ``tet10``, ``hex8``, ``hex20`` or ``hex27``.
+        One of :data:`solidgear.elements.ELEMENTS`.
     nodes : (3, n) ndarray
         m.
     cells : (nodes of a cell, m) ndarray of int

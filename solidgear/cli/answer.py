@@ -10,17 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import (
-    NOT_REACHED,
-    UNITS,
-    JsonFlag,
-    Progress,
-    SceneFile,
-    UnitsOption,
-    command,
-    say,
-    share,
-)
+from solidgear.cli.app import NOT_REACHED, command, say
+from solidgear.cli.shared import SceneFile, Shown, share
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
@@ -35,6 +26,7 @@ if TYPE_CHECKING:
 @command
 def answer(
     scene: SceneFile,
+    *,
     tol: Annotated[
         float | None,
         typer.Option(
@@ -60,8 +52,7 @@ def answer(
         Path | None,
         typer.Option("--picture", help="The same as a picture: a file that ends in .png or .svg."),
     ] = None,
-    as_json: JsonFlag = False,
-    units: UnitsOption = UNITS,
+    run: Shown,
 ) -> None:
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
     from solidgear.cli.reading import load
@@ -74,7 +65,7 @@ def answer(
     loaded = load(scene)
     places: Whereabouts | None = None
     unplaced = ""
-    with Progress(quiet=as_json) as progress:
+    with run.progress() as progress:
         found = solve(loaded, tol, ask, progress=progress)
         if where or picture is not None:
             progress("where the error sits")
@@ -84,13 +75,13 @@ def answer(
                 unplaced = str(error)
     if places is not None and picture is not None:
         _draw(places, picture)
-    if as_json:
+    if run.as_json:
         out = found.as_dict()
         if where or picture is not None:
             out["where"] = {"error": unplaced} if places is None else _plain(places)
         print(json.dumps(out, allow_nan=False))
     else:
-        say(_values(found, units), _path(found))
+        say(_values(found, run.units), _path(found))
         say(*sentences(found), *_of_round_part(loaded, found))
         if places is not None:
             say(_where_table(places), _sentence(places))

@@ -1,30 +1,21 @@
-"""Parts that all commands share: the application, its argument types, progress and error handling."""
+"""Parts that all commands share: the application, what a command is, printing and progress."""
 
 from __future__ import annotations
 
 import functools
-import re
+import inspect
 import sys
-from collections.abc import Callable, Collection
-from enum import StrEnum
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ParamSpec, TypeVar
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from solidgear.errors import SolidgearError, show
-from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_command
-from solidgear.report.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.status import Status
 
-    from solidgear.body import Body
-    from solidgear.scene import Scene
-
-P = ParamSpec("P")
 R = TypeVar("R")
 
 app = typer.Typer(
@@ -61,148 +52,8 @@ def everywhere(
     Progress.silent = quiet
 
 
-#: the model that commands solve with unless told otherwise
-FIDELITY = "harmonic"
-#: the word for the cheapest mesh that keeps a tolerance, instead of a model
-AUTO = "auto"
-#: units of tables and pages unless told otherwise
-UNITS = ENGINEERING.name
 #: exit code where the tolerance is not reached: the numbers are there, with their bars
 NOT_REACHED = 3
-
-
-SceneFile = Annotated[
-    Path,
-    typer.Argument(
-        help="Scene file (TOML), such as geometry/pinion_overhung.toml; - for standard input."
-    ),
-]
-if TYPE_CHECKING:
-    Choice = str
-    AutoChoice = str
-    UnitsChoice = str
-else:
-    UnitsChoice = StrEnum("UnitsChoice", [(name, name) for name in SYSTEMS])
-    Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
-    AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
-#: spellings of the option that names a model
-BY_MODEL = ("--model", "--fidelity", "-f")
-FidelityOption = Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")]
-AutoFidelityOption = Annotated[
-    AutoChoice,
-    typer.Option(
-        *BY_MODEL,
-        help="Model to solve with; auto: the cheapest whose bars are within --tol.",
-    ),
-]
-
-
-def share(text: str) -> float:
-    """A relative error from the command line."""
-    try:
-        return float(text)
-    except ValueError:
-        percent = text.strip().removesuffix("%").strip()
-        meant = f"{float(percent) / 100:g}" if _is_number(percent) else "0.01"
-        raise typer.BadParameter(
-            f'"{text}" is no plain number; a tolerance is a share: write {meant}'
-        ) from None
-
-
-def _is_number(text: str) -> bool:
-    return re.fullmatch(r"[0-9]*[.]?[0-9]+", text) is not None
-
-
-Tolerance = Annotated[
-    float | None,
-    typer.Option(
-        "--tol",
-        parser=share,
-        metavar="FLOAT",
-        help="Of -f auto: relative error allowed; else the scene's own.",
-    ),
-]
-JsonFlag = Annotated[
-    bool, typer.Option("--json", help="Print JSON for machines instead of tables; always SI.")
-]
-UnitsOption = Annotated[
-    UnitsChoice,
-    typer.Option(
-        "--units",
-        help="Of tables and pages: "
-        + "; ".join(f"{units.name}: {units.about}" for units in SYSTEMS.values())
-        + ". JSON stays SI always.",
-    ),
-]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10; solidgear options lists them.",
-    ),
-]
-Engine = Annotated[
-    str | None,
-    typer.Option(
-        "--engine",
-        help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) "
-        "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
-    ),
-]
-
-
-def with_engine(pairs: list[str] | None, engine: str | None) -> list[str] | None:
-    """``--set`` options with that of ``--engine``."""
-    return pairs if engine is None else [*(pairs or []), f"engine={engine}"]
-
-
-def options(pairs: list[str] | None) -> dict:
-    """Builder options from ``key=value`` texts; numbers as numbers, a list with commas as a tuple."""
-    out: dict = {}
-    for pair in pairs or []:
-        key, sep, text = pair.partition("=")
-        if not sep or not key.isidentifier():
-            raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
-        if key in out:
-            raise SolidgearError(
-                f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3"
-            )
-        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
-    return out
-
-
-def options_by_name(
-    pairs: list[str] | None, names: Collection[str], what: str, example: str
-) -> dict[str, dict]:
-    """Builder options by the names of models or of shafts, from ``NAME.key=value`` texts."""
-    out: dict[str, list[str]] = {}
-    for pair in pairs or []:
-        name, dot, rest = pair.partition(".")
-        if not dot or name not in names:
-            raise SolidgearError(
-                f"--set {pair}: write {what.upper()}.key=value, such as --set {example}; "
-                f"{what}s: {', '.join(names)}"
-            )
-        out.setdefault(name, []).append(rest)
-    return {name: options(own) for name, own in out.items()}
-
-
-def _value(text: str):
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return {"true": True, "false": False}.get(text, text)
-
-
-def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
-    """Body of a scene by one model, with ``--set`` options."""
-    from solidgear.ladder import build
-
-    # Checked here too: an option called scene or fidelity would be taken for an argument of
-    # `build`.
-    return build(scene, fidelity, **LADDER[fidelity].checked(options(pairs)))
 
 
 def say(*told: RenderableType, soft_wrap: bool = True) -> None:
@@ -257,16 +108,46 @@ class Progress:
             print(line, file=sys.stderr, flush=True)
 
 
-def command(function: Callable[P, R]) -> Callable[P, R]:
-    """Register a command; typer would swallow Ctrl-C without a word."""
+class Group:
+    """Options that several commands take: a frozen dataclass whose fields are annotated as parameters
+    of a command are.
+    """
+
+
+def command(function: Callable[..., R]) -> Callable[..., R]:
+    """Register a command, the fields of its groups among its options; typer would swallow Ctrl-C
+    without a word.
+    """
+    parameters = inspect.signature(function, eval_str=True).parameters
+    groups = {name: p.annotation for name, p in parameters.items() if _is_group(p.annotation)}
 
     @functools.wraps(function)
-    def quiet(*args: P.args, **kwargs: P.kwargs) -> R:
+    def quiet(**given: Any) -> R:
         try:
             with one_command():
-                return function(*args, **kwargs)
+                for name, group in groups.items():
+                    given[name] = group(**{key.name: given.pop(key.name) for key in _fields(group)})
+                return function(**given)
         except KeyboardInterrupt:
             print("solidgear: interrupted", file=sys.stderr)
             raise typer.Exit(130) from None
 
+    flat = [
+        own
+        for p in parameters.values()
+        for own in (_fields(groups[p.name]) if p.name in groups else [p])
+    ]
+    quiet.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
+    quiet.__annotations__ = {p.name: p.annotation for p in flat}
     return app.command(name=function.__name__.replace("_", "-"))(quiet)
+
+
+def _is_group(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Group)
+
+
+def _fields(group: type[Group]) -> Iterator[inspect.Parameter]:
+    """The options of a group as parameters of a command."""
+    hints = get_type_hints(group, include_extras=True)
+    for name, own in inspect.signature(group).parameters.items():
+        yield own.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)

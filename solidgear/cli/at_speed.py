@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.cli.app import say
+from solidgear.cli.app import Group, say
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -17,38 +18,48 @@ if TYPE_CHECKING:
     from solidgear.studies.train.at_speed import AtSpeed
     from solidgear.studies.train.modes import TrainMode
 
-SpeedOption = Annotated[
-    str | None,
-    typer.Option(
-        "--speed",
-        help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, and '
-        "those near natural frequencies. By default that of the operating point.",
-    ),
-]
-OfOption = Annotated[str, typer.Option("--of", help="Whose speed it is: pinion or gear.")]
-Measured = Annotated[
-    Path | None,
-    typer.Option(
-        "--measured",
-        help="Spectrum at this speed (CSV: frequency in Hz, amplitude), laid over the computed "
-        "mesh force; every peak is told with its order.",
-    ),
-]
-Fit = Annotated[
-    float | None,
-    typer.Option(
-        "--fit-speed",
-        help="Fit the speed within this share, such as 0.03, to the mesh order in the spectrum.",
-    ),
-]
-Within = Annotated[
-    float | None,
-    typer.Option(
-        "--within", help="Share of a natural frequency within which an order is told; 0.05."
-    ),
-]
 #: rows of tables on a terminal
 MOST = 30
+
+
+@dataclass(frozen=True)
+class Speed(Group):
+    """Options of `response` that speak of one speed."""
+
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed",
+            help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, and '
+            "those near natural frequencies. By default that of the operating point.",
+        ),
+    ] = None
+    of: Annotated[str, typer.Option("--of", help="Whose speed it is: pinion or gear.")] = "pinion"
+    measured: Annotated[
+        Path | None,
+        typer.Option(
+            "--measured",
+            help="Spectrum at this speed (CSV: frequency in Hz, amplitude), laid over the computed "
+            "mesh force; every peak is told with its order.",
+        ),
+    ] = None
+    fit_speed: Annotated[
+        float | None,
+        typer.Option(
+            "--fit-speed",
+            help="Fit the speed within this share, such as 0.03, to the mesh order in the spectrum.",
+        ),
+    ] = None
+    within: Annotated[
+        float | None,
+        typer.Option(
+            "--within", help="Share of a natural frequency within which an order is told; 0.05."
+        ),
+    ] = None
+
+    def asked(self, train: Train) -> Asked:
+        """The same of a train, checked."""
+        return Asked(train, self.speed, self.of, self.measured, self.fit_speed, self.within)
 
 
 class Asked:

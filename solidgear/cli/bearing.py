@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import JsonFlag, SceneFile, command, say
+from solidgear.cli.app import command, say
+from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ USUAL_LOAD, USUAL_PRELOAD = "0.2:1.2", "0.7:1.3"
 @command
 def bearing(
     scene: SceneFile,
+    *,
     load: Annotated[
         str | None,
         typer.Option(
@@ -55,7 +57,7 @@ def bearing(
     preload_range: Annotated[
         str, typer.Option(help="Of --range: factors of the preload.")
     ] = USUAL_PRELOAD,
-    as_json: JsonFlag = False,
+    run: Run,
 ) -> None:
     """Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of a
     train with an [operation] their lives over its points.
@@ -70,7 +72,7 @@ def bearing(
 
     if describes_train(parse(str(scene))):
         of_scenes = {"--load": load, "--speed": speed, "--out": out, "--range": ranged}
-        show_train(scene, name, of_scenes, as_json)
+        show_train(scene, name, of_scenes, run.as_json)
         return
     if out is not None:
         from solidgear.report.plot import check_ending
@@ -89,7 +91,7 @@ def bearing(
         found = bearing_range(loaded, ranges) if ranged else None
         if out is not None:
             _draw(out, loaded, body, facts)
-    if as_json:
+    if run.as_json:
         bearings = [_plain(fact) | {"life": plain_life(lives[fact.name])} for fact in facts]
         record: dict[str, Any] = {"scene": loaded.name, "bearings": bearings}
         if found is not None:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.cli.app import JsonFlag, Progress, SceneFile, command, say
+from solidgear.cli.app import Progress, command, say
+from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 @command
 def chart(
     scene: SceneFile,
+    *,
     out: Annotated[
         Path,
         typer.Option(
@@ -43,7 +45,7 @@ def chart(
             help="Seconds; levels that would not fit are left out and named. 240, or 3600 with --full.",
         ),
     ] = None,
-    as_json: JsonFlag = False,
+    run: Run,
 ) -> None:
     """Chart error against cost: every model and element, uniform and graded, with the Pareto front."""
     from solidgear.cli.reading import load
@@ -51,9 +53,9 @@ def chart(
     from solidgear.report.race_tables import front_table
 
     found, reported = run_chart(
-        load(scene), out, full=full, runs=runs, budget=budget, quiet=as_json
+        load(scene), out, full=full, runs=runs, budget=budget, quiet=run.as_json
     )
-    if as_json:
+    if run.as_json:
         record = {
             "scene": found.scene["name"],
             "complete": found.complete,

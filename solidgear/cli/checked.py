@@ -53,14 +53,13 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """
-    from solidgear.cli.train import refuse_given, workshop
+    from solidgear.cli.train import Reduced, refuse_given
     from solidgear.scene.train import SIDES
     from solidgear.studies.train.check import check_train as run
-    from solidgear.studies.train.models import KEPT
 
     instead = "run check on the file of the shaft for other models and meshes"
     refuse_given(given, train, instead)
-    shop = workshop(train, "rubin", KEPT, None)
+    shop = Reduced().workshop(train)
     found = run(shop)
     if as_json:
         print(json.dumps(found, default=float))

@@ -9,16 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import (
-    BY_MODEL,
-    UNITS,
-    JsonFlag,
-    Progress,
-    UnitsOption,
-    caution,
-    command,
-    say,
-)
+from solidgear.cli.app import Progress, caution, command, say
+from solidgear.cli.shared import BY_MODEL, Shown
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -32,6 +24,7 @@ def deflect(
         Path,
         typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml."),
     ],
+    *,
     torque: Annotated[
         str | None,
         typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
@@ -63,24 +56,23 @@ def deflect(
         Path | None,
         typer.Option("--out", "-o", help="Folder for a page, deflection lines and their chart."),
     ] = None,
-    units: UnitsOption = UNITS,
-    as_json: JsonFlag = False,
+    run: Shown,
 ) -> None:
     """Deflection of shafts under torque: displacements, misalignment of the gears, bearing loads."""
     from solidgear.report.folder import held
     from solidgear.scene.toml_file import is_train
 
     of_train = {"--torque": torque, "--point": point, "--weight": weight}
-    with held(out) if out else nullcontext(), Progress(quiet=as_json) as progress:
+    with held(out) if out else nullcontext(), run.progress() as progress:
         if is_train(file):
             _refuse({"--load": load}, "a shaft", file, "a train takes --torque")
             how = _point(file, torque, of, point, weight)
-            told = _train(file, *how, fidelity, out, units, progress)
+            told = _train(file, *how, fidelity, out, run.units, progress)
         else:
             _refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
-            told = _shaft(file, load, fidelity, out, units, progress)
+            told = _shaft(file, load, fidelity, out, run.units, progress)
     data, lines = told
-    if as_json:
+    if run.as_json:
         print(json.dumps(data, allow_nan=False))
         return
     say(*lines, soft_wrap=False)

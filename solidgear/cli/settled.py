@@ -1,84 +1,21 @@
-"""Parts of commands that choose the mesh by themselves: ``-f auto``."""
+"""Words on a mesh that a command has chosen by itself: ``-f auto``."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import typer
 
 from solidgear.cli.answer import sentences
-from solidgear.cli.app import AUTO, FIDELITY, NOT_REACHED, Progress, build_body, options
-from solidgear.errors import SolidgearError, listed, show
+from solidgear.cli.app import NOT_REACHED
+from solidgear.errors import listed
 
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.judge.settle import Settled
     from solidgear.scene import Scene
     from solidgear.solve.modes import ModeSet
-
-
-def body_for(
-    scene: Scene,
-    fidelity: str,
-    pairs: list[str] | None,
-    tol: float | None,
-    ask: str,
-    points: Sequence[str] = (),
-) -> tuple[Body, Settled | None]:
-    """The body that a command solves with, and how it was chosen where it was.
-
-    Parameters
-    ----------
-    scene : Scene
-    fidelity : str
-        A model, or ``auto``.
-    pairs : list of str or None
-        ``--set`` options.
-    tol : float or None
-        ``--tol``.
-    ask : str
-    points : sequence of str
-        As for :func:`solidgear.judge.settle.settle`.
-    """
-    if fidelity != AUTO:
-        refuse_tolerance(fidelity, tol)
-        return build_body(scene, fidelity, pairs), None
-    settled = settled_for(scene, pairs, tol, ask, points)
-    return settled.body, settled
-
-
-def refuse_tolerance(fidelity: str, tol: float | None) -> None:
-    """A fixed model has no use for ``--tol``, and must not look as if it kept it."""
-    if tol is not None:
-        raise SolidgearError(
-            f"--tol {tol:g} needs -f auto; the mesh of -f {fidelity} is set by --set"
-        )
-
-
-def settled_for(
-    scene: Scene,
-    pairs: list[str] | None,
-    tol: float | None,
-    ask: str,
-    points: Sequence[str] = (),
-) -> Settled:
-    """Choice of ``-f auto``; parameters as for :func:`body_for`."""
-    from solidgear.judge.settle import settle
-
-    refuse_settings(pairs)
-    # A second or less for most scenes: lines are for those who watch.
-    with Progress(quiet=not sys.stderr.isatty()) as progress:
-        return settle(scene, tol, ask, points=points, progress=progress)
-
-
-def refuse_settings(pairs: list[str] | None) -> None:
-    """A mesh that is chosen cannot be set as well."""
-    if options(pairs):  # which says so where one is no key=value
-        raise SolidgearError(
-            f"--set {show((pairs or [''])[0], 40)} needs a fixed model: add -f {FIDELITY}"
-        )
 
 
 def heading(scene: Scene, body: Body, settled: Settled | None) -> str:

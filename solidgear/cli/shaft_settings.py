@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.cli.app import options_by_name
+from solidgear.cli.shared import options_by_name
 from solidgear.ladder.registry import LADDER
 
 ShaftSettings = Annotated[

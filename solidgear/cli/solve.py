@@ -9,44 +9,35 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import (
-    AUTO,
-    FIDELITY,
-    UNITS,
-    AutoFidelityOption,
-    Choice,
-    Engine,
-    FidelityOption,
-    JsonFlag,
-    Progress,
-    SceneFile,
-    Settings,
-    Tolerance,
-    UnitsOption,
-    build_body,
-    caution,
-    command,
-    options_by_name,
-    say,
-    with_engine,
-)
+from solidgear.cli.app import caution, command, say
 from solidgear.cli.settled import (
     bar_lines,
     bars_of_modes,
     beyond,
-    body_for,
     ended,
     heading,
     unjudged,
     without_bar,
 )
-from solidgear.errors import SolidgearError, show
+from solidgear.cli.shared import (
+    FIDELITY,
+    Choice,
+    Fixed,
+    Run,
+    SceneFile,
+    Shown,
+    Solved,
+    options_by_name,
+)
+from solidgear.elements import ELEMENTS
+from solidgear.errors import SolidgearError, listed, show
 from solidgear.ladder.registry import LADDER
 
 
 @command
 def compare(
     scene: SceneFile,
+    *,
     out: Annotated[
         Path,
         typer.Option(
@@ -57,13 +48,12 @@ def compare(
         str,
         typer.Option("--models", help=f"Comma-separated: {','.join(LADDER.names)}."),
     ] = ",".join(LADDER.names),
-    as_json: JsonFlag = False,
     renders: Annotated[
         bool,
         typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model."),
     ] = True,
     solid_element: Annotated[
-        str | None, typer.Option("--solid-element", help="hex20, hex27, hex8, tet10 or tet4.")
+        str | None, typer.Option("--solid-element", help=f"One of {listed(ELEMENTS)}.")
     ] = None,
     settings: Annotated[
         list[str] | None,
@@ -80,7 +70,7 @@ def compare(
             help="Also chart error against cost, as a section of the report (about four minutes more).",
         ),
     ] = False,
-    units: UnitsOption = UNITS,
+    run: Shown,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust; a train as well."""
     from solidgear.scene.toml_file import is_train
@@ -94,11 +84,11 @@ def compare(
             "--set": bool(settings),
             "--chart": chart,
         }
-        compare_train(scene, out, as_json, renders, units, given)
+        compare_train(scene, out, renders, run, given)
         return
     from solidgear.report.folder import held
     from solidgear.studies.comparison import check_models
-    from solidgear.studies.comparison import compare as run
+    from solidgear.studies.comparison import compare as compared
     from solidgear.studies.loading import load
 
     loaded = load(scene)
@@ -108,15 +98,15 @@ def compare(
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
     with held(out):
-        with Progress(quiet=as_json) as progress:
-            found = run(loaded, wanted, settings=chosen, progress=progress)
+        with run.progress() as progress:
+            found = compared(loaded, wanted, settings=chosen, progress=progress)
             drawn = renders and found.record.complete
-            found.write_report(out, renders=drawn, units=units, progress=progress)
+            found.write_report(out, renders=drawn, units=run.units, progress=progress)
         if chart and found.record.complete:
             from solidgear.cli.chart import run_chart
 
-            run_chart(loaded, out, quiet=as_json)
-    if as_json:
+            run_chart(loaded, out, quiet=run.as_json)
+    if run.as_json:
         print(json.dumps(found.results, allow_nan=False))
     else:
         from solidgear.report.terminal import closing_lines, final_table, verdict_text
@@ -136,8 +126,8 @@ MANY = 30
 @command
 def modes(
     scene: SceneFile,
-    fidelity: AutoFidelityOption = AUTO,
-    tol: Tolerance = None,
+    *,
+    model: Solved,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -148,9 +138,7 @@ def modes(
             "--count", help="Prove by the inertia of a second factor that no mode was missed."
         ),
     ] = False,
-    as_json: JsonFlag = False,
-    settings: Settings = None,
-    engine: Engine = None,
+    run: Run,
 ) -> None:
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.cli.reading import load
@@ -166,7 +154,7 @@ def modes(
             f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
         )
     loaded = load(scene)
-    body, settled = body_for(loaded, fidelity, with_engine(settings, engine), tol, "modes")
+    body, settled = model.body(loaded, "modes")
     found = solve(
         body,
         loaded,
@@ -189,7 +177,7 @@ def modes(
         }
         for m in found.modes
     ]
-    if as_json:
+    if run.as_json:
         record = {
             "scene": loaded.name,
             "fidelity": body.fidelity,
@@ -249,8 +237,9 @@ def modes(
 @command
 def render(
     scene: SceneFile,
+    *,
     out: Annotated[Path, typer.Option("--out", "-o", help="PNG file to write.")] = Path("mode.png"),
-    fidelity: FidelityOption = FIDELITY,
+    model: Fixed,
     mode: Annotated[
         str, typer.Option(help='Name of the mode, such as "bending 1" or "axial 1".')
     ] = "bending 1",
@@ -263,7 +252,6 @@ def render(
     beside: Annotated[
         Choice | None, typer.Option(help="A second model in the page of --turn, side by side.")
     ] = None,
-    settings: Settings = None,
 ) -> None:
     """Draw one mode shape off-screen, or all of them in a page where they can be turned."""
     from solidgear.cli.reading import load
@@ -276,10 +264,10 @@ def render(
         )
     loaded = load(scene)
     drawn = []
-    for name in dict.fromkeys([fidelity, beside] if beside else [fidelity]):
-        body = build_body(loaded, name, settings if name == fidelity else None)
+    for one in [model, *([Fixed(beside)] if beside not in (None, model.fidelity) else [])]:
+        body = one.body(loaded)
         found = solve(body, loaded, max(loaded.ask.modes, 10))
-        drawn.append(Drawn(body, found, LADDER[name].title))
+        drawn.append(Drawn(body, found, LADDER[one.fidelity].title))
     if turn is None:
         print(render_mode(drawn[0].body, drawn[0].modes, mode, out, drawn[0].title))
         return
@@ -292,9 +280,9 @@ def render(
 @command
 def check(
     scene: SceneFile,
-    fidelity: FidelityOption = FIDELITY,
-    as_json: JsonFlag = False,
-    settings: Settings = None,
+    *,
+    model: Fixed,
+    run: Run,
 ) -> None:
     """Say what will be modelled and what will not hold, of a scene or a train; a light mesh is the
     heaviest solved.
@@ -304,8 +292,8 @@ def check(
     if is_train(scene):
         from solidgear.cli.checked import check_train
 
-        given = {"--model": fidelity != FIDELITY, "--set": bool(settings)}
-        check_train(scene, as_json, given)
+        given = {"--model": model.fidelity != FIDELITY, "--set": bool(model.settings)}
+        check_train(scene, run.as_json, given)
         return
     from solidgear.cli.checked import print_check
     from solidgear.studies.check import check_scene
@@ -313,10 +301,9 @@ def check(
 
     loaded = load(scene)
     # a model of revolution is looked at on the plain part, and the check says so
-    shown = loaded.plain if LADDER[fidelity].unfit(loaded) else loaded
-    body = build_body(shown, fidelity, settings)
-    found = check_scene(loaded, body)
-    if as_json:
+    shown = loaded.plain if LADDER[model.fidelity].unfit(loaded) else loaded
+    found = check_scene(loaded, model.body(shown))
+    if run.as_json:
         print(json.dumps(found, default=float))
     else:
         print_check(found)

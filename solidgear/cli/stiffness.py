@@ -7,22 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import (
-    AUTO,
-    UNITS,
-    AutoFidelityOption,
-    Engine,
-    JsonFlag,
-    SceneFile,
-    Settings,
-    Tolerance,
-    UnitsOption,
-    caution,
-    command,
-    say,
-    with_engine,
-)
-from solidgear.cli.settled import bar_lines, body_for, ended, heading
+from solidgear.cli.app import caution, command, say
+from solidgear.cli.settled import bar_lines, ended, heading
+from solidgear.cli.shared import SceneFile, Shown, Solved
 
 if TYPE_CHECKING:
     from solidgear.judge.settle import Settled
@@ -34,8 +21,8 @@ if TYPE_CHECKING:
 @command
 def stiffness(
     scene: SceneFile,
-    fidelity: AutoFidelityOption = AUTO,
-    tol: Tolerance = None,
+    *,
+    model: Solved,
     port: Annotated[
         str | None,
         typer.Option(
@@ -48,10 +35,7 @@ def stiffness(
             help="average, rigid or section for every port; by default as the scene says."
         ),
     ] = None,
-    as_json: JsonFlag = False,
-    settings: Settings = None,
-    engine: Engine = None,
-    units: UnitsOption = UNITS,
+    run: Shown,
 ) -> None:
     """6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."""
     from solidgear.cli.reading import load
@@ -63,13 +47,12 @@ def stiffness(
         loaded = loaded.with_attachment(attachment)
     names = _points(loaded, port)
     loaded = loaded.with_main_port(names[0])
-    settings = with_engine(settings, engine)
-    body, settled = body_for(loaded, fidelity, settings, tol, "stiffness", names[1:])
+    body, settled = model.body(loaded, "stiffness", names[1:])
     found = condense(body, loaded, names[0])
     coupled = condense(body, loaded, names) if len(names) > 1 else None
     said = cautions(loaded, body)
 
-    if as_json:
+    if run.as_json:
         record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
         record |= _plain(found) if coupled is None else _plain_coupled(coupled)
         evidence = {"evidence": record.pop("evidence")}
@@ -81,9 +64,9 @@ def stiffness(
         return
     head = heading(loaded, body, settled)
     if coupled is None:
-        _tell(head, loaded, found, units)
+        _tell(head, loaded, found, run.units)
     else:
-        _tell_coupled(head, loaded, coupled, units)
+        _tell_coupled(head, loaded, coupled, run.units)
         if settled is not None:
             say(_bars(settled, coupled))
     say(*bar_lines(settled))

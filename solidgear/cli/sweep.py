@@ -9,23 +9,16 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import (
-    AUTO,
-    AutoFidelityOption,
-    JsonFlag,
-    SceneFile,
-    Settings,
-    Tolerance,
-    command,
-    options,
-)
 from solidgear.cli.app import Progress as Steps
-from solidgear.cli.settled import ended, over_the_sweep, refuse_settings, refuse_tolerance
+from solidgear.cli.app import command
+from solidgear.cli.settled import ended, over_the_sweep
+from solidgear.cli.shared import Chosen, Run, SceneFile, options
 
 
 @command
 def sweep(
     scene: SceneFile,
+    *,
     vary: Annotated[
         list[str],
         typer.Option(
@@ -45,8 +38,7 @@ def sweep(
             "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
         ),
     ] = Path("rows.csv"),
-    fidelity: AutoFidelityOption = AUTO,
-    tol: Tolerance = None,
+    model: Chosen,
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
@@ -74,8 +66,7 @@ def sweep(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Discard rows that are there.")
     ] = False,
-    as_json: JsonFlag = False,
-    settings: Settings = None,
+    run: Run,
 ) -> None:
     """Stiffness and first modes of thousands of bearing sets on one body."""
     from dataclasses import asdict
@@ -93,20 +84,21 @@ def sweep(
     from solidgear.ladder import build
     from solidgear.ladder.registry import LADDER
     from solidgear.studies.check import cautions
-    from solidgear.studies.sweep import sweep as run
+    from solidgear.studies.sweep import sweep as swept
     from solidgear.studies.sweep.choice import settled_for_sweep
 
     loaded = load(scene)
     # before a file of rows is begun
     settled = None
-    if fidelity == AUTO:
-        refuse_settings(settings)
+    if model.automatic():
         with Steps(quiet=not sys.stderr.isatty()) as steps:
-            settled = settled_for_sweep(loaded, vary, tol, sample=sample, seed=seed, progress=steps)
+            settled = settled_for_sweep(
+                loaded, vary, model.tol, sample=sample, seed=seed, progress=steps
+            )
         name, given = settled.rung, settled.options
     else:
-        refuse_tolerance(fidelity, tol)
-        name, given = str(fidelity), LADDER[fidelity].checked(options(settings))
+        name = str(model.fidelity)
+        given = LADDER[name].checked(options(model.pairs))
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -114,7 +106,7 @@ def sweep(
         MofNCompleteColumn(),
         TimeRemainingColumn(),
         console=terminal,
-        disable=as_json or not terminal.is_terminal,
+        disable=run.as_json or not terminal.is_terminal,
     )
     reached = [0, 0]
     try:
@@ -128,7 +120,7 @@ def sweep(
             def tell(text: str) -> None:
                 terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
 
-            found = run(
+            found = swept(
                 loaded,
                 vary,
                 out,
@@ -152,7 +144,7 @@ def sweep(
                 file=sys.stderr,
             )
         raise
-    if as_json:
+    if run.as_json:
         record = asdict(found)
         if settled is not None:
             record |= settled.as_dict()

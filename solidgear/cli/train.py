@@ -4,32 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import (
-    FIDELITY,
-    UNITS,
-    JsonFlag,
-    UnitsOption,
-    caution,
-    command,
-    say,
-)
-from solidgear.cli.at_speed import (
-    Asked,
-    Fit,
-    Measured,
-    OfOption,
-    SpeedOption,
-    Within,
-    say_at_speed,
-)
+from solidgear.cli.app import Group, caution, command, say
+from solidgear.cli.at_speed import Speed, say_at_speed
 from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
+from solidgear.cli.shared import FIDELITY, UNITS, Shown
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
+
+if TYPE_CHECKING:
+    from solidgear.studies.train.models import Workshop
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -38,77 +27,115 @@ MODELS = (
     f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
-PinionModel = Annotated[
-    str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
-]
-GearModel = Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")]
-Reduction = Annotated[
-    str, typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton.")
-]
-MaxFrequency = Annotated[float | None, typer.Option(help="Hz; as the file says by default.")]
-Kept = Annotated[int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")]
-Against = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--against",
-        help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
-    ),
-]
-Damping = Annotated[
-    str,
-    typer.Option(help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."),
-]
-MatchedAt = Annotated[
-    float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
-]
-LocalHarmonics = Annotated[
-    str | None,
-    typer.Option(
-        "--local-harmonics",
-        help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
-        "2,3; by default as local_harmonics in the table mesh of the file says.",
-    ),
-]
-Point = Annotated[
-    str | None,
-    typer.Option(
-        "--point",
-        help="Operating point, by its name or number in the file; the first by default.",
-    ),
-]
 MOST_KEPT = 200
 
 
-def workshop(
-    path: Path,
-    reduction: str,
-    kept: int,
-    max_frequency: float | None,
-    local_harmonics: str | None = None,
-    point: str | None = None,
-    settings: Mapping[str | tuple[str, str], Mapping] | None = None,
-):
-    """Workshop of a train, once the options that all commands share are sound."""
-    from solidgear.scene.toml_file import parse
-    from solidgear.studies.loading import load_train
-    from solidgear.studies.train.models import Workshop
+@dataclass(frozen=True)
+class Reduced(Group):
+    """Options of every command on a train: how its shafts are reduced, and up to which frequency."""
 
-    if not 1 <= kept <= MOST_KEPT:
-        raise SolidgearError(f"--kept {show(kept)}: give 1 to {MOST_KEPT} modes")
-    if max_frequency is not None and not max_frequency > 0:
-        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    loaded = load_train(path)
-    if point is not None:
-        from solidgear.studies.train.operation import at_point
+    max_frequency: Annotated[
+        float | None, typer.Option(help="Hz; as the file says by default.")
+    ] = None
+    reduction: Annotated[
+        str,
+        typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton."),
+    ] = "rubin"
+    kept: Annotated[
+        int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")
+    ] = 24
+    local_harmonics: Annotated[
+        str | None,
+        typer.Option(
+            "--local-harmonics",
+            help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
+            "2,3; by default as local_harmonics in the table mesh of the file says.",
+        ),
+    ] = None
+    point: Annotated[
+        str | None,
+        typer.Option(
+            "--point",
+            help="Operating point, by its name or number in the file; the first by default.",
+        ),
+    ] = None
 
-        loaded = at_point(loaded, point)
-    if local_harmonics is not None:
-        mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(local_harmonics))
-        loaded = loaded.with_changes(mesh=mesh)
-    try:
-        return Workshop(loaded, reduction, kept, settings or {})
-    except SceneError as error:  # what the mesh of a sound file cannot be
-        raise error.located(parse(str(path)), where=str(path)) from None
+    def workshop(
+        self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
+    ) -> Workshop:
+        """Workshop of a train, once these options are sound, with builder options by side and model."""
+        from solidgear.scene.toml_file import parse
+        from solidgear.studies.loading import load_train
+        from solidgear.studies.train.models import Workshop
+
+        if not 1 <= self.kept <= MOST_KEPT:
+            raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
+        if self.max_frequency is not None and not self.max_frequency > 0:
+            raise SolidgearError(
+                f"--max-frequency {self.max_frequency:g}: must be greater than zero, in Hz"
+            )
+        loaded = load_train(path)
+        if self.point is not None:
+            from solidgear.studies.train.operation import at_point
+
+            loaded = at_point(loaded, self.point)
+        if self.local_harmonics is not None:
+            mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(self.local_harmonics))
+            loaded = loaded.with_changes(mesh=mesh)
+        try:
+            return Workshop(loaded, self.reduction, self.kept, settings or {})
+        except SceneError as error:  # what the mesh of a sound file cannot be
+            raise error.located(parse(str(path)), where=str(path)) from None
+
+
+@dataclass(frozen=True)
+class Mix(Group):
+    """Models of the two shafts."""
+
+    pinion: Annotated[
+        str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
+    ] = FIDELITY
+    gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
+        FIDELITY
+    )
+    settings: ShaftSettings = None
+
+    @property
+    def of_shafts(self) -> dict[str | tuple[str, str], dict[str, Any]]:
+        """Builder options by side and model."""
+        return of_shafts(self.settings, self.pinion, self.gear)
+
+
+@dataclass(frozen=True)
+class Driven(Mix):
+    """Options of every command on steady motion: losses, and models to draw as well."""
+
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
+        ),
+    ] = None
+    damping: Annotated[
+        str,
+        typer.Option(
+            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
+        ),
+    ] = "hysteretic"
+    matched_at: Annotated[
+        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+    ] = None
+
+    @property
+    def mixes(self) -> list[tuple[str, str]]:
+        """Models of pinion and gear, the first those that are told."""
+        return [(self.pinion, self.gear), *map(mix, self.against or [])]
+
+    @property
+    def losses(self) -> tuple[str, float]:
+        """Their kind, and the Hz at which viscous ones match."""
+        return self.damping, self.matched_at or 0.0
 
 
 def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
@@ -151,9 +178,8 @@ def _harmonics(text: str) -> tuple[int, ...]:
 @command
 def system_modes(
     train: TrainFile,
-    pinion: PinionModel = FIDELITY,
-    gear: GearModel = FIDELITY,
-    max_frequency: MaxFrequency = None,
+    *,
+    models: Mix,
     pictures: Annotated[
         Path | None,
         typer.Option("--pictures", help="Folder for a picture a mode, both shafts in place."),
@@ -166,34 +192,29 @@ def system_modes(
         Path | None,
         typer.Option(help="HTML file: all modes of both shafts in 3D, to be turned and animated."),
     ] = None,
-    reduction: Reduction = "rubin",
-    kept: Kept = 24,
-    local_harmonics: LocalHarmonics = None,
-    settings: ShaftSettings = None,
-    point: Point = None,
-    units: UnitsOption = UNITS,
-    as_json: JsonFlag = False,
+    reduced: Reduced,
+    run: Shown,
 ) -> None:
     """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
     from solidgear.report.train_tables import modes
     from solidgear.studies.train.modes import train_modes
     from solidgear.studies.train.slips import slips
 
-    own = of_shafts(settings, pinion, gear)
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point, own)
+    shop = reduced.workshop(train, models.of_shafts)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     said = slips(shop)
-    found = train_modes(shop, pinion, gear, max_frequency)
-    if units != UNITS and turn is None:
+    pair = models.pinion, models.gear
+    found = train_modes(shop, *pair, reduced.max_frequency)
+    if run.units != UNITS and turn is None:
         raise SolidgearError(
-            f"--units {units}: the table has Hz and rpm alone; add --turn model.html, whose page "
+            f"--units {run.units}: the table has Hz and rpm alone; add --turn model.html, whose page "
             "shows the train in these units"
         )
-    drawn = _drawn(shop, pinion, gear, pictures, mode, found) if pictures else []
+    drawn = _drawn(shop, *pair, pictures, mode, found) if pictures else []
     if turn is not None:
-        drawn += _turned(shop, found, turn, max_frequency, units, said)
-    if as_json:
+        drawn += _turned(shop, found, turn, reduced.max_frequency, run.units, said)
+    if run.as_json:
         cautions = {"cautions": [*said, *found.cautions]}
         print(json.dumps(found.as_dict() | cautions, allow_nan=False))
         return
@@ -246,15 +267,11 @@ def _turned(
 @command
 def response(
     train: TrainFile,
+    *,
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for response.csv and its chart.")
     ] = Path("out"),
-    pinion: PinionModel = FIDELITY,
-    gear: GearModel = FIDELITY,
-    against: Against = None,
-    max_frequency: MaxFrequency = None,
-    damping: Damping = "hysteretic",
-    matched_at: MatchedAt = None,
+    driven: Driven,
     force: Annotated[
         list[str] | None,
         typer.Option(
@@ -266,18 +283,9 @@ def response(
         int | None,
         typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
     ] = None,
-    speed: SpeedOption = None,
-    of: OfOption = "pinion",
-    measured: Measured = None,
-    fit_speed: Fit = None,
-    within: Within = None,
-    reduction: Reduction = "rubin",
-    kept: Kept = 24,
-    local_harmonics: LocalHarmonics = None,
-    settings: ShaftSettings = None,
-    point: Point = None,
-    units: UnitsOption = UNITS,
-    as_json: JsonFlag = False,
+    at: Speed,
+    reduced: Reduced,
+    run: Shown,
 ) -> None:
     """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
     from solidgear.report.folder import held
@@ -288,36 +296,33 @@ def response(
     from solidgear.studies.train.respond import respond
     from solidgear.studies.train.slips import slips
 
-    own = of_shafts(settings, pinion, gear)
-    shop = workshop(train, reduction, kept, max_frequency, local_harmonics, point, own)
-    asked = Asked(shop.train, speed, of, measured, fit_speed, within)
-    mixes = [(pinion, gear), *map(mix, against or [])]
+    shop = reduced.workshop(train, driven.of_shafts)
+    asked = at.asked(shop.train)
+    highest, losses = reduced.max_frequency, driven.losses
     forces = _forces(force)
     with held(out):
-        found = [
-            respond(shop, *pair, max_frequency, damping, matched_at or 0.0, forces)
-            for pair in mixes
-        ]
+        found = [respond(shop, *pair, highest, *losses, forces) for pair in driven.mixes]
         unpublished = shop.train.unpublished()
         said = slips(shop)
         cautions = [*said, *found[0].cautions]
-        notes = {"damping": damping, "unpublished": unpublished, "cautions": cautions}
+        notes = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
         title = shop.train.called
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
         # a force on a port has no order of the mesh
-        kind = (damping, matched_at or 0.0)
-        lines = None if forces else order_map(shop, pinion, gear, max_frequency, *kind, orders)
-        modes = lines.modes if lines else train_modes(shop, pinion, gear, max_frequency).modes
-        there = asked.found(modes)
-        told = described(shop)
-        files = write_response(out, found, title, teeth, band, notes, lines, told, units, there)
-    if as_json:
+        lines = None if forces else order_map(shop, *driven.mixes[0], highest, *losses, orders)
+        modes = lines.modes if lines else train_modes(shop, *driven.mixes[0], highest).modes
+        there, told = asked.found(modes), described(shop)
+        files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
+    if run.as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
-    say(f"{title}: pinion {pinion}, gear {gear}, {damping} losses", soft_wrap=False)
+    say(
+        f"{title}: pinion {driven.pinion}, gear {driven.gear}, {driven.damping} losses",
+        soft_wrap=False,
+    )
     say(*map(caution, said))
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
-    print_peaks(tops, "mesh force", "N", teeth, units)
+    print_peaks(tops, "mesh force", "N", teeth, run.units)
     if there is not None:
         say_at_speed(there)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))

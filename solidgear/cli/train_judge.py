@@ -10,56 +10,40 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import UNITS, JsonFlag, Progress, UnitsOption, caution, command, say
-from solidgear.cli.train import (
-    Kept,
-    LocalHarmonics,
-    MaxFrequency,
-    Point,
-    Reduction,
-    TrainFile,
-    mix,
-    refuse_given,
-    workshop,
-)
+from solidgear.cli.app import caution, command, say
+from solidgear.cli.shared import Shown
+from solidgear.cli.train import Reduced, TrainFile, mix, refuse_given
 
 
 @command
 def judge_system(
     train: TrainFile,
+    *,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for the report, as of compare.")
     ] = None,
-    max_frequency: MaxFrequency = None,
     against: Annotated[
         list[str] | None,
         typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
     ] = None,
-    reduction: Reduction = "rubin",
-    kept: Kept = 24,
-    local_harmonics: LocalHarmonics = None,
-    point: Point = None,
-    units: UnitsOption = UNITS,
-    as_json: JsonFlag = False,
+    reduced: Reduced,
+    run: Shown,
 ) -> None:
     """Comparison of a train with further mixes and reductions, and no folder unless asked for."""
     more = [mix(text) for text in against or []]
-    how = max_frequency, more, reduction, kept
-    _judged(
-        train, out, as_json, *how, renders=True, local=local_harmonics, units=units, point=point
-    )
+    _judged(train, out, reduced, run, more, renders=True)
 
 
 def compare_train(
-    train: Path, out: Path, as_json: bool, renders: bool, units: str, given: dict[str, bool]
+    train: Path, out: Path, renders: bool, run: Shown, given: dict[str, bool]
 ) -> None:
     """The command compare on a train.
 
     Parameters
     ----------
     train, out : Path
-    as_json, renders : bool
-    units : str
+    renders : bool
+    run : Shown
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """
@@ -67,39 +51,35 @@ def compare_train(
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
     refuse_given(given, train, instead)
-    _judged(train, out, as_json, renders=renders, units=units)
+    _judged(train, out, Reduced(), run, renders=renders)
 
 
 def _judged(
     train: Path,
     out: Path | None,
-    as_json: bool,
-    max_frequency: float | None = None,
+    reduced: Reduced,
+    run: Shown,
     more: Sequence[tuple[str, str]] = (),
-    reduction: str = "rubin",
-    kept: int = 24,
-    renders: bool = False,
-    local: str | None = None,
-    units: str = UNITS,
-    point: str | None = None,
+    *,
+    renders: bool,
 ) -> None:
     from solidgear.report.folder import held
     from solidgear.report.train_page import write_train
     from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.train.comparison import compare_train as run
+    from solidgear.studies.train.comparison import compare_train as compared
     from solidgear.studies.train.modes import unpublished_lines
 
-    shop = workshop(train, reduction, kept, max_frequency, local, point)
-    with held(out) if out else nullcontext(), Progress(quiet=as_json) as progress:
-        found = run(shop, max_frequency, more, progress)
+    shop = reduced.workshop(train)
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = compared(shop, reduced.max_frequency, more, progress)
         results = found.results()
         if out:
             progress("report")
             draw = found.pictures if renders else None
             viewer = viewer_fragment(found.turned(), first=found.loudest_name)
             shown = found.drawn, found.marks, found.orders
-            write_train(results, *shown, out, draw, units, viewer)
-    if as_json:
+            write_train(results, *shown, out, draw, run.units, viewer)
+    if run.as_json:
         print(json.dumps(results, allow_nan=False))
         return
     verdict = found.verdict

@@ -285,12 +285,12 @@ def _static_scores(
     for name in names:
         one = name.points[0] if name.points else statics.main.port
         total = np.zeros(len(bounds.of_ports))
-        for point, row in set(zip(name.pair or (one, one), name.place)):
+        for point, load in set(zip(name.pair or (one, one), name.loads)):
             seat = statics.main if point == statics.main.port else statics.further.get(point)
             first = 6 * ports.index((point, attached[point]))
-            loads = np.eye(6)[row]
+            loads = np.array(load)
             if name.kind == STIFFNESS and seat is not None:
-                loads = np.nan_to_num(seat.stiffness[:, row], posinf=0.0, neginf=0.0)
+                loads = np.nan_to_num(seat.stiffness, posinf=0.0, neginf=0.0) @ loads
             f = np.zeros(6 * len(ports))
             for c in map(int, np.flatnonzero(loads)):
                 if first + c not in forces:

@@ -186,7 +186,7 @@ def _between(coupled: Coupled, known: Iterable[Quantity]) -> dict[Quantity, floa
         key=lambda q: q.diagonals is not None,
     ):
         one, other = name.points
-        value = float(coupled.between(one, other, name.kind)[name.place])
+        value = float(name.of(coupled.between(one, other, name.kind)))
         pair = name.diagonals
         there = value > 0.0 if pair is None else all(d in out for d in pair)
         if np.isfinite(value) and there:
@@ -204,7 +204,7 @@ def _measured(
             mode = modes.named(name) if modes is not None else None
             value = mode.frequency_hz if mode else np.nan
         elif condensed is not None:
-            value = getattr(condensed, name.kind)[name.place]
+            value = name.of(getattr(condensed, name.kind))
         if np.isfinite(value) and (value != 0.0 or name.is_coupling):
             out[name] = float(value)
     # a coupling of motions that nothing resists is no number

@@ -39,7 +39,7 @@ def family_of(quantity: Quantity) -> str:
     """The family of motion that a quantity belongs to."""
     if quantity.is_frequency:
         return ModeName(quantity).family
-    return next(name for name, own in FAMILIES.items() if set(quantity.place) <= set(own))
+    return next(name for name, own in FAMILIES.items() if quantity.components <= set(own))
 
 
 @dataclass(frozen=True)

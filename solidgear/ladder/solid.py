@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from solidgear.elements import ELEMENTS
 from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, least_radius, levels
 from solidgear.ladder.model import Options, Series, features_of
 from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
@@ -39,24 +40,22 @@ LINEAR: tuple[Level, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
 #: with the fourth power
 AROUND = 8
-#: element -> refinements of a quick chart, and those that a full one has on top
-_GRADED_TETRAHEDRA = {
-    "tet4": ((0.5, 0.8, 1.25), (1.8, 2.4)),
-    "tet10": ((0.4, 0.6, 0.9), (1.2, 1.6)),
-}
-_UNIFORM_TETRAHEDRA = {
-    "tet4": ((1.0, 1.8, 2.6), (3.4, 4.4)),
-    "tet10": ((0.7, 1.3, 1.8), (2.4, 3.0)),
-}
-_GRADED_HEXAHEDRA = {
-    "hex8": ((0.65, 1.0, 1.5), (2.0, 2.6)),
-    "hex20": ((0.35, 0.65, 1.0), (1.4, 1.9)),
-    "hex27": ((0.35, 0.65, 0.85), (1.0, 1.4)),
-}
-_UNIFORM_HEXAHEDRA = {
-    "hex8": ((1.0, 1.5, 2.2), (3.0, 3.8)),
-    "hex20": ((0.5, 1.0, 1.5), (2.0, 2.8)),
-    "hex27": ((0.5, 1.0, 1.3), (1.6, 2.2)),
+
+
+class _Steps(NamedTuple):
+    """Refinements of a quick chart, and those that a full one has on top."""
+
+    quick: tuple[float, ...]
+    more: tuple[float, ...]
+
+
+#: element -> refinements of uniform and of graded meshes
+_CHARTED = {
+    "tet4": (_Steps((1.0, 1.8, 2.6), (3.4, 4.4)), _Steps((0.5, 0.8, 1.25), (1.8, 2.4))),
+    "tet10": (_Steps((0.7, 1.3, 1.8), (2.4, 3.0)), _Steps((0.4, 0.6, 0.9), (1.2, 1.6))),
+    "hex8": (_Steps((1.0, 1.5, 2.2), (3.0, 3.8)), _Steps((0.65, 1.0, 1.5), (2.0, 2.6))),
+    "hex20": (_Steps((0.5, 1.0, 1.5), (2.0, 2.8)), _Steps((0.35, 0.65, 1.0), (1.4, 1.9))),
+    "hex27": (_Steps((0.5, 1.0, 1.3), (1.6, 2.2)), _Steps((0.35, 0.65, 0.85), (1.0, 1.4))),
 }
 
 
@@ -123,8 +122,9 @@ class Solid(Volume):
 
     def meshes(self, options: Options) -> Sequence:
         """Meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
-        element = str(options.get("element", "hex20"))
-        layered = element in ("hex20", "hex27")
+        element = self.checked({"element": options.get("element", "hex20")})["element"]
+        second = ELEMENTS[element].order == 2
+        layered = second and element.startswith("hex")
         if set(options) - set(FREE):
             if layered and "refinement" not in options:
                 return _below_hexahedra(dict(options))
@@ -133,7 +133,7 @@ class Solid(Volume):
             around = {"around": AROUND, **options}
             own = tuple({**level, **around} for level in HEXAHEDRA)
             return Sequence(own, False, True, _turned(own[0]))
-        known = TETRAHEDRA if element == "tet10" else LINEAR
+        known = TETRAHEDRA if second else LINEAR
         return Sequence(tuple({**level, **options} for level in known), False, False)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
@@ -149,17 +149,19 @@ class Solid(Volume):
             "radial_layers": 0,
         }
         return [
-            *_elements("tetrahedra", "uniform", _UNIFORM_TETRAHEDRA, even_tetrahedra, full),
-            *_elements("tetrahedra", "graded", _GRADED_TETRAHEDRA, {}, full),
-            *_elements("hexahedra", "uniform", _UNIFORM_HEXAHEDRA, even_hexahedra, full),
-            *_elements("hexahedra", "graded", _GRADED_HEXAHEDRA, {}, full),
+            *_elements("tetrahedra", "uniform", even_tetrahedra, full),
+            *_elements("tetrahedra", "graded", {}, full),
+            *_elements("hexahedra", "uniform", even_hexahedra, full),
+            *_elements("hexahedra", "graded", {}, full),
         ]
 
 
-def _elements(family: str, grading: str, steps: dict, extra: dict, full: bool) -> list[Series]:
+def _elements(family: str, grading: str, extra: dict, full: bool) -> list[Series]:
     out = []
-    for element, (quick, more) in steps.items():
-        refinements = levels(quick, more, full)
+    for element, (uniform, graded) in _CHARTED.items():
+        if not element.startswith(family[:3]):
+            continue
+        refinements = levels(*(uniform if grading == "uniform" else graded), full)
         options = [{"element": element, **extra, "refinement": s} for s in refinements]
         out.append((family, f"{element.upper()} {grading}", options))
     return out

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from numbers import Integral, Real
 from typing import Any
 
+from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.factoring import ENGINES, PRECISIONS
 
@@ -208,9 +209,7 @@ SECTOR_OPTIONS = {
 }
 
 SOLID_OPTIONS = {
-    "element": Option(
-        "element type", "choice", choices=("hex20", "hex27", "hex8", "tet10", "tet4")
-    ),
+    "element": Option("element type", "choice", choices=tuple(ELEMENTS)),
     "relative_size": _RELATIVE,
     "size": _SIZE,
     "layers": _layers("shoulders"),

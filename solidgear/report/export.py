@@ -10,20 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.body.surface import Volume, mesh_unknowns
+from solidgear.elements import ELEMENTS
 from solidgear.machine.whole_file import whole
 
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.solve.modes import Mode, ModeSet
-
-#: solid element -> (meshio's cell type, VTK's class of cell)
-CELLS = {
-    "tet4": ("tetra", "vtkTetra"),
-    "tet10": ("tetra10", "vtkQuadraticTetra"),
-    "hex8": ("hexahedron", "vtkHexahedron"),
-    "hex20": ("hexahedron20", "vtkQuadraticHexahedron"),
-    "hex27": ("hexahedron27", "vtkTriQuadraticHexahedron"),
-}
 
 
 def write_vtu(
@@ -92,13 +84,13 @@ def _shapes(modes: Iterable):
 
 
 def _volume(body: Body, mesh: Volume, shapes):
-    kind, vtk_name = CELLS[mesh.element]
-    order = node_order(mesh.local, vtk_name)
+    element = ELEMENTS[mesh.element]
+    order = node_order(mesh.local, element.vtk)
     data = {
         name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3)
         for name, vectors in shapes.items()
     }
-    return mesh.nodes.T, [(kind, mesh.cells[order].T)], data
+    return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 
 
 def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import IO
 
 from solidgear.errors import SolidgearError
+from solidgear.report.outputs import OUTPUTS
 
 try:
     import fcntl
@@ -27,8 +28,8 @@ except ImportError:  # Windows
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
-    r"(report\.html|mode_\w+\.png|modes_\w+\.vtu|modes\.html|system_mode_\d+\.png"
-    r"|(response|orders)\.(csv|png|svg|html))"
+    r"(report\.html|mode_\w+\.png|modes\.html|system_mode_\d+\.png"
+    rf"|(response|orders)\.(csv|png|svg|html)|{'|'.join(output.pattern for output in OUTPUTS)})"
 )
 #: what a process that was killed can have left half written, see
 #: :func:`solidgear.machine.whole_file.whole`

@@ -35,7 +35,7 @@ def points(record: Record, units: Units = ENGINEERING) -> Table:
             add(name.at(port.name), f"{name} at {port.name}")
     for a, b in _pairs(record):
         for name in SUMMED:
-            load = "a moment" if name.place[1] > 2 else "a load"
+            load = "a moment" if any(name.loads[1][3:]) else "a load"
             add(name.at(a, b), f"{name}, {a} for {load} on {b}")
     note = (
         f"Headlines, lumped models and attachments above are those of {main}, the main point; "

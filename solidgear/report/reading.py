@@ -76,7 +76,7 @@ def value_of(model: ModelRecord, quantity: Quantity) -> float | None:
     else:
         there = model.points.get(quantity.points[0]) if quantity.points else model
         found = getattr(there, quantity.kind, None)
-    return entry(found, *quantity.place)
+    return None if found is None else quantity.of(found)
 
 
 def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:

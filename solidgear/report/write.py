@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report.folder import clear, held, prepare
+from solidgear.report.outputs import OUTPUTS
 from solidgear.report.reading import model_name
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def write_all(
     renders: bool,
     progress: Callable[[str], None],
 ) -> Path:
-    """Write results.json, renders, vtu files and the report; see
+    """Write results.json, renders, files for other programs and the report; see
     :meth:`solidgear.studies.comparison.Comparison.write_report`.
 
     The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
@@ -56,7 +57,7 @@ def write_all(
             # written is listed before it is.
             record.files = [
                 "report.html",
-                *(f"modes_{m}.vtu" for m in shapes),
+                *(output.name(m) for m in shapes for output in OUTPUTS),
                 *(f"mode_{m}.png" for m in shapes if renders),
                 *([TURNED] if shapes and renders else []),
             ]
@@ -67,8 +68,9 @@ def write_all(
             # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
             with Drawing(jobs.values()) as drawing:
                 for model, solution in shapes.items():
-                    target = folder / f"modes_{model}.vtu"
-                    _try(record, f"vtu of {model}", _write_vtu, solution, target)
+                    for output in OUTPUTS:
+                        what, target = f"{output.what} of {model}", folder / output.name(model)
+                        _try(record, what, output.write, solution, target)
                 progress("report")
                 drawn = drawn_charts(record, folder)
                 _note(record, jobs, drawing.results())
@@ -93,7 +95,7 @@ def _write_json(path: Path, record: Record) -> None:
         partial.write_text(text + "\n", encoding="utf-8")
 
 
-def _try(record: Record, what: str, action: Callable[..., None], *arguments: Any) -> None:
+def _try(record: Record, what: str, action: Callable[..., object], *arguments: Any) -> None:
     """Run something the numbers do not depend on; a failure becomes a warning."""
     try:
         action(*arguments)
@@ -106,12 +108,6 @@ def _try(record: Record, what: str, action: Callable[..., None], *arguments: Any
 def _leave_out(record: Record, sentence: str) -> None:
     record.left_out.append(sentence)
     record.warnings.append(sentence)
-
-
-def _write_vtu(solution, path: Path) -> None:
-    from solidgear.report.export import write_vtu
-
-    write_vtu(solution.body, solution.modes, path)
 
 
 def _job(body, modes, name: str, path: Path, model: str):
@@ -158,7 +154,6 @@ def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) 
 def _write_turned(comparison: Comparison, folder: Path) -> None:
     """The page of mode shapes, the most detailed models first."""
     from solidgear.report.page_parts import data_uri
-    from solidgear.report.reading import model_name
     from solidgear.report.turning import Turned, turned
     from solidgear.report.viewer import TURNED, Turning
 

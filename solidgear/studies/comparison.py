@@ -67,7 +67,7 @@ class Comparison(Displayed):
         units: str = "engineering",
         progress: Progress = lambda _: None,
     ) -> Path:
-        """Write results.json, report.html, mode_*.png and modes_*.vtu into a folder.
+        """Write results.json, report.html, mode_*.png and files for other programs into a folder.
 
         Parameters
         ----------

@@ -17,15 +17,16 @@ from pathlib import Path
 
 import numpy as np
 
+from solidgear.elements import ELEMENTS
 from solidgear.frames import cross_matrix
-from solidgear.report.export import CELLS, node_order
+from solidgear.report.export import node_order
 from validation.race.heat import Heat, Lane, Sample
 from validation.race.problem import Problem
 from validation.race.process import WATCH, Done, PeerError, cores, last_words, run
 
 #: element type -> ours; VTK numbers the nodes of both as CalculiX does (user's manual, the sections
 #: on C3D10 and C3D20)
-ELEMENTS = {"C3D10": "tet10", "C3D20": "hex20", "C3D20R": "hex20"}
+KINDS = {"C3D10": "tet10", "C3D20": "hex20", "C3D20R": "hex20"}
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def solve(
     ----------
     problem : Problem
     kind : str
-        Key of ``ELEMENTS``.
+        Key of ``KINDS``.
     modes : int
         Number of natural frequencies wanted, 0 for none.
     loads : bool
@@ -136,9 +137,9 @@ def deck(problem: Problem, kind: str, *, modes: int = 0, loads: bool = False) ->
     ValueError
         If ``kind`` does not fit the problem's element.
     """
-    if ELEMENTS.get(kind) != problem.element:
+    if KINDS.get(kind) != problem.element:
         raise ValueError(f"{kind} does not fit {problem.element}")
-    cells = problem.cells[:, node_order(problem.doflocs, CELLS[problem.element][1])] + 1
+    cells = problem.cells[:, node_order(problem.doflocs, ELEMENTS[problem.element].vtk)] + 1
     out = ["*NODE, NSET=ALL", *_nodes(problem.nodes, 1)]
     element = 1
     for m, (young, poisson, density) in enumerate(problem.materials):

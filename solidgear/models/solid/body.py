@@ -1,4 +1,4 @@
-"""Full 3D solid: TET10 on a gmsh mesh, or HEX8 / HEX20 / HEX27 on a structured O-grid.
+"""Full 3D solid: tetrahedra on a gmsh mesh, or hexahedra on a structured O-grid.
 
 Elements, quadrature and the numbering of unknowns are scikit-fem's; matrices are assembled in
 blocks from one Gram matrix of basis gradients per element.
@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from solidgear.body import Body, Port, Reflection
+from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
@@ -44,8 +45,8 @@ def solid(
     Parameters
     ----------
     scene : Scene
-    element : {'hex20', 'hex27', 'hex8', 'tet10', 'tet4'}
-        Hexahedra on a structured O-grid, tetrahedra from gmsh.
+    element : str
+        One of :data:`solidgear.elements.ELEMENTS`: hexahedra on a structured O-grid, tetrahedra from gmsh.
     relative_size : float
         Size of hexahedra away from singular edges in local outer radii.
     size : float, optional
@@ -184,7 +185,7 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     )
     assemblable(tetrahedra_of(scene, plan, refinement), 10)
     made = tetrahedra(scene.segments, blends=scene.corners, **plan)
-    if element == "tet10":
+    if ELEMENTS[element].order == 2:
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1
 

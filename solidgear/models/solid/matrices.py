@@ -11,6 +11,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from solidgear.body.mass import ScalarMass
+from solidgear.elements import ELEMENTS
 from solidgear.frames import cross_matrix
 from solidgear.kernel.assembly import Pattern, Tabulation, batches, inverted, straight
 from solidgear.models.solid.mesh import SolidMesh
@@ -118,14 +119,11 @@ _CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
 
 
 def _cell_rule(name):
-    """Quadrature exact for stiffness and mass of affine elements, one order in reserve for curved
-    ones.
-    """
+    """Quadrature of an element: points and weights."""
+    degree = ELEMENTS[name].degree
     if name.startswith("tet"):
-        return get_quadrature(
-            RefTet, 7 if name == "tet10" else 2
-        )  # both rules have positive weights only
-    x, w = np.polynomial.legendre.leggauss(3 if name == "hex8" else 4)
+        return get_quadrature(RefTet, degree)  # the rules in use have positive weights only
+    x, w = np.polynomial.legendre.leggauss((degree + 1) // 2)
     x, w = (x + 1) / 2, w / 2
     grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])
     return grid, np.einsum("i,j,k->ijk", w, w, w).ravel()

@@ -8,24 +8,18 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+import skfem.element
 from skfem import Element, Mesh
-from skfem.element import ElementHex1, ElementHex2, ElementHexS2, ElementTetP1, ElementTetP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
 
 from solidgear.body.surface import Surface, Volume
+from solidgear.elements import ELEMENTS
 from solidgear.kernel.assembly import reference, tabulate, unknowns
 
 if TYPE_CHECKING:
     from solidgear.models.solid.drawing import Outline
 
-ELEMENTS = {
-    "tet4": ElementTetP1,
-    "tet10": ElementTetP2,
-    "hex8": ElementHex1,
-    "hex20": ElementHexS2,
-    "hex27": ElementHex2,
-}
 #: pieces to an edge of a facet that the end of a seat crosses
 PIECES = 12
 
@@ -159,9 +153,14 @@ class SolidMesh:
         return np.flatnonzero(np.abs(y - y0).max(axis=0) < tol)
 
 
+def basis_of(name: str) -> Element:
+    """The basis of an element by its name."""
+    return getattr(skfem.element, ELEMENTS[name].basis)()
+
+
 def _isoparametric(mesh, name, segment) -> SolidMesh:
     """Unknowns and nodes of an element type on the geometry of a mesh."""
-    element = ELEMENTS[name]()
+    element = basis_of(name)
     dofs = unknowns(mesh, element)
     geometry = mesh.elem()
     tab = tabulate(geometry, mesh.doflocs[:, mesh.dofs.element_dofs], geometry, element.doflocs.T)

@@ -43,7 +43,8 @@ def solid_body(
         A scene, or what has the same ``segments``, ``stations`` and ``length``: stations are looked
         for on the outer surface of the segments, and each element has the material of the segment
         that its middle lies in.
-    element : {'tet4', 'tet10', 'hex8', 'hex20', 'hex27'}
+    element : str
+        One of :data:`solidgear.elements.ELEMENTS`.
     wanted : sequence of (station, attachment), optional
         Ports; by default the stations with the attachments they have.
     clipped : bool

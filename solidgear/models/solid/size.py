@@ -14,7 +14,7 @@ from solidgear.models.sector.body import whole_mesh
 from solidgear.models.size import Size, of_mesh
 from solidgear.models.solid.body import _hexes, _tets
 from solidgear.models.solid.featured import meshed
-from solidgear.models.solid.mesh import ELEMENTS
+from solidgear.models.solid.mesh import basis_of
 from solidgear.models.solid.part import SOLVED_AS
 from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.scene.attached import attached_stations
@@ -49,23 +49,23 @@ def solid_size(
         return _of_file(scene.body)
     if CYCLIC in sorts:
         mesh, _, _ = whole_mesh(scene, wanted, **sizes)
-        return of_mesh(unknowns(mesh, ELEMENTS["tet10"]()))
+        return of_mesh(unknowns(mesh, basis_of("tet10")))
     if CUTS in sorts:
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return cut_size(meshed(scene, plan, refinement, half))
     if element.startswith("tet"):
         mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
-        return of_mesh(unknowns(mesh, ELEMENTS[element]()))
+        return of_mesh(unknowns(mesh, basis_of(element)))
     grading |= {"around": around, "size": size, "refinement": refinement}
     mesh, _, _ = _hexes(scene, wanted, grading)
     rigid = any(a == "rigid" for _, a in wanted)
-    return of_mesh(unknowns(mesh, ELEMENTS[element]()), mirrors=not rigid)
+    return of_mesh(unknowns(mesh, basis_of(element)), mirrors=not rigid)
 
 
 def cut_size(made: Any) -> Size:
     """Of a :class:`~solidgear.meshing.featured.FeaturedMesh` without what is cut out of it."""
     mesh = without(made.mesh, ~made.cut)
-    dofs = unknowns(mesh, ELEMENTS["tet10"]())
+    dofs = unknowns(mesh, basis_of("tet10"))
     if made.plane is None:
         return of_mesh(dofs)
     both = of_mesh(dofs, parts=2)
@@ -75,7 +75,7 @@ def cut_size(made: Any) -> Size:
 
 
 def _of_file(file: Any) -> Size:
-    kind = ELEMENTS[SOLVED_AS.get(file.element, file.element)]()
+    kind = basis_of(SOLVED_AS.get(file.element, file.element))
     on = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
     count = 3 * int(np.dot(on, file.counts))
     entries = int(OWN_ENTRIES * 9 * len(kind.doflocs) ** 2 * file.counts[3])

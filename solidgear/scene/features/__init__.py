@@ -5,7 +5,7 @@ rules.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.around import meeting_problems
@@ -23,8 +23,7 @@ MOST_FEATURES = 20
 Feature: TypeAlias = Keyway | Flat | CrossHole | Teeth | Spline | BoltCircle
 #: by the kind that a file calls them
 FEATURES: dict[str, type[OnSegment]] = {
-    one.model_fields["kind"].default: one
-    for one in (Keyway, Flat, CrossHole, Teeth, Spline, BoltCircle)
+    one.model_fields["kind"].default: one for one in get_args(Feature)
 }
 
 

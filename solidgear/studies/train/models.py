@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solidgear.body import Body, as_supports
+from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.frames import shift
 from solidgear.ladder import build
@@ -108,7 +109,7 @@ class Workshop:
         if model is None or not cell:
             return np.inf
         facts = model.body.mesh
-        order = facts.get("order") or (1 if facts["element"] in ("tet4", "hex8") else 2)
+        order = facts.get("order") or ELEMENTS[facts["element"]].order
         materials = {segment.material for segment in self.scenes[side].segments}
         shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
         return float(order * shear / (8 * np.pi * cell))

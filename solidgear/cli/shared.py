@@ -1,0 +1,255 @@
+"""Options that several commands take, in groups.
+
+A command takes a group as one parameter, and every field of the group is one of its options: what
+is added to a group, all these commands take.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solidgear.cli.app import Group, Progress
+from solidgear.errors import SolidgearError, show
+from solidgear.ladder.registry import LADDER
+from solidgear.report.units import ENGINEERING, SYSTEMS
+
+if TYPE_CHECKING:
+    from solidgear.body import Body
+    from solidgear.judge.settle import Settled
+    from solidgear.scene import Scene
+
+#: the model that commands solve with unless told otherwise
+FIDELITY = "harmonic"
+#: the word for the cheapest mesh that keeps a tolerance, instead of a model
+AUTO = "auto"
+#: spellings of the option that names a model
+BY_MODEL = ("--model", "--fidelity", "-f")
+#: units of tables and pages unless told otherwise
+UNITS = ENGINEERING.name
+
+SceneFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Scene file (TOML), such as geometry/pinion_overhung.toml; - for standard input."
+    ),
+]
+if TYPE_CHECKING:
+    Choice = str
+    AutoChoice = str
+    UnitsChoice = str
+else:
+    UnitsChoice = StrEnum("UnitsChoice", [(name, name) for name in SYSTEMS])
+    Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
+    AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
+
+
+def share(text: str) -> float:
+    """A relative error from the command line."""
+    try:
+        return float(text)
+    except ValueError:
+        percent = text.strip().removesuffix("%").strip()
+        meant = f"{float(percent) / 100:g}" if _is_number(percent) else "0.01"
+        raise typer.BadParameter(
+            f'"{text}" is no plain number; a tolerance is a share: write {meant}'
+        ) from None
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"[0-9]*[.]?[0-9]+", text) is not None
+
+
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10; solidgear options lists them.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Run(Group):
+    """Options of every command that solves and tells numbers."""
+
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="Print JSON for machines instead of tables; always SI."),
+    ] = False
+
+    def progress(self) -> Progress:
+        """Lines on standard error, none beside JSON."""
+        return Progress(quiet=self.as_json)
+
+
+@dataclass(frozen=True)
+class Shown(Run):
+    """Those of a command whose numbers have other units than Hz."""
+
+    units: Annotated[
+        UnitsChoice,
+        typer.Option(
+            "--units",
+            help="Of tables and pages: "
+            + "; ".join(f"{units.name}: {units.about}" for units in SYSTEMS.values())
+            + ". JSON stays SI always.",
+        ),
+    ] = UNITS
+
+
+@dataclass(frozen=True)
+class Fixed(Group):
+    """A model and its mesh."""
+
+    fidelity: Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")] = FIDELITY
+    settings: Settings = None
+
+    def body(self, scene: Scene) -> Body:
+        """Body of a scene."""
+        return build_body(scene, self.fidelity, self.settings)
+
+
+@dataclass(frozen=True)
+class Chosen(Group):
+    """A model and its mesh, or the cheapest that keeps a tolerance."""
+
+    fidelity: Annotated[
+        AutoChoice,
+        typer.Option(
+            *BY_MODEL,
+            help="Model to solve with; auto: the cheapest whose bars are within --tol.",
+        ),
+    ] = AUTO
+    tol: Annotated[
+        float | None,
+        typer.Option(
+            "--tol",
+            parser=share,
+            metavar="FLOAT",
+            help="Of -f auto: relative error allowed; else the scene's own.",
+        ),
+    ] = None
+    settings: Settings = None
+
+    @property
+    def pairs(self) -> list[str]:
+        """``--set`` options."""
+        return self.settings or []
+
+    def automatic(self) -> bool:
+        """Whether the mesh is to be chosen; what does not go together is refused.
+
+        Raises
+        ------
+        SolidgearError
+            For a tolerance of a fixed model, which must not look as if it kept it, or a mesh that
+            is to be chosen and is set as well.
+        """
+        if self.fidelity != AUTO:
+            if self.tol is not None:
+                raise SolidgearError(
+                    f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.fidelity} is set by --set"
+                )
+            return False
+        if options(self.pairs):  # which says so where one is no key=value
+            raise SolidgearError(
+                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f {FIDELITY}"
+            )
+        return True
+
+
+@dataclass(frozen=True)
+class Solved(Chosen):
+    """The same of a single solution, which may be as large as a machine holds."""
+
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            "--engine",
+            help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) "
+            "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
+        ),
+    ] = None
+
+    @property
+    def pairs(self) -> list[str]:
+        """``--set`` options with that of ``--engine``."""
+        return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
+
+    def body(
+        self, scene: Scene, ask: str, points: Sequence[str] = ()
+    ) -> tuple[Body, Settled | None]:
+        """The body to solve with, and how it was chosen where it was.
+
+        Parameters
+        ----------
+        scene : Scene
+        ask : str
+        points : sequence of str
+            As for :func:`solidgear.judge.settle.settle`.
+        """
+        if not self.automatic():
+            return build_body(scene, self.fidelity, self.pairs), None
+        from solidgear.judge.settle import settle
+
+        # A second or less for most scenes: lines are for those who watch.
+        with Progress(quiet=not sys.stderr.isatty()) as progress:
+            settled = settle(scene, self.tol, ask, points=points, progress=progress)
+        return settled.body, settled
+
+
+def options(pairs: list[str] | None) -> dict:
+    """Builder options from ``key=value`` texts; numbers as numbers, a list with commas as a tuple."""
+    out: dict = {}
+    for pair in pairs or []:
+        key, sep, text = pair.partition("=")
+        if not sep or not key.isidentifier():
+            raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
+        if key in out:
+            raise SolidgearError(
+                f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3"
+            )
+        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
+    return out
+
+
+def options_by_name(
+    pairs: list[str] | None, names: Collection[str], what: str, example: str
+) -> dict[str, dict]:
+    """Builder options by the names of models or of shafts, from ``NAME.key=value`` texts."""
+    out: dict[str, list[str]] = {}
+    for pair in pairs or []:
+        name, dot, rest = pair.partition(".")
+        if not dot or name not in names:
+            raise SolidgearError(
+                f"--set {pair}: write {what.upper()}.key=value, such as --set {example}; "
+                f"{what}s: {', '.join(names)}"
+            )
+        out.setdefault(name, []).append(rest)
+    return {name: options(own) for name, own in out.items()}
+
+
+def _value(text: str):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(text, text)
+
+
+def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
+    """Body of a scene by one model, with ``--set`` options."""
+    from solidgear.ladder import build
+
+    # Checked here too: an option called scene or fidelity would be taken for an argument of
+    # `build`.
+    return build(scene, fidelity, **LADDER[fidelity].checked(options(pairs)))

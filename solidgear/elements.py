@@ -1,0 +1,44 @@
+"""Elements of volumes by name: their order, and how libraries and files call them.
+
+A name begins with the shape: ``tet`` or ``hex``. What is measured of an element stands where it is
+used: the meshes of charts in :mod:`solidgear.ladder.solid`, locking and the price of first order in
+:mod:`solidgear.studies.guards.elements`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Element(NamedTuple):
+    """An element of the 3D solid.
+
+    Attributes
+    ----------
+    order : int
+        Of what lies along an edge.
+    degree : int
+        Of polynomials that its quadrature integrates (of hexahedra, in every direction): stiffness
+        and mass of affine elements, and one order in reserve for curved ones.
+    basis : str
+        Its class in ``skfem.element``.
+    cell : str
+        Its kind of cell in meshio.
+    vtk : str
+        Its class of cell in VTK, which knows the order of nodes.
+    """
+
+    order: int
+    degree: int
+    basis: str
+    cell: str
+    vtk: str
+
+
+ELEMENTS = {
+    "hex20": Element(2, 7, "ElementHexS2", "hexahedron20", "vtkQuadraticHexahedron"),
+    "hex27": Element(2, 7, "ElementHex2", "hexahedron27", "vtkTriQuadraticHexahedron"),
+    "hex8": Element(1, 5, "ElementHex1", "hexahedron", "vtkHexahedron"),
+    "tet10": Element(2, 7, "ElementTetP2", "tetra10", "vtkQuadraticTetra"),
+    "tet4": Element(1, 2, "ElementTetP1", "tetra", "vtkTetra"),
+}
