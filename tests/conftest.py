@@ -2,7 +2,14 @@
 Ctrl-C is heard.
 """
 
+import ctypes
+import gc
+import hashlib
+import os
+import pickle
 import signal
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -21,6 +28,17 @@ def pytest_collection_modifyitems(items):
             raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
 
 
+@pytest.fixture(scope="module", autouse=True)
+def given_back():
+    """Memory that a file has used goes back to the system, which the allocator would keep: a process
+    that runs a hundred files would hold the largest of each.
+    """
+    yield
+    gc.collect()
+    if sys.platform == "linux" and hasattr(libc := ctypes.CDLL(None), "malloc_trim"):
+        libc.malloc_trim(0)
+
+
 @pytest.fixture(scope="session")
 def made_up_charts():
     """Charts of the made-up run as its page draws them, once for all files of a process: three
@@ -32,6 +50,29 @@ def made_up_charts():
     return drawn_charts(fixture_results(), None)
 
 
+@pytest.fixture(scope="module")
+def read_once():
+    """What a process of its own has made of a file, for the next test that has the same file.
+
+    Each start costs more than the reading; files that end a process are another function's.
+    """
+    from solidgear.meshing import part
+
+    known, starts = {}, part.isolated
+
+    def once(function, path, *arguments, **limits):
+        content = hashlib.sha256(Path(path).read_bytes()).digest()
+        key = (function.__qualname__, Path(path).suffix, content, pickle.dumps(arguments))
+        if key not in known:
+            known[key] = pickle.dumps(starts(function, path, *arguments, **limits))
+        return pickle.loads(known[key])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(part, "isolated", once)
+        patch.setattr("solidgear.models.solid.part.isolated", once)
+        yield
+
+
 @pytest.fixture
 def no_charts(monkeypatch):
     """Reports without their charts: drawing is what takes the time, and few tests look at them."""
@@ -41,10 +82,20 @@ def no_charts(monkeypatch):
 
 
 @pytest.fixture
-def run(monkeypatch, capsys, tmp_path):
-    """The installed command's entry point, in an empty folder: exit code, standard output and error."""
-    import sys
+def no_sudden_end(monkeypatch):
+    """Where the program ends at once, as of an output that cannot be written, a test ends and not
+    the process of all tests, without a word.
+    """
 
+    def end(code):
+        pytest.fail(f"the program would have ended at once with code {code}")
+
+    monkeypatch.setattr(os, "_exit", end)
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path, no_sudden_end):
+    """The installed command's entry point, in an empty folder: exit code, standard output and error."""
     from solidgear import cli
 
     monkeypatch.chdir(tmp_path)

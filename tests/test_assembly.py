@@ -16,7 +16,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.kernel.assembly import STRAIGHT, Pattern, inverted, straight
+from solidgear.kernel.assembly import STRAIGHT, straight
 from solidgear.models.solid import matrices as solid_matrices
 from solidgear.models.solid import mesh as solid_mesh
 from solidgear.scene import STEEL, Material, Port, Scene, Segment
@@ -37,44 +37,6 @@ class MeshHex20(MeshHex2):
     """Twenty-node geometry; scikit-fem ships none."""
 
     elem: type = ElementHexS2
-
-
-def frustum():
-    """A stubby hollow cone on a solid cylinder of another material: curved faces, a shoulder, two
-    materials.
-    """
-    other = Material(E=7e10, nu=0.33, density=2700.0)
-    segments = (
-        Segment.cylinder("disc", length=0.03, diameter=0.08),
-        Segment.cone(
-            "cone",
-            length=0.04,
-            start_diameter=0.05,
-            end_diameter=0.07,
-            bore=0.02,
-            y0=0.03,
-            material=other,
-        ),
-    )
-    return Scene.from_parts(segments, material=STEEL)
-
-
-def small_solid(element):
-    scene = frustum()
-    if element.startswith("tet"):
-        body = sg.build(scene, "solid", element=element, size=0.04, graded_size=0.04)
-    else:
-        body = sg.build(
-            scene,
-            "solid",
-            element=element,
-            size=0.04,
-            layers=0,
-            edge_layers=0,
-            radial_layers=0,
-            around=8,
-        )
-    return scene, body
 
 
 def own_mesh(geometry):
@@ -120,21 +82,6 @@ def assert_same(geometry, materials, within=SAME_SUM):
     rule = solid_matrices._cell_rule(geometry.name)
     for found, wanted in zip(own, skfem_elasticity(geometry, materials, quadrature=rule)):
         assert relative_difference(found, wanted) < within
-
-
-# scikit-fem's own forms on curved tetrahedra take the longest, and on bricks of 27 nodes
-@pytest.mark.parametrize(
-    "element",
-    [pytest.param(e, marks=pytest.mark.long if e in ("tet10", "hex27") else ()) for e in SOLID],
-)
-def test_curved_solid_matches_skfem_with_the_same_quadrature(element):
-    scene, body = small_solid(element)
-    rule = solid_matrices._cell_rule(element)
-    stiffness, mass = skfem_elasticity(
-        body.geometry, [s.material for s in scene.segments], quadrature=rule
-    )
-    assert relative_difference(body.blocks[0].stiffness, stiffness) < SAME_SUM
-    assert relative_difference(body.blocks[0].mass, mass) < SAME_SUM
 
 
 # --------------------------------------------------------------------------- distorted boxes
@@ -230,21 +177,6 @@ def test_patch_of_constant_stress(element, curved):
     assert np.abs(virial - stress * size.prod()).max() / np.abs(stress).max() / size.prod() < 1e-11
 
 
-def test_patch_test_can_fail():
-    # One element with another modulus must break the patch, or the test above would prove nothing.
-    mesh = box("hex27")
-    soft = np.zeros(mesh.t.shape[1], int)
-    soft[0] = 1
-    geometry = solid_mesh._isoparametric(mesh, "hex27", soft)
-    softer = Material(E=STEEL.E * (1 - 1e-6), nu=STEEL.nu, density=STEEL.density)
-    materials = [STEEL, softer]
-    k, _ = solid_matrices._matrices(geometry, materials)
-    u = (np.diag([1e-3, 0, 0]) @ geometry.nodes).T.ravel()
-    size = np.array([1.0, 2.0, 3.0])[:, None]
-    interior = np.all((geometry.nodes > 1e-9) & (geometry.nodes < (1 - 1e-9) * size), axis=0)
-    assert np.abs((k @ u).reshape(-1, 3)[interior]).max() / (abs(k) @ abs(u)).max() > 1e-9
-
-
 # --------------------------------------------------------------------------- straight and curved elements
 def bent_box(element, amount, every=3):
     """A box of straight elements of two materials with one mid node of every third element moved,
@@ -324,36 +256,6 @@ def test_one_bent_brick_among_straight_ones(element):
     found, _ = straight(geometry.element, geometry.nodes[:, geometry.dofs])
     assert 0 < found.sum() < 8
     assert_same(geometry, TWO)
-
-
-@pytest.mark.parametrize("dim", [2, 3])
-def test_inverses_by_cofactors(dim):
-    jac = np.random.default_rng(0).standard_normal((50, dim, dim)) + 3 * np.eye(dim)
-    inverse, det = inverted(jac.transpose(1, 2, 0))
-    # condition numbers stay below a hundred or so
-    assert np.abs(inverse.transpose(2, 0, 1) @ jac - np.eye(dim)).max() < 1e-13
-    assert det == pytest.approx(np.linalg.det(jac), rel=1e-13)
-
-
-@pytest.mark.parametrize("components", [1, 2, 3])
-def test_scatter_of_unsymmetric_element_matrices_is_the_sum_one_by_one(components):
-    rng = np.random.default_rng(5)
-    dofs = np.array([rng.permutation(12)[:5] for _ in range(9)]).T
-    dofs[:, 0], dofs[:2, 1] = [0, 11, 3, 7, 5], [10, 2]
-    dofs = np.unique(dofs, return_inverse=True)[1].reshape(dofs.shape)
-    n, c = dofs.max() + 1, components
-    values = rng.standard_normal((c, c, 9, 5, 5))
-    whole = Pattern(dofs).sum(c)
-    whole.add(np.array([4, 0, 8]), values[:, :, [4, 0, 8]])  # any order, any batches
-    whole.add(np.array([1, 2, 3, 5, 6, 7]), values[:, :, [1, 2, 3, 5, 6, 7]])
-    expected = np.zeros((n, c, n, c))
-    for e in range(9):
-        for a in range(5):
-            for b in range(5):
-                expected[dofs[a, e], :, dofs[b, e]] += values[:, :, e, a, b]
-    found = whole.matrix()
-    assert np.abs(found.toarray() - expected.reshape(n * c, n * c)).max() < 1e-14
-    assert found.has_canonical_format
 
 
 # --------------------------------------------------------------------------- harmonic blocks

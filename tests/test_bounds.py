@@ -6,7 +6,6 @@ parallel sides they can do what a first mesh can, and differences have a sign.
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 import pytest
@@ -116,9 +115,10 @@ def fine_mesh(scene, body, **options):
     return sg.build(scene, "harmonic", **{**FIRST, "order": 7}, cuts=cuts, **options)
 
 
-@cache
-def solved(name):
-    scene = SHAFTS[name]()
+@pytest.fixture(scope="module")
+def one(request):
+    """A shaft, solved once for all tests that ask for it; one at a time is held in memory."""
+    scene = SHAFTS[request.param]()
     supports, body = as_supports(scene), sg.build(scene, "harmonic", **FIRST)
     fine = fine_mesh(scene, body)
     found, truth = (
@@ -144,10 +144,9 @@ def within(low, high, scale):
 
 
 # --------------------------------------------------------------------------- bodies
-@pytest.mark.parametrize("name", SHAFTS)
-def test_errors_are_within_bars_and_bars_hardly_wider(name):
+@pytest.mark.parametrize("one", SHAFTS, indirect=True)
+def test_errors_are_within_bars_and_bars_hardly_wider(one):
     """Of compliances, stiffnesses with all else held, and frequencies."""
-    one = solved(name)
     assert set(MODES) < set(one.bars) and {"C_zz", "K_thx", "C_thy", "K_x,thz"} < set(one.bars)
     for q, bar in one.bars.items():
         value, scale = one.values[q], size(one.truth, q)
@@ -162,23 +161,22 @@ def test_errors_are_within_bars_and_bars_hardly_wider(name):
             assert abs(bar.middle - one.truth[q]) <= bar.about_middle * scale < bar.width * scale
 
 
-def test_a_plane_that_turns_as_a_whole_twists_exactly_and_says_so():
-    one = solved("section tie")
+@pytest.mark.parametrize("one", ["section tie"], indirect=True)
+def test_a_plane_that_turns_as_a_whole_twists_exactly_and_says_so(one):
     assert one.values["C_thy"] == pytest.approx(one.truth["C_thy"], rel=1e-10)
     assert one.bars["C_thy"].width < UNSEEN
 
 
-@pytest.mark.parametrize("name", SHAFTS)
-def test_the_exact_flexibility_lies_between_two_matrices(name):
+@pytest.mark.parametrize("one", SHAFTS, indirect=True)
+def test_the_exact_flexibility_lies_between_two_matrices(one):
     """No load whatever makes the exact body stiffer than the mesh, or softer than the bound."""
-    one = solved(name)
     stiff, exact, soft = (flexibility(body).matrix for body in (one.body, one.fine, one.soft))
     assert within(stiff, exact, exact) and within(exact, soft, exact)
 
 
-def test_bounds_come_from_where_the_stress_is_sharpest():
+@pytest.mark.parametrize("one", ["step"], indirect=True)
+def test_bounds_come_from_where_the_stress_is_sharpest(one):
     """Of a stepped shaft from the cells at the shoulder and at the ends of loaded seats."""
-    one = solved("step")
     by_cell = one.bounds.of_ports.trace(axis1=1, axis2=2)
     corners = richer_space(one.scene, one.body).corners
     assert {kind for kind, _ in corners.values()} == {"re-entrant", "load"}
@@ -188,10 +186,10 @@ def test_bounds_come_from_where_the_stress_is_sharpest():
 
 
 # --------------------------------------------------------------------------- supports
-@pytest.mark.parametrize("name", ["step", "rigid seat at a shoulder"])
-def test_the_same_bound_holds_on_any_bearings(name):
+@pytest.mark.parametrize("one", ["step", "rigid seat at a shoulder"], indirect=True)
+def test_the_same_bound_holds_on_any_bearings(one):
     """From springs that hide the mesh to a grip that shows nothing else; nothing is solved again."""
-    one, opened = solved(name), []
+    opened = []
     for k in 10.0 ** np.arange(4, 12):
         (bearing,) = one.scene.bearings
         held = bearing.with_changes(stiffness=k * np.diag([1, 2, 0.5, 1e-4, 1e-4, 1e-4]))
@@ -242,8 +240,8 @@ def test_stiffness_between_two_held_points_lies_between_that_of_both_bodies(two_
 
 
 # --------------------------------------------------------------------------- modes
-def test_frequencies_of_a_body_that_nothing_holds_lie_within_bounds():
-    one = solved("step")
+@pytest.mark.parametrize("one", ["step"], indirect=True)
+def test_frequencies_of_a_body_that_nothing_holds_lie_within_bounds(one):
     free = [searched(body, as_supports(()), 8, MODES, spare=True) for body in (one.body, one.fine)]
     bounds = harmonic_bounds(one.scene, one.body, statics=False, found=free[0], wanted=MODES)
     for name in MODES:

@@ -53,7 +53,7 @@ SHOWING = [p for p in PAGES if "console" in kinds(p)]
 
 
 @pytest.fixture
-def here(monkeypatch, capfd):
+def here(monkeypatch, capfd, no_sudden_end):
     """Commands of pages in this process: starting one costs more than most of them take.
 
     That the program starts as one is the claim of `tests/test_cli.py`, and of the slow pages.

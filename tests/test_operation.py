@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("no_charts")
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
-OTHER = sg.load(ROOT / "geometry" / "shaft_stepped.toml")
+OTHER = str(ROOT / "geometry" / "shaft_stepped.toml")
 posix = pytest.mark.skipif(os.name != "posix", reason="signals and locks of POSIX")
 # Long enough for a machine that does ten other things; what is waited for takes seconds.
 PATIENCE = 120
@@ -131,54 +131,79 @@ def test_ctrl_c_while_modules_are_read():
 
 
 # --------------------------------------------------------------------------- killed
+#: files of a report that take their place one after the other: results, shape, results again, report
+FILES = 4
+# A process without the threads of this one forks for every file, and kills the child before it.
+KILLED = """
+import os, shutil, signal, sys
+from pathlib import Path
+import solidgear as sg
+from solidgear.report import charts
+from solidgear.studies.comparison import compare
+charts.CHARTS = dict.fromkeys(charts.CHARTS, lambda results: None)
+root, scene, other, files = Path(sys.argv[1]), *sys.argv[2:4], int(sys.argv[4])
+before = compare(sg.load(other), ("euler", "timoshenko"))
+found = compare(sg.load(scene), ("euler",))
+real, done = os.replace, []
+
+def replace(*names):
+    done.append(names)
+    if len(done) == at:
+        os.kill(os.getpid(), signal.SIGKILL)
+    real(*names)
+
+for at in range(1, files + 2):
+    folder = root / str(at)
+    before.write_report(folder / "again", renders=False)
+    shutil.copytree(folder / "again", folder / "old")
+    child = os.fork()
+    if child == 0:
+        os.replace = replace
+        try:
+            found.write_report(folder / "again", renders=False)
+        finally:
+            os._exit(0)
+    status = os.waitpid(child, 0)[1]
+    (folder / "status").write_text(str(os.waitstatus_to_exitcode(status)))
+    shutil.copytree(folder / "again", folder / "killed")
+    found.write_report(folder / "again", renders=False)
+"""
+
+
 @pytest.fixture(scope="module")
-def two_runs():
-    """One run of another scene, and one of this: what stands in a folder and what is to come."""
-    return compare(OTHER, ("euler", "timoshenko")), compare(sg.load(SCENE), ("euler",))
+def killed(tmp_path_factory):
+    """Folders of a run of another scene in which one of this scene was killed before its n-th file."""
+    root = tmp_path_factory.mktemp("killed")
+    child = started(KILLED, root, SCENE, OTHER, FILES)
+    try:
+        _, err = child.communicate(timeout=PATIENCE)
+    finally:
+        child.kill()
+    assert child.returncode == 0, err
+    return root
 
 
 @posix
-@pytest.mark.parametrize("at", range(1, 6))
-def test_killed_while_files_are_written(at, two_runs, tmp_path):
+@pytest.mark.parametrize("at", range(1, FILES + 2))
+def test_killed_while_files_are_written(at, killed):
     """Before each file takes its place in turn: all others are whole, and no report or shape stands
     beside numbers that are not its own.
     """
-    before, found = two_runs
-    before.write_report(tmp_path, renders=False)
-    old = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
-    child = os.fork()
-    if child == 0:
-        real, count = os.replace, []
-
-        def replace(*names):
-            count.append(1)
-            if len(count) == at:
-                os.kill(os.getpid(), signal.SIGKILL)
-            real(*names)
-
-        os.replace = replace
-        try:
-            found.write_report(tmp_path, renders=False)
-        finally:
-            os._exit(0)
-    _, status = os.waitpid(child, 0)
-    last = at == 5  # results, vtu, results again, report: there is no fifth
-    assert os.WIFSIGNALED(status) != last
-    shown = {p.name: p for p in tmp_path.iterdir() if not p.name.startswith(".")}
+    folder = killed / str(at)
+    was_killed = int((folder / "status").read_text()) == -signal.SIGKILL
+    assert was_killed == (at <= FILES)
+    shown = {p.name: p for p in (folder / "killed").iterdir() if not p.name.startswith(".")}
     assert all(whole(p) for p in shown.values())
     scene = json.loads(shown["results.json"].read_text())["scene"]["name"]
-    fresh = scene == found.scene.name
+    fresh = scene == sg.load(SCENE).name
     assert fresh == (at > 1)
     for name in ("report.html", "modes_euler.vtu", "modes_timoshenko.vtu"):
         if name in shown:
-            assert (shown[name].read_bytes() != old[name]) == fresh, name
+            old = (folder / "old" / name).read_bytes()
+            assert (shown[name].read_bytes() != old) == fresh, name
     # The next run finds neither a lock nor halves in its way, and leaves its own files only.
-    found.write_report(tmp_path, renders=False)
-    assert {p.name for p in tmp_path.iterdir()} == {
-        "results.json",
-        "report.html",
-        "modes_euler.vtu",
-    }
+    left = {p.name for p in (folder / "again").iterdir()}
+    assert left == {"results.json", "report.html", "modes_euler.vtu"}
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
@@ -210,7 +235,7 @@ def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
 
 # --------------------------------------------------------------------------- a folder that is used again
 def test_what_an_earlier_run_left_goes_and_nothing_else(tmp_path):
-    compare(OTHER, ("euler", "timoshenko")).write_report(tmp_path, renders=False)
+    compare(sg.load(OTHER), ("euler", "timoshenko")).write_report(tmp_path, renders=False)
     stored = json.loads((tmp_path / "results.json").read_text())
     assert stored["files"] == ["report.html", "modes_euler.vtu", "modes_timoshenko.vtu"]
     # A list that was tampered with names nothing but files of our own making.
@@ -231,7 +256,7 @@ def test_what_an_earlier_run_left_goes_and_nothing_else(tmp_path):
     (tmp_path / "results.json").write_text(json.dumps(stored))
     outside = tmp_path.parent / "outside.txt"
     outside.write_text("mine")
-    compare(OTHER, ("euler",)).write_report(tmp_path, renders=False)
+    compare(sg.load(OTHER), ("euler",)).write_report(tmp_path, renders=False)
     assert {p.name for p in tmp_path.iterdir()} == {
         "results.json",
         "report.html",
@@ -248,7 +273,7 @@ def test_what_an_earlier_run_left_goes_and_nothing_else(tmp_path):
 )
 def test_results_that_are_not_ours_are_no_hindrance(text, tmp_path):
     (tmp_path / "results.json").write_bytes(text.encode("utf-8", "surrogateescape"))
-    compare(OTHER, ("euler",)).write_report(tmp_path, renders=False)
+    compare(sg.load(OTHER), ("euler",)).write_report(tmp_path, renders=False)
     assert json.loads((tmp_path / "results.json").read_text())["complete"]
 
 

@@ -65,12 +65,6 @@ def made(points, bar=1e-4, **more):
 
 
 # ------------------------------------------------------------------------------------------------- front
-def test_front_of_hand_data():
-    cost = [1.0, 2.0, 2.0, 3.0, 4.0, 5.0]
-    error = [1e-1, 1e-2, 2e-2, 5e-2, 1e-3, 1e-3]
-    # the third costs as much as the second and errs more; the fourth is beaten in both; the sixth
-    # errs as much as the fifth and costs more
-    assert front(cost, error) == [0, 1, 4]
 
 
 def test_points_without_a_number_take_no_part():

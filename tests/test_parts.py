@@ -1,7 +1,6 @@
 """Parts from STEP and mesh files: what went out comes in again, whatever unit, axis and format."""
 
 import functools
-import hashlib
 import math
 import pickle
 from dataclasses import replace
@@ -14,7 +13,7 @@ import pytest
 import solidgear as sg
 from solidgear.elements import ELEMENTS
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing import part
+from solidgear.machine.isolated import isolated
 from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
@@ -24,6 +23,7 @@ from solidgear.scene import Keyway
 from solidgear.studies import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
 
+pytestmark = pytest.mark.usefixtures("read_once")
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_step.toml"
 COARSE = {"refinement": 0.25}
@@ -47,27 +47,6 @@ def load(folder, **body):
     path = folder / "scene.toml"
     path.write_text(scene_text(**body))
     return sg.load(path)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def read_once():
-    """What a process of its own has made of a file, for the next test that has the same file.
-
-    Each start costs more than the reading; files that end a process are another function's.
-    """
-    known, starts = {}, part.isolated
-
-    def once(function, path, *arguments, **limits):
-        content = hashlib.sha256(Path(path).read_bytes()).digest()
-        key = (function.__qualname__, Path(path).suffix, content, pickle.dumps(arguments))
-        if key not in known:
-            known[key] = pickle.dumps(starts(function, path, *arguments, **limits))
-        return pickle.loads(known[key])
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(part, "isolated", once)
-        patch.setattr("solidgear.models.solid.part.isolated", once)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -507,6 +486,7 @@ def test_broken_files_end_in_a_sentence(cases, seed):
 
     quick = (cut_off, emptied, garbled, lines_left_out, rescaled)
     make = functools.partial(PARTS.make, changes=quick)
-    found = run(replace(PARTS, make=make), cases, seed)
+    # limits are set on the process that runs them
+    found = isolated(run, replace(PARTS, make=make), cases, seed, seconds=200)
     assert not [one.told() for one in found if one.kind == "finding"]
     assert sum(one.kind == "refused" for one in found) > cases / 2

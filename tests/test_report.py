@@ -73,48 +73,17 @@ def test_identifiers_of_the_charts_do_not_collide(page):
     assert set(re.findall(r'(?:url\(|href=")#([^")]+)', page)) <= set(ids)
 
 
-@pytest.mark.parametrize(
-    "figure",
-    [
-        "4710.8 N/µm",
-        "4710.8",
-        "7327.9",
-        "1136.4",
-        "240 130",  # K_z,thx, kN/rad
-        "19 010 000 N m/rad",
-        "2758 Hz",  # with a bar of 0.05 %, the fourth figure is the first uncertain one
-        "0.59611 µm/kN",
-        "3343.9",
-        "1385.6",
-        "138 210",
-        "0.12 %",
-        "35.3",
-        "2610",
-        "+26.0 %",
-        "-43.1 %",
-        "0.9993",
-        "1.92",
-        "1.09",
-        "3.1e-14",
-        "29.1226",
-        "58.2453",
-        "5415.5",
-        "published",
-        "identified",
-        "Seat width assumed.",
-        "41.2",
-        "2.4.0",
-    ],
-)
-def test_figures_of_the_run_are_on_the_page(page, figure):
-    assert figure in text_of(page)
+def test_figures_of_the_run_are_on_the_page(page):
+    # 240 130: K_z,thx in kN/rad; 2758 Hz: with a bar of 0.05 %, the fourth is the first uncertain one
+    figures = "4710.8 N/µm|7327.9|1136.4|240 130|19 010 000 N m/rad|2758 Hz|0.59611 µm/kN|3343.9"
+    figures += "|1385.6|138 210|0.12 %|35.3|2610|+26.0 %|-43.1 %|0.9993|1.92|1.09|3.1e-14|29.1226"
+    figures += "|58.2453|5415.5|published|identified|Seat width assumed.|41.2|2.4.0"
+    assert not [figure for figure in figures.split("|") if figure not in text_of(page)]
 
 
-@pytest.mark.parametrize(
-    "figure", ["4.7108e9", "7.3279e9", "1.1364e9", "240.13e6", "19.010e6", "596.11e-12", "5.4155e9"]
-)
-def test_the_same_figures_in_si(si_page, figure):
-    assert figure in text_of(si_page)
+def test_the_same_figures_in_si(si_page):
+    figures = "4.7108e9 7.3279e9 1.1364e9 240.13e6 19.010e6 596.11e-12 5.4155e9".split()
+    assert not [figure for figure in figures if figure not in text_of(si_page)]
 
 
 def test_page_says_where_the_error_sits(page):
@@ -350,21 +319,9 @@ def test_final_table_fits_eighty_columns():
     assert max(len(line.rstrip()) for line in text.splitlines()[:8]) <= 80
     text = shown(final_table(fixture_results()), width=80)
     assert "…" not in text and "\x1b" not in text
-    for word in (
-        "4711",
-        "0.5961",
-        "N/um",
-        "um/kN",
-        "2758.1",
-        "138k",
-        "0.12 %",
-        "24.7",
-        "n.r.",
-        "not resolved",
-        "ref.",
-        "shear: the shaft is stubby",
-    ):
-        assert word in text
+    words = "4711|0.5961|N/um|um/kN|2758.1|138k|0.12 %|24.7|n.r.|not resolved|ref."
+    assert not [word for word in words.split("|") if word not in text]
+    assert "shear: the shaft is stubby" in text
 
 
 def test_final_table_survives_names_with_brackets():

@@ -44,7 +44,7 @@ def scene():
 
 @pytest.fixture(scope="module")
 def truth(scene):
-    return solve(scene, "harmonic", 4, **FINE)
+    return solve(scene, "harmonic", 14, **FINE)
 
 
 def apart(matrix, exact):
@@ -116,17 +116,6 @@ def test_the_plane_that_rests_on_the_mesh_decides(scene):
     assert soft_plane.reached and abs(coarse / exact - 1) > 5e-4
 
 
-def test_attachments_are_honoured(run):
-    tied = {}
-    for attachment in ("average", "rigid"):
-        _, out, _ = run("stiffness", SCENE, "--attachment", attachment, "--json")
-        tied[attachment] = json.loads(out)
-        assert tied[attachment]["attachment"] == attachment and tied[attachment]["reached"]
-    # rigid seats lend the shaft some stiffness: measured 8 %
-    ratio = tied["rigid"]["stiffness"][2][2] / tied["average"]["stiffness"][2][2]
-    assert ratio > 1.02
-
-
 def test_a_body_that_nothing_holds_has_a_stiffness_of_zero_and_no_bar(run):
     code, out, _ = run("stiffness", FREE, "--json")
     found = json.loads(out)
@@ -151,10 +140,9 @@ def test_modes_are_those_of_the_mesh_and_the_first_of_every_family_have_a_bar(ru
         assert abs(listed[name] / truth.quantities[name] - 1) <= found["bars"][name] + REFERENCE
     # and all others that are listed, which the tolerance is not kept for
     assert found["without_bar"] == [] and {"bending 3", "axial 2"} < set(listed)
-    fine = sg.modes(sg.build(scene, "harmonic", order=6, layers=4, edge_layers=3), scene, 14)
     for mode in found["modes"]:
         if mode["frequency_hz"] > 0:
-            error = 1 - fine.named(mode["name"]).frequency_hz / mode["frequency_hz"]
+            error = 1 - truth.modes.named(mode["name"]).frequency_hz / mode["frequency_hz"]
             assert 0 <= error + REFERENCE and error <= mode["bar"] + REFERENCE < 0.02
 
 

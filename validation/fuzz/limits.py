@@ -28,7 +28,8 @@ class Limits:
     wall : float
         Seconds of wall time, for what waits without computing or computes in another process.
     room : int
-        Bytes that it may add to the process.
+        Bytes that it may add to the process. Address space that is only reserved is not counted: what
+        draws charts reserves 33 GB, and ends the process where it cannot.
     """
 
     cpu: float = 30.0
@@ -48,10 +49,10 @@ class Limits:
             )
 
         old = {number: signal.signal(number, stop) for number in (signal.SIGPROF, signal.SIGALRM)}
-        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+        soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
         if STATUS.exists():
-            held = int(STATUS.read_text().split()[0]) * resource.getpagesize()
-            resource.setrlimit(resource.RLIMIT_AS, (held + self.room, hard))
+            held = int(STATUS.read_text().split()[5]) * resource.getpagesize()
+            resource.setrlimit(resource.RLIMIT_DATA, (held + self.room, hard))
         signal.setitimer(signal.ITIMER_PROF, self.cpu)
         signal.setitimer(signal.ITIMER_REAL, self.wall)
         try:
@@ -61,6 +62,6 @@ class Limits:
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
             signal.setitimer(signal.ITIMER_REAL, 0)
-            resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+            resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
             for number, handler in old.items():
                 signal.signal(number, handler)

@@ -52,7 +52,7 @@ def mesh_bars(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> both = {"pinion": "harmonic", "gear": "harmonic"}
+    >>> both = {"pinion": "harmonic", "gear": "timoshenko"}
     >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-3)
     True
     """
