@@ -312,6 +312,16 @@ def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical
     assert told["f_sh"] == pytest.approx(0.040 * told["in plane"], rel=1e-12)
 
 
+def test_misalignment_of_parallel_shafts_is_that_of_both(helical):
+    shop = Workshop(helical)
+    found = deflection(shop, OperatingPoint(torque=100.0), "timoshenko", "timoshenko")
+    tilt = [np.array([m.value for m in found.displacement[s]])[3:] for s in ("pinion", "gear")]
+    slope = np.cross(tilt[0] - tilt[1], [0.0, 1.0, 0.0])
+    normal = shop.contact.pinion.normal * [1, 0, 1]
+    told = {m.name: m.value for m in found.misalignment}
+    assert told["in plane"] == pytest.approx(slope @ normal / np.linalg.norm(normal), rel=1e-9)
+
+
 @pytest.mark.parametrize(
     "motion, told",
     [
