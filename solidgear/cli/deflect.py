@@ -187,11 +187,14 @@ def _shaft(
         tables.models(found.shafts, scene.port.name, shown),
         *tables.bearings([judge], shown),
         tables.displacements([judge], shown),
+        *map(caution, judge.notes),
     ]
     if out:
         shafts = {shaft.model: [shaft] for shaft in found.shafts}
         told_first = [tables.models(found.shafts, scene.port.name, shown)]
         title = f"{found.title}: deflection"
-        files = write_deflection(out, shafts, found.as_dict(), title, lead, told_first, (), shown)
+        files = write_deflection(
+            out, shafts, found.as_dict(), title, lead, told_first, judge.notes, shown
+        )
         lines.append(f"Written: {', '.join(map(str, files))}")
     return found.as_dict(), lines

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import degrees
+from math import degrees, isfinite
 from typing import Any
 
 from solidgear.report.table import Cell, Column, Table, quantity, word
@@ -113,11 +113,20 @@ def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
     loads = [
         name,
         quantity("radial", "N", units, lambda row: row[1].radial, 4),
-        Column("towards, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
+        Column("at, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
         quantity("axial", "N", units, lambda row: float(row[1].load[1]), 4),
         quantity("moment", "N m", units, lambda row: row[1].moment, 4),
     ]
-    note = "Load of the shaft on the bearing; its direction counts from x towards z."
+    note = "Load of the shaft on the bearing; it acts at an angle from x towards z."
+    if inside:
+        loads += [
+            Column("C0/P0", lambda row: _life(row[1], "static_safety", 1.0)),
+            Column("L10r, 1e6", lambda row: _life(row[1], "reference", 1e6)),
+        ]
+        note += (
+            " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
+            "revolutions; solidgear bearing tells how sure both are, and adds up a duty table."
+        )
     out = [Table("Bearing loads", loads, rows, note)]
     if inside:
         carried = [
@@ -128,7 +137,7 @@ def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
             quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
         ]
         note = (
-            "Elements that carry, row by row; largest load of one; largest pressure at both rings, by "
+            "Elements that carry of all, row by row; largest load of one; largest pressure at both rings, by "
             "Hertz or lamina by lamina; "
             "radial clearance once mounted and warm."
         )
@@ -136,10 +145,17 @@ def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
     return out
 
 
+def _life(bearing: Any, name: str, unit: float) -> str | None:
+    if bearing.life is None:
+        return None
+    value = getattr(bearing.life, name) / unit
+    return f"{value:.3g}" if isfinite(value) else "endless"
+
+
 def _elements(bearing: Any) -> str | Cell | None:
     if not bearing.rows:
         return None
-    told = ", ".join(f"{n} of {len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
+    told = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
     return told if any(bearing.loaded) else Cell("none", "bad")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
+from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import made_of, mounted
 from solidgear.body import Body
@@ -17,7 +18,7 @@ from solidgear.frames import shift
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.reduction.rubin import rubin
-from solidgear.scene import Scene
+from solidgear.scene import Bearing, Scene
 from solidgear.solve.naming import Projection
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium
 from solidgear.system.system import System
@@ -51,6 +52,8 @@ class BearingState:
         Radial, at work, m; None of a bearing without catalogue data.
     rows : tuple of Contacts
         Loads of rolling elements, row by row; none without catalogue data.
+    life : Life or None
+        With its static safety; None without catalogue data.
     """
 
     name: str
@@ -60,6 +63,7 @@ class BearingState:
     stiffness: np.ndarray
     clearance: float | None
     rows: tuple[Contacts, ...]
+    life: Life | None
 
     @property
     def radial(self) -> float:
@@ -101,6 +105,8 @@ class BearingState:
             "relative_motion": self.relative.tolist(),
             "stiffness": self.stiffness.tolist(),
             "clearance": self.clearance,
+            "reference_life": None if self.life is None else _finite(self.life.reference),
+            "static_safety": None if self.life is None else _finite(self.life.static_safety),
             "rows": [
                 {
                     "azimuth": row.azimuth.tolist(),
@@ -111,6 +117,11 @@ class BearingState:
                 for row in self.rows
             ],
         }
+
+
+def _finite(value: float) -> float | None:
+    """A number for JSON, which has none that is infinite."""
+    return value if np.isfinite(value) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +146,12 @@ class ShaftDeflection:
     line: np.ndarray
     ports: dict[str, np.ndarray]
     bearings: tuple[BearingState, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on bearings beyond what they are rated for."""
+        told = [(b.name, note) for b in self.bearings if b.life for note in b.life.notes]
+        return tuple(f"bearing {self.name}.{name}: {note}" for name, note in told)
 
     def as_dict(self) -> dict:
         """Plain data in SI that JSON can hold."""
@@ -281,7 +298,7 @@ def shaft_deflection(
         for station in scene.stations
     }
     bearings = tuple(
-        _bearing(f"{part}.{b.name}", b.name, b.y, found, made)
+        _bearing(f"{part}.{b.name}", b, found, made)
         for b in scene.bearings
         if f"{part}.{b.name}" in found.load
     )
@@ -310,16 +327,12 @@ def _rigid_line(
 
 
 def _bearing(
-    end: str, name: str, place: float, found: SystemEquilibrium, made: Mapping[str, Catalogued]
+    end: str, bearing: Bearing, found: SystemEquilibrium, made: Mapping[str, Catalogued]
 ) -> BearingState:
-    own = made.get(end)
+    own, data = made.get(end), bearing.catalogue
     relative = found.relative[end]
-    return BearingState(
-        name,
-        place,
-        found.load[end],
-        relative,
-        found.tangent[end],
-        None if own is None else own.clearance,
-        () if own is None else own.bearing.contacts(relative),
-    )
+    told = bearing.name, bearing.y, found.load[end], relative, found.tangent[end]
+    if own is None or data is None:
+        return BearingState(*told, None, (), None)
+    rows = own.bearing.contacts(relative)
+    return BearingState(*told, own.clearance, rows, life(data, own, relative))

@@ -8,12 +8,11 @@ from time import perf_counter
 
 import numpy as np
 
-from solidgear.bearings.catalogued import End
-from solidgear.bearings.solved import AS_TOLD, Choice
 from solidgear.errors import SolidgearError
 from solidgear.judge.deviations import WITHIN, gap_verdict
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES
+from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
@@ -154,6 +153,8 @@ class Deflections:
 
     def verdict(self) -> str:
         """Sentence on the cheapest model for the misalignment."""
+        if not self.standings:
+            return "One model was solved: which is enough is not judged."
         asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
         if self.cheapest is None:
             return f"No cheaper model is known to hold {asked}: use {self.judge.pinion}."
@@ -268,16 +269,18 @@ def deflection(
         )
         for side, rung in rungs.items()
     )
+    notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     moved = {side: _six(workshop, side, state, bars) for side in SIDES}
     return TrainDeflection(
-        point, pinion, gear, state.mesh_force, told, moved, shafts, state.notes, seconds
+        point, pinion, gear, state.mesh_force, told, moved, shafts, tuple(notes), seconds
     )
 
 
 def _with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     """The same with the ranges of its misalignment over estimated insides and clearance classes."""
     values = [[m.value for m in found.misalignment]]
-    for choice in _open_choices(workshop):
+    _, choices = left_open(workshop.train.member(side).scene for side in SIDES)
+    for choice in choices:
         state = Operating(workshop, found.pinion, found.gear, choice).at(found.point)
         measures = misalignment(workshop.on_flank(found.point.coast), state.system)
         values.append([float(m.row @ state.coordinates) for m in measures])
@@ -286,21 +289,6 @@ def _with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     low, high = np.min(values, axis=0), np.max(values, axis=0)
     told = [replace(m, open=(float(a), float(b))) for m, a, b in zip(found.misalignment, low, high)]
     return replace(found, misalignment=tuple(told))
-
-
-def _open_choices(workshop: Workshop) -> list[Choice]:
-    """Corners of what catalogue data leave open: estimated insides, and classes of clearance."""
-    data = [
-        b.catalogue
-        for side in SIDES
-        for b in workshop.train.member(side).scene.bearings
-        if b.catalogue is not None
-    ]
-    estimated = any(d.estimated for d in data)
-    ends: tuple[End, ...] = ("softer", "stiffer") if estimated else ("middle",)
-    shares = (0.0, 1.0) if any(isinstance(d.clearance, str) for d in data) else (0.5,)
-    choices = [Choice(end=end, clearance=share) for end in ends for share in shares]
-    return [choice for choice in choices if choice != AS_TOLD]
 
 
 def _six(
