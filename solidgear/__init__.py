@@ -52,6 +52,7 @@ _WHERE = {
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
     "compare": "solidgear.studies.comparison",
+    "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
     "SceneError": "solidgear.errors",
@@ -93,6 +94,7 @@ __all__ = [
     "mesh_spring",
     "modes",
     "rubin",
+    "shaft_stress",
     "torsion_spring",
     "turn",
 ]
@@ -123,6 +125,7 @@ if TYPE_CHECKING:
     from solidgear.solve.statics import condense
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
+    from solidgear.studies.stress.shaft import shaft_stress
     from solidgear.system import (
         BearingSpring,
         Inertia,

@@ -390,3 +390,12 @@ def test_check_tells_of_the_mesh_that_holds_a_chamfer():
     counted = LADDER["solid"].size(scene, {"element": "tet10"}).unknowns
     fact = next(elements.memory(Probe(scene, sg.build(scene, "timoshenko")))).sentence
     assert f"the default 3D solid, {counted} unknowns" in fact
+
+
+def test_a_face_is_full_though_its_two_segments_miss_one_another_by_a_hair():
+    """The root and the rim would meet, and cells between them fold."""
+    thin = Segment.cylinder("thin", length=0.1 + 4e-10, diameter=0.03)
+    thick = Segment.cylinder("thick", y0=0.1, length=0.1, diameter=0.04)
+    blends = [Fillet(name=e, y=0.1, edge=e, radius=0.0027) for e in ("root", "rim")]
+    with pytest.raises(SceneError, match="leaves less than a twentieth of the face"):
+        Scene.from_parts([thin, thick], port=Port(y=0.2, lo=0.19, hi=0.2), blends=blends)

@@ -43,7 +43,7 @@ class Units:
     of : mapping of str to (str, float)
         SI unit -> its name here, and how many of it make one of SI; those left out stay as they
         are. ``m moved`` is a metre of motion, which is read finer than one of length; ``rad moved``
-        is the like of angles.
+        is the like of angles, and ``Pa stressed`` a stress, which is far below a modulus.
     exponents : bool
         Whether numbers carry exponents (multiples of three) or all their digits.
     """
@@ -159,12 +159,18 @@ ENGINEERING = Units(
         "m moved": ("µm", 1e6),
         "rad moved": ("µrad", 1e6),
         "Pa": ("GPa", 1e-9),
+        "Pa stressed": ("MPa", 1e-6),
     },
 )
 SI = Units(
     "si",
     "N/m, m/N, N m/rad; lengths in mm",
-    {"m": ("mm", 1e3), "m moved": ("m", 1.0), "rad moved": ("rad", 1.0)},
+    {
+        "m": ("mm", 1e3),
+        "m moved": ("m", 1.0),
+        "rad moved": ("rad", 1.0),
+        "Pa stressed": ("Pa", 1.0),
+    },
     exponents=True,
 )
 US = Units(
@@ -184,6 +190,7 @@ US = Units(
         "kg m²": ("lb in²", 1 / (POUND_MASS * INCH**2)),
         "N m": ("lbf in", 1 / (POUND * INCH)),
         "Pa": ("ksi", 1e-3 * INCH**2 / POUND),
+        "Pa stressed": ("ksi", 1e-3 * INCH**2 / POUND),
         "N": ("lbf", 1 / POUND),
     },
 )

@@ -16,7 +16,7 @@ from solidgear.scene.features import (
 from solidgear.scene.housing import Elastic, Housing
 from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.model import Scene
-from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.parts import STEEL, Material, Segment, Strength
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.stations import Bearing, Port
 
@@ -46,5 +46,6 @@ __all__ = [
     "Scene",
     "Segment",
     "Spline",
+    "Strength",
     "Teeth",
 ]

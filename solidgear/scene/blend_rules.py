@@ -56,7 +56,7 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
     """
     here, what, key = segments[corner.owner], blend.what, blend.size_key
     for other, at in before:
-        if (at.y, at.r, at.surface) == (corner.y, corner.r, corner.surface):
+        if _same_joint(at, corner) and (at.r, at.surface) == (corner.r, corner.surface):
             return "y", f'this edge has "{other.name}" already'
     if min(corner.axial, corner.radial) < SMALLEST * corner.r:
         return key, (
@@ -66,7 +66,9 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
     face = _face_height(corner, segments)
     if corner.radial > face + TOUCH:
         return key, f"a {what} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
-    same_face = [at for _, at in before if at.y == corner.y and _same_face(at, corner, segments)]
+    same_face = [
+        at for _, at in before if _same_joint(at, corner) and _same_face(at, corner, segments)
+    ]
     if corner.radial + sum(at.radial for at in same_face) > MOST_OF_FACE * face:
         beside = f' beside "{same_face[0].name}"' if same_face else ""
         return key, (
@@ -122,6 +124,11 @@ def _face_height(corner: Corner, segments: Sequence[Segment]) -> float:
         return here.outer0 - here.inner0 if k == 0 else here.outer1 - here.inner1
     low, high = segments[k - 1], segments[k]
     return abs(radius_of(low, corner.surface, "1") - radius_of(high, corner.surface, "0"))
+
+
+def _same_joint(a: Corner, b: Corner) -> bool:
+    """True of edges at one joint, whose two segments may miss one another by a hair."""
+    return abs(a.y - b.y) <= TOUCH
 
 
 def _same_face(a: Corner, b: Corner, segments: Sequence[Segment]) -> bool:

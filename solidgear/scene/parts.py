@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import model_validator
+from pydantic import model_serializer, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.rules import TOUCH
@@ -15,9 +15,45 @@ from solidgear.scene.units import (
     Poisson,
     Position,
     PositiveLength,
+    Stress,
     Thickness,
     quantity,
 )
+
+
+class Strength(Model):
+    """Strength of a material, of which ratings of fatigue are made; nothing else needs it.
+
+    Attributes
+    ----------
+    yield_point : float
+        R_e or R_p0.2, Pa.
+    ultimate : float
+        Tensile strength R_m, Pa.
+
+    Raises
+    ------
+    SceneError
+        A yield point above the ultimate strength, or a value that is not positive.
+
+    Examples
+    --------
+    >>> from solidgear.scene import Strength
+    >>> Strength(yield_point="650 MPa", ultimate="900 MPa").ultimate
+    900000000.0
+    """
+
+    yield_point: Stress
+    ultimate: Stress
+
+    @model_validator(mode="after")
+    def _yields_first(self) -> Strength:
+        if self.yield_point > self.ultimate:
+            raise SceneError(
+                f"lies above the ultimate strength, {self.ultimate:.6g} Pa; a metal yields first",
+                path=("yield_point",),
+            )
+        return self
 
 
 class Material(Model):
@@ -31,6 +67,8 @@ class Material(Model):
         Poisson's ratio, between -1 and 0.5, both excluded.
     density : float
         kg/m3.
+    strength : Strength or None
+        Of which ratings of fatigue are made.
 
     Raises
     ------
@@ -48,6 +86,14 @@ class Material(Model):
     E: Modulus
     nu: Poisson
     density: Density
+    strength: Strength | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_what_is_not_given(self, dump: Any) -> dict[str, Any]:
+        data = dump(self)
+        if data["strength"] is None:
+            del data["strength"]
+        return data
 
     @property
     def shear_modulus(self) -> float:

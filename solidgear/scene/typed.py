@@ -39,6 +39,12 @@ OTHER_WORDS = {
     "l": "length",
     "m": "mass",
     "k": "stiffness",
+    "yield": "yield_point",
+    "yield_strength": "yield_point",
+    "re": "yield_point",
+    "rp02": "yield_point",
+    "rm": "ultimate",
+    "tensile_strength": "ultimate",
 }
 
 

@@ -320,6 +320,9 @@ Modulus = Annotated[
     _POSITIVE,
     _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units"),
 ]
+Stress = Annotated[
+    Modulus, _must(lambda v: v >= 1e6, "is below 1 MPa, weak for a metal: probably wrong units")
+]
 Density = Annotated[
     float,
     _in("density"),

@@ -3,6 +3,7 @@
 from validation.manual.case import Case
 from validation.manual.cases import (
     bearings,
+    fillets,
     free_beams,
     held_beams,
     pinion,
@@ -13,5 +14,16 @@ from validation.manual.cases import (
     thesis,
 )
 
-SUBJECTS = (statics, free_beams, held_beams, rods, solids, bearings, thesis, pinion, spur_train)
+SUBJECTS = (
+    statics,
+    free_beams,
+    held_beams,
+    rods,
+    solids,
+    bearings,
+    thesis,
+    pinion,
+    spur_train,
+    fillets,
+)
 CASES: dict[str, Case] = {case.name: case for subject in SUBJECTS for case in subject.CASES}

@@ -27,12 +27,10 @@ from solidgear.models.harmonic.sections import AXIAL, BENDING, TORSION, from_cel
 _CORNERS = ElementQuad1()
 
 
-def _energy(n: int):
-    """Coefficients of twice the strain energy density of harmonic n.
-
-    Returns three (3, c, 3, c) arrays that multiply lambda, 2 mu and mu: entry [i, p, j, q] belongs
-    to the product of function i of unknown p with function j of unknown q, functions being (phi /
-    r, phi,r, phi,y) and unknowns (u_r, u_y) for n = 0, (p, q, w) otherwise.
+def strains(n: int) -> tuple[np.ndarray, ...]:
+    """Strains rr, tt, yy and shears rt, ty, ry of harmonic n, each (3, c): entry [i, p] belongs to
+    function i of unknown p, functions being (phi / r, phi,r, phi,y) and unknowns (u_r, u_y) for
+    n = 0, (p, q, w) otherwise. Shears rt and ty go with ``sin nt``, the others with ``cos nt``.
     """
     if n == 0:
         rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 2))
@@ -45,9 +43,19 @@ def _energy(n: int):
         rt[0, 0], rt[1, 0], rt[0, 1], rt[1, 1] = 1 - n, -1.0, -(1 + n), 1.0
         ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n
         ry[2, 0] = ry[2, 1] = ry[1, 2] = 1.0
+    return rr, tt, yy, rt, ty, ry
 
-    def product(strains):
-        return sum(np.multiply.outer(s, s) for s in strains)
+
+def _energy(n: int):
+    """Coefficients of twice the strain energy density of harmonic n.
+
+    Returns three (3, c, 3, c) arrays that multiply lambda, 2 mu and mu: entry [i, p, j, q] belongs
+    to the product of function i of unknown p with function j of unknown q, as in `strains`.
+    """
+    rr, tt, yy, rt, ty, ry = strains(n)
+
+    def product(parts):
+        return sum(np.multiply.outer(s, s) for s in parts)
 
     return product([rr + tt + yy]), product([rr, tt, yy]), product([rt, ty, ry])
 

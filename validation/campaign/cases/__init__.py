@@ -3,8 +3,10 @@
 from validation.campaign.cases.answers import Answers
 from validation.campaign.cases.claims import Claims
 from validation.campaign.cases.features import Features
+from validation.campaign.cases.fillets import Fillets
 from validation.campaign.cases.modes import Modes
 from validation.campaign.cases.points import Points
 from validation.campaign.cases.shafts import Shafts
 
-CASES = {case.name: case for case in (Answers(), Shafts(), Points(), Features(), Claims(), Modes())}
+DRAWN = (Answers(), Shafts(), Points(), Features(), Claims(), Modes(), Fillets())
+CASES = {case.name: case for case in DRAWN}

@@ -1,0 +1,170 @@
+r"""Stress of a harmonic solid on a fillet: along its arc, around the axis, and what a free surface
+must not have.
+
+Strains are those of :func:`solidgear.models.harmonic.blocks.strains`; with the outward normal n and
+the tangent s of the meridian,
+
+    along = s . sigma s,   around = sigma_tt,   shear = s . sigma t,   traction = sigma n
+
+The traction is zero for the exact solution. A finite element solution leaves some of it: the error
+of its stress, at the very place that is looked at.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.body import Block, Body
+from solidgear.errors import SolidgearError
+from solidgear.kernel.cell_shapes import Kind
+from solidgear.meshing.blended import HIGH, LOW, OUT
+from solidgear.models.harmonic.blocks import _Work, strains
+from solidgear.models.harmonic.body import HarmonicMesh
+from solidgear.scene.blends import Corner
+
+#: places on the side of a cell, and the step of differences in its reference coordinates
+PLACES, STEP = 65, 1e-3
+
+
+@dataclass(frozen=True)
+class ArcStress:
+    """Stress along the arc of a fillet, from the cylinder to the face.
+
+    Of harmonic n >= 1 these are amplitudes: `shear` goes with sin nt, the others with cos nt.
+
+    Attributes
+    ----------
+    angle : (q,) ndarray
+        From where the arc leaves the cylinder, rad.
+    along, around, shear : (q,) ndarray
+        Normal stress along the meridian and around the axis, and shear between them, Pa.
+    traction : (q,) ndarray
+        Size of what should be no traction, Pa.
+    slope : (2, q) ndarray
+        Derivative of `along` and `shear` along the normal, outwards, Pa/m.
+    """
+
+    angle: np.ndarray
+    along: np.ndarray
+    around: np.ndarray
+    shear: np.ndarray
+    traction: np.ndarray
+    slope: np.ndarray
+
+
+class Arc:
+    """The arc of a fillet at the root of a step, on the mesh of a harmonic solid.
+
+    Parameters
+    ----------
+    scene : Scene
+        That the body was built from.
+    body : Body
+    corner : Corner
+
+    Raises
+    ------
+    SolidgearError
+        If the mesh has no such arc.
+    """
+
+    def __init__(self, scene, body: Body, corner: Corner):
+        mesh: HarmonicMesh = body.geometry  # type: ignore[assignment]
+        flat, order = mesh.meridian, int(body.mesh["order"])
+        self.corner, self.scene = corner, scene
+        self._work = _Work(scene, mesh.mesh, mesh.element, mesh.dofs, flat, order)
+        if corner.centre is None:
+            raise SolidgearError(f'{corner.kind} "{corner.name}" is no arc')
+        away = np.hypot(*(flat.centre - np.array(corner.centre)[:, None]))
+        cells = np.flatnonzero((flat.arc >= 0) & (away < 1e-6 * corner.radial))
+        if not len(cells):
+            raise SolidgearError(f'the mesh has no arc of the fillet "{corner.name}"')
+        self._cells = cells
+
+    def stress(self, block: Block, u: np.ndarray) -> ArcStress:
+        """Stress under displacements of a block.
+
+        Parameters
+        ----------
+        block : Block
+        u : (n,) ndarray
+
+        Returns
+        -------
+        ArcStress
+        """
+        waves = {"torsion": -1, "axial": 0}.get(block.name, 1)
+        count = {-1: 1, 0: 2}.get(waves, 3)
+        every = np.zeros(self._work.n * count)
+        every[self._work.free_unknowns(waves) if waves >= 0 else slice(None)] = u
+        values = every.reshape(-1, count)
+        parts = np.concatenate([self._on_cell(int(k), waves, values) for k in self._cells], axis=1)
+        angle, along, around, shear, traction, *slope = parts[
+            :, np.argsort(parts[0], kind="stable")
+        ]
+        return ArcStress(angle, along, around, shear, traction, np.array(slope))
+
+    def _on_cell(self, cell: int, waves: int, values: np.ndarray) -> np.ndarray:
+        """(7, q) angle, along, around, shear, traction and both slopes on the arc of a cell."""
+        edge = int(self._work.flat.arc[cell])
+        t = np.linspace(0.0, 1.0, PLACES)
+        end = np.full(PLACES, float(edge in (OUT, HIGH)))
+        points = np.array([t, end] if edge in (LOW, HIGH) else [end, t])
+        kind = next(k for k in self._work.shapes.kinds if cell in k.cells)
+        sigma, place, jac = self._tensor(kind, cell, waves, values, points)
+        centre = np.array(self.corner.centre)[:, None]
+        normal = (centre - place) / np.hypot(*(centre - place))
+        tangent = np.array([-normal[1], normal[0]])
+        across = _across(sigma, normal)
+        traction = np.sqrt((across**2).sum(axis=0))
+        off = np.abs(place - np.array(self.corner.on_cylinder)[:, None])
+        angle = np.arctan2(off[1], np.abs(centre[0] - place[0]))
+        # differences along reference coordinates, turned to the normal with tensors as they are there
+        way = np.linalg.solve(jac, normal.T[:, :, None])[:, :, 0].T
+        slopes = np.zeros((2, PLACES))
+        for k in (0, 1):
+            step = np.zeros((2, 1))
+            step[k] = STEP
+            ahead, back = (
+                self._tensor(kind, cell, waves, values, points + sign * step)[0] for sign in (1, -1)
+            )
+            rate = _along_and_shear((ahead - back) / (2 * STEP), tangent)
+            slopes += way[k] * rate
+        along, shear = _along_and_shear(sigma, tangent)
+        return np.array([angle, along, sigma[1], shear, traction, *slopes])
+
+    def _tensor(self, kind: Kind, cell: int, waves: int, values: np.ndarray, points: np.ndarray):
+        """(6, q) stress rr, tt, yy, rt, ty, ry, (2, q) places and (q, 2, 2) Jacobians at reference
+        points of a cell.
+        """
+        table = self._work.shapes.on(kind, np.array([cell]), points)
+        r = table.x[0][0]
+        slope = table.gradient(np.ones((1, len(r))))[0]
+        functions = np.array([table.value / r, slope[0], slope[1]])
+        fields = np.einsum("ibq,bc->qic", functions, values[self._work.dofs[:, cell]])
+        material = self.scene.segments[self._work.flat.segment[cell]].material
+        if waves < 0:
+            strain = np.zeros((6, len(r)))
+            strain[3], strain[4] = r * fields[:, 1, 0], r * fields[:, 2, 0]
+        else:
+            strain = np.einsum("kic,qic->kq", np.array(strains(waves)), fields)
+        mu = material.shear_modulus
+        lame = 2 * mu * material.nu / (1 - 2 * material.nu)
+        sigma = mu * strain
+        sigma[:3] = 2 * sigma[:3] + lame * strain[:3].sum(axis=0)
+        return sigma, np.array([r, table.x[1][0]]), table.tangent[0]
+
+
+def _across(sigma: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(3, q) traction along r, y and around the axis on a surface of some normal (r, y)."""
+    rr, _, yy, rt, ty, ry = sigma
+    n, m = normal
+    return np.array([n * rr + m * ry, n * ry + m * yy, n * rt + m * ty])
+
+
+def _along_and_shear(sigma: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+    """(2, q) normal stress along a tangent (r, y), and shear between it and the circumference."""
+    r, y, around = _across(sigma, tangent)
+    return np.array([tangent[0] * r + tangent[1] * y, around])

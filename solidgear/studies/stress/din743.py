@@ -1,0 +1,181 @@
+r"""Formulas of DIN 743:2012 for shoulders of shafts, each a function of its own.
+
+Inputs and results are SI; the norm writes lengths in mm and stress in MPa. Coefficients were checked
+against two public programs that share no text with each other; no worked example of the norm itself
+was at hand. Left out, and so never said: K_1 by the group of a steel, hard surface layers, strength
+for a finite life.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+Load = Literal["tension", "bending", "torsion"]
+LOADS: tuple[Load, ...] = ("tension", "bending", "torsion")
+#: A, B, C and z of form factors of shoulders (DIN 743-2, table 2)
+SHOULDER: dict[Load, tuple[float, float, float, float]] = {
+    "tension": (0.62, 3.5, 0.0, 0.0),
+    "bending": (0.62, 5.8, 0.2, 3.0),
+    "torsion": (3.4, 19.0, 1.0, 2.0),
+}
+#: fatigue limit under full reversal over tensile strength, of a polished bar (DIN 743-3)
+ALTERNATING: dict[Load, float] = {"tension": 0.4, "bending": 0.5, "torsion": 0.3}
+#: d / D above which neighbouring steps of a shoulder sharpen the gradient
+SHALLOW = 0.67
+#: static support of yielding by load, of solid and hollow shafts (DIN 743-1, table 3)
+STATIC_SUPPORT: dict[Load, tuple[float, float]] = {
+    "tension": (1.0, 1.0),
+    "bending": (1.2, 1.1),
+    "torsion": (1.2, 1.0),
+}
+
+
+def form_factor(load: Load, large: float, small: float, radius: float) -> float:
+    """Form factor of a shoulder (DIN 743-2, 5.2 and table 2).
+
+    Parameters
+    ----------
+    load : {'tension', 'bending', 'torsion'}
+    large, small : float
+        Diameters D and d, m.
+    radius : float
+        Of the fillet, m.
+
+    Examples
+    --------
+    >>> [round(form_factor(load, 0.06, 0.04, 0.004), 2) for load in LOADS]
+    [1.89, 1.72, 1.38]
+    """
+    a, b, c, z = SHOULDER[load]
+    t = (large - small) / 2
+    slender = radius / small
+    return 1 + 1 / math.sqrt(
+        a * radius / t
+        + 2 * b * slender * (1 + 2 * slender) ** 2
+        + c * (radius / t) ** z * small / large
+    )
+
+
+def gradient(load: Load, large: float, small: float, radius: float) -> float:
+    """Relative stress gradient of a shoulder, 1/m (DIN 743-2, table 3).
+
+    Examples
+    --------
+    >>> round(gradient("torsion", 0.06, 0.04, 0.004) * 0.004, 3)
+    1.15
+    """
+    if load == "torsion":
+        return 1.15 / radius
+    depth = (large - small) / 2
+    phi = 1 / (4 * math.sqrt(depth / radius) + 2) if small / large > SHALLOW else 0.0
+    return 2.3 * (1 + phi) / radius
+
+
+def support(slope: float, yield_point: float) -> float:
+    """Support number n by the relative stress gradient (DIN 743-2, 4.3), for steels without a hard
+    surface layer.
+
+    Parameters
+    ----------
+    slope : float
+        Relative stress gradient G', 1/m.
+    yield_point : float
+        Of the part at its size, Pa.
+
+    Examples
+    --------
+    >>> round(support(2000.0, 356e6), 3)  # 1 + sqrt(2) 10^-(0.33 + 0.5)
+    1.209
+    """
+    return 1 + math.sqrt(slope * 1e-3) * 10 ** -(0.33 + yield_point / 712e6)
+
+
+def size_factor(load: Load, diameter: float) -> float:
+    """Geometric factor of size K_2 (DIN 743-2, equations 15 and 16).
+
+    Examples
+    --------
+    >>> [round(size_factor("bending", d), 3) for d in (0.0075, 0.04, 0.15, 0.3)]
+    [1.0, 0.888, 0.8, 0.8]
+    """
+    if load == "tension":
+        return 1.0
+    within = min(max(1e3 * diameter, 7.5), 150.0)
+    return 1 - 0.2 * math.log10(within / 7.5) / math.log10(20)
+
+
+def surface_factor(load: Load, roughness: float, ultimate: float) -> float:
+    """Factor of surface roughness K_F (DIN 743-2, equations 18 and 19).
+
+    Parameters
+    ----------
+    load : {'tension', 'bending', 'torsion'}
+    roughness : float
+        Rz, m.
+    ultimate : float
+        Tensile strength of the part at its size, Pa.
+
+    Examples
+    --------
+    >>> [round(surface_factor(load, 10e-6, 800e6), 3) for load in ("bending", "torsion")]
+    [0.868, 0.924]
+    """
+    normal = 1 - 0.22 * math.log10(1e6 * roughness) * (math.log10(ultimate / 20e6) - 1)
+    factor = 0.575 * normal + 0.425 if load == "torsion" else normal
+    return min(factor, 1.0)
+
+
+def yield_rise(load: Load, notch: float) -> float:
+    """Rise of the yield point in a notch, gamma_F, by its fatigue or form factor (DIN 743-1, table 2).
+
+    Examples
+    --------
+    >>> [yield_rise("bending", beta) for beta in (1.2, 1.7, 2.5, 3.5)]
+    [1.0, 1.05, 1.1, 1.15]
+    """
+    if load == "torsion" or notch < 1.5:
+        return 1.0
+    return 1.05 if notch < 2 else 1.1 if notch < 3 else 1.15
+
+
+def total_factor(notch: float, size: float, surface: float, hardening: float) -> float:
+    """Total influence K_sigma or K_tau (DIN 743-1): ``(beta / K_2 + 1 / K_F - 1) / K_V``."""
+    return (notch / size + 1 / surface - 1) / hardening
+
+
+def mean_sensitivity(limit: float, ultimate: float) -> float:
+    """Influence of mean stress psi by the limit of the part and its tensile strength, Pa."""
+    return limit / (2 * ultimate - limit)
+
+
+def amplitude_limit(
+    limit: float, psi: float, static: float, mean: float, amplitude: float, constant_mean: bool
+) -> float:
+    """Amplitude that the part bears beside a mean stress, Pa (DIN 743-1, cases 1 and 2).
+
+    Parameters
+    ----------
+    limit, psi, static : float
+        Fatigue limit of the part, Pa, its sensitivity, and its yield limit, Pa.
+    mean, amplitude : float
+        Equivalent mean stress, and the amplitude beside it, Pa.
+    constant_mean : bool
+        Whether the mean stays where loads grow (case 1), or grows with them (case 2).
+
+    Examples
+    --------
+    A mean stress as large as the amplitude, growing with it: 200 / (1 + 0.25)
+
+    >>> amplitude_limit(200.0, 0.25, 600.0, 50.0, 50.0, constant_mean=False)
+    160.0
+    >>> amplitude_limit(200.0, 0.25, 600.0, 50.0, 50.0, constant_mean=True)
+    187.5
+    """
+    if constant_mean:
+        if mean <= (static - limit) / (1 - psi):
+            return limit - psi * mean
+        return max(static - mean, 0.0)
+    ratio = mean / amplitude
+    yields = limit > psi * static and ratio > (static - limit) / (limit - psi * static)
+    return static / (1 + ratio) if yields else limit / (1 + psi * ratio)

@@ -1,0 +1,261 @@
+r"""Section forces along a free shaft, by statics alone.
+
+Cut the shaft at y. The section force is what the part *beyond* the cut exerts on the part *before*
+it, on the face whose normal points along +y, about the middle of the section::
+
+          z                              Q_z   M_x about +x, T about +y, M_z about +z,
+          |   before the cut    |         ^    all right-handed
+          |  +------------------|-        |
+    x out |  |                  |  ...    +----> N (tension is positive)
+    of    +--|- - - - - - - - - | - - -> y
+    page     |                  |
+             +------------------|-       Q_x points along +x
+
+Its six components are in the order of every load here, ``(Q_x, N, Q_z, M_x, T, M_z)`` on
+``(x, y, z, thx, thy, thz)``. With the loads before the cut, each moved to the cut,
+
+    S(y) = - sum over y_i < y of L_i
+
+and between loads forces stay while ``dM_x/dy = -Q_z`` and ``dM_z/dy = Q_x``. They make the stress
+``sigma = N / A - M_x z / I + M_z x / I``.
+
+A load that is spread over a seat is taken as one at the middle of what it acts on: at the place of
+its port, or at the end of the seat nearest to that where the port lies beside its seat. Outside
+of the seats, where all fillets lie, section forces are exact however the load is spread; inside a
+seat the moment given here is that of the concentrated load, a little above that of a spread one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.errors import SolidgearError, listed, nearest
+from solidgear.frames import DOF_NAMES, shift
+from solidgear.meshing.closed_form import mass_properties
+from solidgear.scene.rules import TOUCH
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from solidgear.scene import Scene
+
+#: components of a section force, in the order of those of loads
+COMPONENTS = ("Q_x", "N", "Q_z", "M_x", "T", "M_z")
+#: what loads may leave, of the sum of their sizes; moments count by the length of the shaft
+BALANCED = 1e-6
+#: and what rounding leaves of sums of them
+ROUNDING = 1e-13
+
+
+@dataclass(frozen=True)
+class Load:
+    """A load on a shaft at one place.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        m.
+    six : (6,) ndarray
+        Forces and moments about the axis at y, N and N m.
+    """
+
+    name: str
+    y: float
+    six: np.ndarray
+
+
+@dataclass(frozen=True)
+class SectionForces:
+    """Section forces of a shaft: forces are constant from place to place, moments straight.
+
+    Attributes
+    ----------
+    y : (k,) ndarray
+        Both ends and all places of loads, ascending, m.
+    names : tuple of str
+        Of what acts at each place; empty where nothing does.
+    left, right : (k, 6) ndarray
+        Just before and just beyond each place: Q_x, N, Q_z in N, M_x, T, M_z in N m.
+    """
+
+    y: np.ndarray
+    names: tuple[str, ...]
+    left: np.ndarray
+    right: np.ndarray
+
+    def at(self, y: float) -> np.ndarray:
+        """Section forces at one place; where a load acts, just beyond it.
+
+        Parameters
+        ----------
+        y : float
+            m.
+
+        Returns
+        -------
+        (6,) ndarray
+        """
+        k = int(np.searchsorted(self.y, y, side="right")) - 1
+        if k < 0 or y > self.y[-1]:
+            return np.zeros(6)
+        return moved(self.right[k], self.y[k], y)
+
+    @cached_property
+    def largest_moment(self) -> float:
+        """Largest bending moment along the shaft, N m."""
+        ends = np.concatenate([self.left, self.right])
+        return float(np.hypot(ends[:, 3], ends[:, 5]).max())
+
+
+def moved(six: np.ndarray, y: float, to: float) -> np.ndarray:
+    """A load about y as one about another place on the axis."""
+    return shift([0.0, y - to, 0.0]).T @ six
+
+
+def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
+    """Section forces of a free shaft under loads that balance.
+
+    Parameters
+    ----------
+    loads : iterable of Load
+    length : float
+        Of the shaft, m.
+
+    Returns
+    -------
+    SectionForces
+
+    Raises
+    ------
+    SolidgearError
+        For loads that do not balance, with the component and what is left of it.
+
+    Examples
+    --------
+    A beam of 0.4 m on two supports with 1 kN in the middle: the moment there is F l / 4 = 100 N m,
+    with the side of tension below.
+
+    >>> down, up = np.array([0, 0, -1000.0, 0, 0, 0]), np.array([0, 0, 500.0, 0, 0, 0])
+    >>> beam = [Load("A", 0.0, up), Load("gear", 0.2, down), Load("B", 0.4, up)]
+    >>> found = section_forces(beam, 0.4)
+    >>> [float(round(v, 9)) + 0.0 for v in found.at(0.1)]
+    [0.0, 0.0, -500.0, 50.0, 0.0, 0.0]
+    >>> round(found.largest_moment, 9)
+    100.0
+    """
+    loads = sorted(loads, key=lambda load: load.y)
+    least = _balanced(loads, length)
+    places = _places([load.y for load in loads], length)
+    names, left, right = [], [], []
+    here, at = np.zeros(6), 0.0
+    for y in places:
+        here, at = moved(here, at, y), y
+        left.append(here)
+        acting = [load for load in loads if abs(load.y - y) <= TOUCH]
+        here = here - sum((load.six for load in acting), np.zeros(6))
+        right.append(here)
+        names.append(", ".join(load.name for load in acting))
+    sides = [np.where(np.abs(side) > least, side, 0.0) for side in (left, right)]
+    return SectionForces(np.array(places), tuple(names), *sides)
+
+
+def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
+    """Loads on the shaft by the names of the ports that they act on.
+
+    Parameters
+    ----------
+    scene : Scene
+    loads : mapping of str to (6,) array_like
+        N and N m, about the place of the port, bearing or mass of that name.
+
+    Returns
+    -------
+    list of Load
+
+    Raises
+    ------
+    SolidgearError
+        For a name that the scene has not, or a load that is not six finite numbers.
+    """
+    stations = {station.name: station for station in scene.stations}
+    found = []
+    for name, given in loads.items():
+        if name not in stations:
+            raise SolidgearError(
+                f'load on "{name}": the shaft has nothing of that name'
+                f"{nearest(name, stations)}; it has {listed(stations)}"
+            )
+        six = np.asarray(given, float)
+        if six.shape != (6,) or not np.isfinite(six).all():
+            raise SolidgearError(
+                f'load on "{name}": it must be six finite numbers, {", ".join(DOF_NAMES)} in N and '
+                "N m"
+            )
+        station = stations[name]
+        y = min(max(station.y, station.lo), station.hi)
+        found.append(Load(name, y, moved(six, station.y, y)))
+    return found
+
+
+def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
+    """Weight of a shaft and of the masses on it: one load a segment, at its centre of mass.
+
+    Section forces are exact at both ends of every segment, where fillets are; between them they step
+    where those of a spread weight run smoothly. What features take away weighs here.
+
+    Parameters
+    ----------
+    scene : Scene
+    gravity : (3,) array_like
+        m/s^2.
+
+    Returns
+    -------
+    list of Load
+    """
+    g = np.asarray(gravity, float)
+    loads = []
+    for k, segment in enumerate(scene.segments):
+        edges = [replace(corner, owner=0) for corner in scene.corners if corner.owner == k]
+        found = mass_properties([segment], edges)
+        force = np.concatenate([found.mass * g, np.zeros(3)])
+        loads.append(Load(f"weight of {segment.name}", found.centre, force))
+    seats = {station.name: station.y for station in scene.stations}
+    for point in scene.masses:
+        force = np.concatenate([point.mass * g, np.zeros(3)])
+        centre = shift(point.offset).T @ force
+        loads.append(Load(f"weight of {point.name}", seats[point.station], centre))
+    return loads
+
+
+def _balanced(loads: Sequence[Load], length: float) -> np.ndarray:
+    """Refuse loads that leave something; (6,) what is no section force but what they leave."""
+    total = sum((moved(load.six, load.y, 0.0) for load in loads), np.zeros(6))
+    forces = sum(float(np.linalg.norm(load.six[:3])) for load in loads)
+    moments = sum(float(np.linalg.norm(load.six[3:])) for load in loads)
+    size = np.repeat([max(forces, moments / length), max(moments, forces * length)], 3)
+    wrong = np.flatnonzero(np.abs(total) > BALANCED * size)
+    if not len(wrong):
+        left = np.abs(total) + np.repeat([0.0, length], 3) * np.abs(total[:3]).max(initial=0.0)
+        return np.maximum(2 * left, ROUNDING * size)
+    left = [f"{total[k]:.6g} {'N' if k < 3 else 'N m'} of {DOF_NAMES[k]}" for k in wrong]
+    hint = "; a drive torque is a load too" if wrong.tolist() == [4] else ""
+    raise SolidgearError(
+        f"the loads on the shaft do not balance: {listed(left)} is left about y = 0; give bearing "
+        f"reactions, mesh forces and drive torques together{hint}"
+    )
+
+
+def _places(loaded: Sequence[float], length: float) -> list[float]:
+    """Both ends and all places of loads, each once."""
+    out: list[float] = []
+    for y in sorted([0.0, *loaded, length]):
+        if not out or y - out[-1] > TOUCH:
+            out.append(y)
+    return out

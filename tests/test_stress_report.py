@@ -1,0 +1,94 @@
+"""Tables and the chart of the stress of a shaft: every number with its unit, bar and source."""
+
+import math
+
+import pytest
+from charted import facts_of
+from filleted import STRONG, shoulder
+from test_fillet_stress import loads_on
+
+from solidgear.report import stress_tables
+from solidgear.report.section_chart import section_chart
+from solidgear.report.units import US
+from solidgear.studies.stress.rating import Conditions
+from solidgear.studies.stress.shaft import shaft_stress
+
+
+@pytest.fixture(scope="module")
+def found():
+    scene = shoulder(strength=STRONG)
+    return shaft_stress(scene, loads_on(scene), tolerance=0.05, conditions=Conditions(6.3e-6))
+
+
+def test_every_section_force_is_read_off(found):
+    table = stress_tables.section_forces(found.forces)
+    at_gear = [row for row in table.texts if row[1] == "gear"]
+    assert [row[2] for row in at_gear] == ["before", "beyond"]
+    assert at_gear[0][table.heads.index("N, N")] == "2000.0"
+    assert at_gear[1][table.heads.index("T, N m")] == "0"
+
+
+def test_nominal_stress_is_in_megapascal_or_ksi(found):
+    metric, imperial = (stress_tables.nominal_stress(found, *units) for units in ((), (US,)))
+    at = metric.heads.index("tau_t, mean, MPa")
+    ksi = imperial.heads.index("tau_t, mean, ksi")
+    value, other = (float(t.texts[0][k]) for t, k in ((metric, at), (imperial, ksi)))
+    assert value == pytest.approx(6.894757 * other, rel=1e-3) and value != 0
+
+
+def test_a_fillet_is_told_with_its_bars(found):
+    table = stress_tables.fillets(found)
+    (row,) = table.texts
+    factor = found.notches[0].found.factors["bending"]
+    assert row[table.heads.index("Kt bending")].startswith(f"{factor.value:.3f} ± ")
+    assert "Kt: largest surface stress over nominal stress" in table.note
+
+
+def test_a_rating_shows_every_factor_its_source_and_what_is_assumed(found):
+    table = stress_tables.rating(found.worst[0])
+    symbols = [row[0] for row in table.texts]
+    for wanted in ("K_1 (sigma_B)", "K_2", "K_F", "K_V", "beta", "K_sigma, K_tau", "sigma_WK"):
+        assert wanted in symbols
+    assert all(row[-1] for row in table.texts)
+    assert "Assumed, for nobody gave it: K_1 (sigma_B)" in table.note
+    assert f"Safety against fatigue {found.worst[0].rating.fatigue:.3g}"[:28] in table.note
+    factors = stress_tables.fatigue_notches(found)
+    assert [row[1] for row in factors.texts] == ["tension", "bending", "torsion"]
+
+
+def test_sharp_corners_stand_below_the_fillets(found):
+    scene = shoulder().with_changes(blends=())
+    bare = shaft_stress(scene, loads_on(scene))
+    table = stress_tables.fillets(bare)
+    assert not table.rows and "a stress does not exist there" in table.note
+    assert not stress_tables.fatigue_notches(bare).rows
+
+
+def test_a_chart_is_read_at_every_load(found):
+    facts = facts_of(section_chart(found.forces, "a shaft").svg())
+    told = dict(facts)
+    assert told["N before gear"]["N"] == "2000.0 N"
+    assert told["T beyond gear"]["T"] == "0 N m"
+
+
+def test_the_size_of_a_moment_is_no_straight_line_between_loads(found):
+    """Of two components that change sign in different places the size curves."""
+    scene = shoulder()
+    loads = loads_on(scene)
+    for name, x in (("A", 4000.0), ("gear", 1000.0), ("B", -5000.0)):
+        loads[name] = loads[name] + [x, 0, 0, 0, 0, 0]
+    arms = sum(loads[name][0] * y for name, y in places(scene))
+    loads["B"] = loads["B"] + [0, 0, 0, 0, 0, arms]
+    forces = shaft_stress(scene.with_changes(blends=()), loads).forces
+    panel = section_chart(forces).rows[2][0]
+    size = next(rows for mark, rows, _ in panel.layers if rows[0].get("name") == "M")
+    for row in size:
+        six = forces.at(row["x"] / 1e3)
+        near = forces.at(row["x"] / 1e3 - 1e-9)
+        exact = {round(math.hypot(s[3], s[5]), 4) for s in (six, near)}
+        assert min(abs(row["y"] - value) for value in exact) < 1e-3
+    assert len(size) > 60
+
+
+def places(scene):
+    return [(station.name, station.y) for station in scene.stations]
