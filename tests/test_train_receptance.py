@@ -76,6 +76,35 @@ def test_ends_may_change_places(shop, here, there, damping):
     assert np.allclose(forth, back, rtol=1e-10, atol=slack)
 
 
+@pytest.mark.parametrize(("damping", "at"), [("hysteretic", 0.0), ("viscous", 700.0)])
+@pytest.mark.parametrize("end", [("load", "thy"), ("pinion.1", "z")])
+def test_a_clamped_shaft_is_one_whose_seat_does_not_move(end, damping, at):
+    """Against the motions that the seat allows, with no spring of 1e22 N/m in any matrix."""
+    scene = TRAIN.pinion.scene
+    wall = scene.bearings[-1]
+    wall = sg.Bearing(name=wall.name, y=wall.y, seat_width=wall.seat_width, hold="clamped")
+    scene = scene.with_changes(bearings=(*scene.bearings[:-1], wall))
+    train = TRAIN.with_changes(pinion=TRAIN.pinion.with_changes(scene=scene))
+    drive = Drive(Workshop(train, settings=COARSE), *MIX, damping, at)
+    system = drive.system
+    load, row = own_row(system, ("gear.gear", "z")), own_row(system, end)
+    found = drive.steady.solved(HZ, load, row[None])[:, 0]
+
+    held = system.motion(f"pinion.{wall.name}")
+    q, r = np.linalg.qr(held.T, mode="complete")
+    assert np.abs(np.diag(r)).min() > 0
+    allowed = q[:, len(held) :]
+    g, where = system.strains
+    for hz, value in zip(HZ, found):
+        left = -((2 * np.pi * hz) ** 2) * system.mass.astype(complex)
+        for name in where.keys() - {f"pinion.{wall.name}"}:
+            own = g[where[name]].T @ g[where[name]]
+            left += drive.steady.factor(name, np.array([hz]))[0] * own
+        whole = (row @ allowed) @ np.linalg.solve(allowed.T @ left @ allowed, allowed.T @ load)
+        # 1e-9: what the shafts give over 1e22 N/m is far less; rounding of the reference
+        assert abs(value / whole - 1) < 1e-9
+
+
 def test_no_peak_is_missed(shop):
     here, there = PAIRS[0]
     found = receptance(shop, *MIX, here, there)

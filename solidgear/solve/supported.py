@@ -99,7 +99,7 @@ class Supported:
         if self.load.shape[1]:
             self._fast = np.abs(spring).max() > FAST
             self._through = self._free_inverse(self.load)
-            self._inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
+            self._inner = sla.lu_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
     def _on_seats(self, body, supports, matrix) -> tuple[np.ndarray, list]:
         """A matrix of the ports on the components of the group, and for every block the rows of
@@ -229,7 +229,7 @@ class Supported:
         """
         if not self._fast:
             return None
-        return sla.cho_solve(self._inner, self._through.T @ self._without_free(x))
+        return sla.lu_solve(self._inner, self._through.T @ self._without_free(x))
 
     def forward(self, u: np.ndarray, stretch: np.ndarray | None = None) -> np.ndarray:
         """``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K resists by
@@ -255,10 +255,15 @@ class Supported:
             x = np.hstack([x, self.load @ rng.standard_normal((self.load.shape[1], 1))])
         x = x - self._mass_free @ (self.free.T @ x)
         y = self._quick_inverse(x)
-        left = x - self.forward(y, self._reaction(x))
-        step = self._quick_inverse(left)
-        changed = np.abs(np.einsum("ij,ij->j", left, step))
-        return float(np.sqrt(changed / np.abs(np.einsum("ij,ij->j", x, y))).max())
+        stretch = self._reaction(x)
+        if stretch is None:
+            stretch = self.load.T @ y
+        pull = self.forward(y, np.zeros_like(stretch))
+        left = x - pull - self.load @ stretch
+        changed = np.abs(np.einsum("ij,ij->j", left, self._quick_inverse(left)))
+        # the work of the loads, told by what it has strained: a seat that is clamped does not move
+        strained = np.einsum("ij,ij->j", y, pull) + np.einsum("ij,ij->j", stretch, stretch)
+        return float(np.sqrt(changed / strained).max())
 
     def _without_free(self, x: np.ndarray) -> np.ndarray:
         """(n, k) loads less those that unresisted rigid motions carry."""
@@ -268,11 +273,11 @@ class Supported:
         x = self._without_free(x)
         y = self._free_inverse(x)
         if self.load.shape[1]:
-            # A computed inverse is not quite symmetric. Of what holds a seat fast that difference
-            # would be a motion of the seat, and its energy a part of the frequency: there the
-            # stretch is that of y itself.
-            pulled = self.load.T @ y if self._fast else self._through.T @ x
-            y = y - self._through @ sla.cho_solve(self._inner, pulled)
+            # A computed inverse is not quite symmetric, and neither is the matrix that it gives. A
+            # seat comes to rest where y itself is held, by that matrix as it is: half of it, or
+            # loads on the inverse, leave it 1e-10 of a motion, whose energy a clamp makes a part of
+            # the frequency.
+            y = y - self._through @ sla.lu_solve(self._inner, self.load.T @ y)
         return self.purge(y)
 
     @cached_property
@@ -303,7 +308,7 @@ class Supported:
         if self.load.shape[1]:
             lost = np.abs(out) < ROUNDED * self.spread(u)
             if lost.any():
-                out = np.where(lost, sla.cho_solve(self._inner, self._through.T @ loads), out)
+                out = np.where(lost, sla.lu_solve(self._inner, self._through.T @ loads), out)
         return out
 
     def spread(self, u: np.ndarray) -> np.ndarray:

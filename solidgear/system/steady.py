@@ -37,6 +37,7 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.system.common_loss import CommonLoss, common_loss, in_real_modes
+from solidgear.system.elimination import Elimination
 
 if TYPE_CHECKING:
     from solidgear.system.system import System
@@ -232,18 +233,13 @@ class SteadyState:
         if self.kind == "modal":
             return self.motion(frequency_hz, load, rows)
         frequency_hz = np.asarray(frequency_hz, float)
-        g, where = self.system.strains
-        stiffness = {n: g[own].T @ g[own] for n, own in where.items() if self.loss.get(n, 0.0)}
-        elastic, mass = self.system.stiffness, self.system.mass
-        lost = sum((self.loss[n] * k for n, k in stiffness.items()), np.zeros_like(elastic))
+        elimination = Elimination(self.system, self.loss)
         out = np.empty((len(frequency_hz), len(rows)), complex)
         for start in range(0, len(frequency_hz), BATCH):
             part = slice(start, start + BATCH)
-            hz = frequency_hz[part, None, None]
-            growth = hz / self.matched_hz if self._grows else np.ones_like(hz)
-            left = elastic - (2 * np.pi * hz) ** 2 * mass + 1j * growth * lost
-            right = np.broadcast_to(load.astype(complex)[:, None], (len(left), len(load), 1))
-            out[part] = np.linalg.solve(left, right)[:, :, 0] @ rows.T
+            hz = frequency_hz[part]
+            growth = hz / self.matched_hz if self._grows else np.ones(len(hz))
+            out[part] = elimination.motion(2 * np.pi * hz, growth, load, rows)
         return out
 
     def grid(
