@@ -145,16 +145,8 @@ def _scene():
     }
 
 
-def _estimate(limit, gci, observed):
-    return {
-        "observed_order": observed,
-        "expected_order": 1.09,
-        "ratio": [1.41, 1.40],
-        "extrapolated": limit,
-        "gci": gci,
-        "factor": 1.25,
-        "asymptotic": True,
-    }
+def _estimate(limit, gci):
+    return {"extrapolated": limit, "gci": gci, "factor": 1.25}
 
 
 def fixture_results():
@@ -217,8 +209,8 @@ def fixture_results():
             else {
                 "levels": levels,
                 "quantities": {
-                    "C_zz": _estimate(c * (1 + 1e-4), 0.0012, 1.92),
-                    "bending 1": _estimate(FREQUENCY[key]["bending 1"] * 0.9999, 0.0005, 1.87),
+                    "C_zz": _estimate(c * (1 + 1e-4), 0.0012),
+                    "bending 1": _estimate(FREQUENCY[key]["bending 1"] * 0.9999, 0.0005),
                 },
             },
             "dofs": dofs,

@@ -234,7 +234,13 @@ def test_front_table_lists_the_front_over_time(raced):
     names = {row.series for row, _ in front_rows(raced)}
     assert names == {r.series for q in raced.reference["values"] for r in raced.front(q)}
     assert error_text(raced, raced.rows[4], "C_zz").startswith("< ")
-    assert error_text(raced, raced.rows[3], "C_zz") == "-"
+
+
+def test_where_there_is_no_error_the_reason_stands(raced):
+    failed = raced.rows[3]
+    assert failed.reason and error_text(raced, failed, "C_zz") == failed.reason
+    assert error_text(raced, replace(raced.rows[4], errors={}), "C_zz") == "found no C_zz"
+    assert error_text(raced, replace(failed, status="waiting", reason=""), "C_zz") == "waiting"
 
 
 def test_left_out_names_the_first_level_of_each_series(raced):

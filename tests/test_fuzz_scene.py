@@ -49,11 +49,12 @@ def nothing_found(case, kind, cases, seed=1):
 @pytest.mark.parametrize("cases", [20, pytest.param(100, marks=pytest.mark.long)])
 def test_spoilt_scenes_are_refused_or_solved(fuzz, cases):
     case, _, scenes = fuzz
-    kind = case.Fuzz("scenes", partial(scenes.scene, harmonic=0.2, command=0.1))
+    kind = case.Fuzz("scenes", partial(scenes.scene, harmonic=1.0, command=0.3))
     stages, sorts = nothing_found(case, kind, cases)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
-    assert stages["accepted", "euler"] > cases // 10 and stages["accepted", "harmonic"] > 0
-    assert stages["accepted", "command"] > 0 and len(sorts) > cases // 7
+    by_library, by_command = stages["accepted", "harmonic"], stages["accepted", "command"]
+    assert by_library + by_command > cases // 10 and by_command > 0
+    assert len(sorts) > cases // 7
 
 
 @pytest.mark.parametrize("cases", [10, pytest.param(30, marks=pytest.mark.long)])

@@ -76,7 +76,7 @@ def test_identifiers_of_the_charts_do_not_collide(page):
 def test_figures_of_the_run_are_on_the_page(page):
     # 240 130: K_z,thx in kN/rad; 2758 Hz: with a bar of 0.05 %, the fourth is the first uncertain one
     figures = "4710.8 N/µm|7327.9|1136.4|240 130|19 010 000 N m/rad|2758 Hz|0.59611 µm/kN|3343.9"
-    figures += "|1385.6|138 210|0.12 %|35.3|2610|+26.0 %|-43.1 %|0.9993|1.92|1.09|3.1e-14|29.1226"
+    figures += "|1385.6|138 210|0.12 %|35.3|2610|+26.0 %|-43.1 %|0.9993|3.1e-14|29.1226"
     figures += "|58.2453|5415.5|published|identified|Seat width assumed.|41.2|2.4.0"
     assert not [figure for figure in figures.split("|") if figure not in text_of(page)]
 

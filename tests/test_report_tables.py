@@ -1,7 +1,10 @@
 """Tables of a report say which bearings a shaft stands on, at what load, and own up to what is left out."""
 
+from dataclasses import fields
+
 import solidgear as sg
-from solidgear.judge.record import Record
+from solidgear.judge.bars import ErrorBar
+from solidgear.judge.record import BarRecord, Record
 from solidgear.report import evidence_tables
 from solidgear.report.input_tables import bearings, scene_facts
 from solidgear.report.reading import left_open
@@ -75,3 +78,9 @@ def test_a_mode_that_is_like_no_other_has_no_partner_by_name():
         Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
     )
     assert table.rows == [["axial 2", "0.8000 (bending 8)"]]
+
+
+def test_every_column_of_error_bars_has_one_who_fills_it():
+    """A record keeps what an error bar of today has; a field that none has is a column of dashes."""
+    names = {"gci" if f.name == "width" else f.name for f in fields(ErrorBar)}
+    assert set(BarRecord.model_fields) <= names

@@ -57,7 +57,7 @@ def no_shafts(monkeypatch):
     quiet = {"facts": [], "cautions": [], "faults": [], "records": [], "verdicts": {}}
     monkeypatch.setattr(checked, "check_scene", lambda *_: quiet)
     monkeypatch.setattr(checked, "build", lambda *what: sg.build(*what, order=2, layers=0))
-    monkeypatch.setattr(Probe, "rung", lambda probe, _: probe)
+    monkeypatch.setattr(Probe, "solution", lambda probe, _: probe)
 
 
 def test_little_loss_and_a_short_table_are_told(no_shafts):

@@ -463,7 +463,8 @@ def test_a_load_that_pulls_the_teeth_apart_is_refused(tmp_path):
     push = sg.load_train(GEARBOX)
     push = Workshop(push).contact.gear.normal  # the teeth push the wheel against it
     pull = "\n".join(f"{d} = {1000 * v}" for d, v in zip("xyz", push))
-    wheel.write_text(wheel.read_text() + f"\n[load]\n{pull}\n")
+    unloaded, _, _ = wheel.read_text().partition("[load]")
+    wheel.write_text(f"{unloaded}[load]\n{pull}\n")
     (tmp_path / "train.toml").write_text(text)
     with pytest.raises(SceneError, match="pulls the teeth apart"):
         Workshop(sg.load_train(tmp_path / "train.toml"))

@@ -88,9 +88,6 @@ class BarRecord(Part):
     factor: Number = None
     solver: Number = None
     extrapolated: Number = None
-    observed_order: Number = None
-    expected_order: Number = None
-    used_order: Number = None
     method: str = ""
 
 

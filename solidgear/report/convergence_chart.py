@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from solidgear.judge.race.pareto import CHARTED
 from solidgear.judge.record import BarRecord, LevelRecord, ModelRecord, Record
-from solidgear.report.panel import GREY, PERCENT, SHAPES, Axis, Panel, readout
+from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, readout
 from solidgear.report.plot import WIDE, Chart, in_columns
 from solidgear.report.reading import model_name
 from solidgear.report.words import grouped, percent
@@ -20,9 +20,7 @@ AXIS = {
 
 
 def convergence_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the error bar and
-    both orders.
-    """
+    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the error bar."""
     found = []
     for key, model in record.models.items():
         found += _quantities(model_name(record, key), model)
@@ -104,25 +102,16 @@ def _panel(one: _Quantity) -> Panel:
         Axis(AXIS[one.along], ends, log=True, ticks=ticks),
         Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
         180,
-        f"{one.name}, {one.quantity}\n{_orders(one.bar)}",
+        f"{one.name}, {one.quantity}",
     )
     if bar:
         _shade(panel, low, one)
-    expected, colour = one.bar.expected_order, one.model.colour
-    if expected is not None and one.along != "dofs":
-        slope = [{"x": x, "y": ys[-1] * (x / xs[-1]) ** expected} for x in xs]
-        panel.draw({"type": "line", "color": GREY, "strokeDash": [2, 3], "strokeWidth": 1}, slope)
+    colour, shape = one.model.colour, SHAPES.get(one.model.marker, "circle")
     rows = [{"x": x, "y": y, "readout": _words(one, y, level)} for x, y, level in one.spots]
     line = {"type": "line", "color": colour, "strokeWidth": 1.5}
     panel.draw(line, [{"x": x, "y": y} for x, y, _ in one.spots])
-    shape = SHAPES.get(one.model.marker, "circle")
     panel.draw({"type": "point", "filled": True, "color": colour, "shape": shape, "size": 55}, rows)
     return panel
-
-
-def _orders(bar: BarRecord) -> str:
-    known = {"observed order": bar.observed_order, "expected": bar.expected_order}
-    return ", ".join(f"{what} {order:.2f}" for what, order in known.items() if order is not None)
 
 
 def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:

@@ -8,7 +8,6 @@ from typing import Any
 
 from solidgear.judge.correlation import FOREIGN
 from solidgear.judge.record import (
-    BarRecord,
     DeviationRecord,
     EvidenceRecord,
     PartnerRecord,
@@ -186,7 +185,6 @@ def orders(record: Record) -> Table:
         word("bar from", lambda row: row[1].method or None),
         Column("last change", lambda row: row[1].change, unsigned),
         Column("over the one before", lambda row: row[1].reduction, small),
-        Column("order observed, expected", lambda row: _orders(row[1])),
         Column("factor", lambda row: row[1].factor, small),
         Column("of the solver", lambda row: row[1].solver, unsigned),
         Column("error bar", lambda row: row[1].gci, bar_percent),
@@ -198,12 +196,6 @@ def orders(record: Record) -> Table:
         "Layers: errors shrink by a nearly fixed share, and the factor is measured on random "
         "shafts. Of a coupling: shares of the geometric mean of its two diagonal entries.",
     )
-
-
-def _orders(bar: BarRecord) -> str | None:
-    if bar.observed_order is None or bar.expected_order is None:
-        return None
-    return f"{bar.observed_order:.2f} of {bar.expected_order:.2f}"
 
 
 def algebra(record: Record) -> Table:

@@ -100,11 +100,11 @@ def options_text(row: Row) -> str:
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
     """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
-    not resolve as its error bar.
+    not resolve as its error bar; without one the reason why there is none.
     """
     found = race.error(row, quantity)
     if found is None:
-        return "-"
+        return row.reason or row.status if row.status != "ok" else f"found no {quantity}"
     text = percent(found, signed=False)
     if not race.resolved(row, quantity):
         text = f"< {text}"

@@ -224,13 +224,13 @@ def free_modes(heat: Heat) -> None:
 
 
 def beams(heat: Heat) -> None:
-    """The Timoshenko beam against ROSS on the same nodes, bearings without tilt."""
+    """The Timoshenko beam against ROSS on the same nodes, with bearings at nodes, without tilt."""
     if missing := ross_peer.present():
         heat.skip(f"ROSS: {missing}")
         return
     import solidgear as sg
 
-    scene, options = ross_peer.tiltless(held(SCENE, "average")), {"kappa": "cowper"}
+    scene, options = ross_peer.on_nodes(held(SCENE, "section")), {"kappa": "cowper"}
     body = sg.build(scene, "timoshenko", **options)
     expected = sg.modes(body, scene, n=10)
     data = ross_peer.rotor(scene, body)

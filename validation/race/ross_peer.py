@@ -1,5 +1,5 @@
-"""ROSS as a peer for the beam: the same nodes, tapered Timoshenko elements, bearings without tilt
-stiffness (ROSS has none).
+"""ROSS as a peer for the beam: the same nodes, tapered Timoshenko elements, and bearings as ROSS has
+them, at a node each and without tilt stiffness.
 """
 
 from __future__ import annotations
@@ -18,15 +18,18 @@ def present() -> str:
     return "" if importlib.util.find_spec("ross") else missing
 
 
-def tiltless(scene):
-    """The scene with bearings that hold translations only."""
+def on_nodes(scene):
+    """The scene with bearings that hold translations only, of the section in their middle.
+
+    An averaged seat of ours is held in its width: 3.8 % between the third bending modes.
+    """
     import numpy as np
 
     bearings = []
     for bearing in scene.bearings:
         k = np.diag(np.diag(bearing.stiffness))
         k[3:] = 0.0
-        bearings.append(bearing.with_changes(matrix=k, axial_series=()))
+        bearings.append(bearing.with_changes(matrix=k, axial_series=(), attachment="section"))
     return scene.with_changes(bearings=tuple(bearings))
 
 
@@ -36,7 +39,7 @@ def rotor(scene, body) -> dict:
     Parameters
     ----------
     scene : Scene
-        With bearings that hold translations only.
+        Of :func:`on_nodes`.
     body : Body
         Timoshenko body of it, for its nodes.
     """
