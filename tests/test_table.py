@@ -71,3 +71,20 @@ def test_a_6x6_has_a_unit_over_each_block_in_every_medium(units):
     assert table.cells[2][4] == ("1.0000" if units is SI else "0", "faint")
     lines = in_terminal(table).splitlines()
     assert [len(line.split()) for line in lines if line.startswith((" x", " thx"))] == [7, 7]
+
+
+@pytest.mark.parametrize("width", [120, 60, 46, 20])
+def test_no_terminal_is_too_narrow_for_a_number(width):
+    """Heads and texts take more lines, columns move together; a wider table runs over."""
+    heads = [text("at"), *(Column(f"across the plane {k}, urad") for k in range(4))]
+    rows = [
+        ("a point with a long name (115 N m)", "-93.41", "0.573 to 3.44", "± 0.022 %", "1.25e-12")
+    ]
+    console = Console(width=width, file=io.StringIO(), color_system=None)
+    console.print(Table("lies", heads, rows), crop=False)
+    told = console.file.getvalue()
+    assert "…" not in told and "..." not in told
+    for number in ("-93.41", "0.573 to 3.44", "+- 0.022 %", "1.25e-12"):
+        assert number in told
+    if width >= 60:
+        assert max(map(len, told.splitlines())) <= width

@@ -499,3 +499,24 @@ def test_deflect_writes_what_it_says(tmp_path, run):
     assert (tmp_path / "deflection.html").exists() and (tmp_path / "deflection_gear.csv").exists()
     written = json.loads((tmp_path / "deflection.json").read_text())
     assert written["standings"] == data["standings"] and written.keys() == data.keys()
+
+
+def test_every_point_of_a_train_is_told_as_it_is_alone(run):
+    """Points are settled one after the other, and no answer hangs on the one before."""
+    both = json.loads(run("deflect", GEARBOX, "-f", "timoshenko", "--json")[1])["points"]
+    alone = run("deflect", GEARBOX, "-f", "timoshenko", "--point", "coast", "--json")[1]
+    assert json.loads(alone)["points"] == []
+    lies = json.loads(alone)["models"]["timoshenko"]["misalignment"]
+    assert [one["point"]["name"] for one in both] == ["full", "coast"]
+    assert both[1]["misalignment"]["f_sh"]["value"] == pytest.approx(
+        lies["f_sh"]["value"], rel=1e-8
+    )
+    told = run("deflect", GEARBOX, "-f", "timoshenko")[1]
+    assert "Misalignment over the operating points" in told and "coast (-30 N m" in told
+
+
+def test_a_motion_that_is_none_is_no_small_number(run):
+    """The engine's spring port does not turn; rounding of it is no figure to be read."""
+    told = run("deflect", GEARBOX, "-f", "timoshenko", "--point", "coast")[1]
+    rows = map(str.split, told.partition("Displacements")[2].splitlines())
+    assert next(row for row in rows if row[:1] == ["pinion.B"])[5] == "0"

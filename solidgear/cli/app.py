@@ -65,7 +65,7 @@ def say(*told: RenderableType, soft_wrap: bool = True) -> None:
     # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
     terminal = Console(highlight=False, markup=False, emoji=False)
     for one in told:
-        terminal.print(one, soft_wrap=soft_wrap and isinstance(one, str))
+        terminal.print(one, soft_wrap=soft_wrap and isinstance(one, str), crop=False)
 
 
 def caution(text: str) -> str:

@@ -67,7 +67,8 @@ def deflect(
         if is_train(file):
             _refuse({"--load": load}, "a shaft", file, "a train takes --torque")
             how = _point(file, torque, of, point, weight)
-            told = _train(file, *how, fidelity, out, run.units, progress)
+            every = torque is None and point is None and len(how[0].operation) > 1
+            told = _train(file, *how, fidelity, out, run.units, progress, every)
         else:
             _refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
             told = _shaft(file, load, fidelity, out, run.units, progress)
@@ -119,6 +120,7 @@ def _train(
     out: Path | None,
     units: str,
     progress: Progress,
+    every: bool,
 ) -> tuple[dict, list]:
     from solidgear.report import deflection_tables as tables
     from solidgear.report.deflection_files import write_deflection
@@ -126,8 +128,9 @@ def _train(
     from solidgear.studies.train.deflection import MODELS, deflect_train
     from solidgear.studies.train.models import Workshop
 
-    found = deflect_train(Workshop(train), at, models or MODELS, progress)
+    found = deflect_train(Workshop(train), at, models or MODELS, progress, every)
     shown, judge = units_named(units), found.judge
+    over = tables.over_points(found.points, shown)
     force = shown.text(judge.mesh_force, "N", 5)
     lead = f"At {at.label}: {force} along the line of action."
     lines: list[Any] = [
@@ -136,6 +139,7 @@ def _train(
         tables.misalignment(found, shown),
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
+        *over,
         found.verdict(),
         *judge.notes,
         *map(caution, found.cautions),
@@ -147,7 +151,7 @@ def _train(
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",
-            [tables.misalignment(found, shown)],
+            [tables.misalignment(found, shown), *over],
             [*judge.notes, *found.cautions],
             shown,
         )

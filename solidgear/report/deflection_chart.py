@@ -94,10 +94,6 @@ def _panel(
     return panel
 
 
-def _without(rows: Sequence[Mapping[str, Any]], key: str) -> list[dict[str, Any]]:
-    return [{other: value for other, value in row.items() if other != key} for row in rows]
-
-
 def _ends(values: np.ndarray) -> tuple[float, float]:
     """Ends of an axis that holds all values and zero, with room."""
     low, high = min(values.min(), 0.0), max(values.max(), 0.0)

@@ -7,13 +7,15 @@ from functools import partial
 from math import degrees, isfinite
 from typing import Any
 
-from solidgear.report.table import Cell, Column, Table, quantity, word
+from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 
 DOFS = ("x", "y", "z", "thx", "thy", "thz")
 SI_OF = ("m moved",) * 3 + ("rad moved",) * 3
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
+#: of the largest of a motion's translations or rotations; less is rounding
+ROUNDING = 1e-9
 LOAD_OF = ("N",) * 3 + ("N m",) * 3
 
 
@@ -39,6 +41,56 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     if any(m.open is not None for m in judge.misalignment):
         note += " Left open: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, judge.misalignment, note)
+
+
+def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
+    """Misalignment and radial bearing loads at all operating points of a train.
+
+    Parameters
+    ----------
+    points : sequence of TrainDeflection
+        By one model; none for one point, of which there are tables already.
+    units : Units, optional
+    """
+    if not points:
+        return []
+    first = points[0]
+    at = text("at", lambda one: one.point.label)
+    force = quantity("mesh force", "N", units, lambda one: one.mesh_force, 4)
+    lie = [
+        quantity(m.name, m.unit, units, partial(_lies, k), 3)
+        for k, m in enumerate(first.misalignment)
+    ]
+    widest = [_widest(points, k) for k in range(len(first.misalignment))]
+    told = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
+    note = f"By {first.pinion}; error bars {', '.join(told)} at most." if told else ""
+    ends = [
+        (s, f"{shaft.name}.{b.name}")
+        for s, shaft in enumerate(first.shafts)
+        for b in shaft.bearings
+    ]
+    carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
+    return [
+        Table("Misalignment over the operating points", [at, force, *lie], points, note),
+        Table("Radial bearing loads over the operating points", [at, *carried], points),
+    ]
+
+
+def _lies(k: int, one: Any) -> float:
+    return one.misalignment[k].value
+
+
+def _radial(side: int, end: str, one: Any) -> float:
+    shaft = one.shafts[side]
+    return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
+
+
+def _widest(points: Sequence[Any], k: int) -> str | None:
+    """Widest error bar of a number over all points, in per cent of its largest value."""
+    own = [one.misalignment[k] for one in points]
+    largest = max(abs(m.value) for m in own)
+    bars = [m.bar for m in own if m.bar is not None]
+    return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
 
 
 def _of(one: Any, units: Units, measured: Any) -> str:
@@ -92,7 +144,9 @@ def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
     """Columns of the six components of a motion."""
 
     def one(k: int, item: Any) -> float:
-        return float(of(item)[k])
+        six = of(item)
+        alike = six[:3] if k < 3 else six[3:]
+        return float(six[k]) if abs(six[k]) > ROUNDING * max(map(abs, alike)) else 0.0
 
     return [
         quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in enumerate(zip(DOFS, SI_OF))

@@ -1,7 +1,7 @@
 """One table for every reader: a terminal, a page, a notebook, a file.
 
 A :class:`Table` holds values; each :class:`Column` says how its own are written. What a medium needs
-beside that stands here and nowhere else: :mod:`rich` asks for ``__rich__``, a notebook for
+beside that stands here and nowhere else: :mod:`rich` asks for ``__rich_console__``, a notebook for
 ``_repr_html_``, a page calls the macro ``table`` of ``parts.html``, a file takes :meth:`Table.csv`.
 """
 
@@ -21,6 +21,7 @@ from solidgear.report.units import Units, in_ascii
 from solidgear.report.words import DASH, as_text
 
 if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderResult
     from rich.table import Table as RichTable
 
 #: rows that a `repr` shows
@@ -190,8 +191,8 @@ class Table:
         return [(over[k], rows[k * size : (k + 1) * size]) for k in range(many)]
 
     # ---------------------------------------------------------------------- a terminal
-    def __rich__(self) -> RichTable:
-        return printed(self)
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        yield fitted(self, console, options)
 
     def __repr__(self) -> str:
         if not self.rows:
@@ -259,6 +260,55 @@ TERMINAL: dict[str, dict[str, Any]] = {
     "bare": {"padding": (0, 1, 0, 0)},
 }
 TERMINAL["matrix"] = TERMINAL["narrow"]
+#: right of a cell, left of it none, where a terminal has no room for more
+TIGHT = ((0, 1, 0, 0), (0, 0, 0, 0))
+#: characters that a column of texts has at least
+LEAST_TEXT = 12
+
+
+def fitted(table: Table, console: Console, options: ConsoleOptions) -> RichTable:
+    """A table for a terminal of a width: heads take several lines, columns move together, and no
+    number is ever cut; what is wider still runs over.
+    """
+    shown = printed(table)
+    if _width(shown, console, options) <= options.max_width:
+        return shown
+    least = [_least(column, cells) for column, cells in zip(table.columns, zip(*table.texts))]
+    given = shown.padding
+    for padding in (given, *TIGHT):
+        shown.padding = padding
+        for column, width in zip(shown.columns, least):
+            column.width, column.no_wrap = width, False
+        spare = options.max_width - _width(shown, console, options)
+        if spare >= 0:
+            _widen_texts(table, shown, spare)
+            return shown
+    shown.width = _width(shown, console, options)
+    return shown
+
+
+def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
+    """Characters that a table takes where it may take any."""
+    from rich.measure import Measurement
+
+    return Measurement.get(console, options.update(max_width=1000), shown).maximum
+
+
+def _least(column: Column, cells: Iterable[str]) -> int:
+    """Characters of the widest cell, or of the longest word of the head; of texts a few."""
+    from rich.cells import cell_len
+
+    words = [cell_len(word) for word in in_ascii(column.head).split()]
+    if column.kind == TEXT:
+        return max([LEAST_TEXT, *words])
+    return max([*(cell_len(in_ascii(cell)) for cell in cells), *words])
+
+
+def _widen_texts(table: Table, shown: RichTable, spare: int) -> None:
+    """Share among columns of texts what is left of a line."""
+    texts = [k for k, column in enumerate(table.columns) if column.kind == TEXT]
+    for k in texts:
+        shown.columns[k].width = (shown.columns[k].width or 0) + spare // len(texts)
 
 
 def printed(table: Table) -> RichTable:
@@ -275,7 +325,7 @@ def printed(table: Table) -> RichTable:
         box=boxes.get(table.style, box.SIMPLE_HEAD),
         title=Text(in_ascii(table.title), "table.title") if table.title else None,
         title_justify="left",
-        caption=Text(table.note, "table.caption") if table.note else None,
+        caption=Text(in_ascii(table.note), "table.caption") if table.note else None,
         caption_justify="left",
         **TERMINAL.get(table.style, TERMINAL[""]),
     )

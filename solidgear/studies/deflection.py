@@ -306,16 +306,26 @@ def shaft_deflection(
         stations = np.array([0.0, scene.length])
         line = _rigid_line(system, part, scene, found.coordinates, stations)
     else:
-        stations = _stations(body, scene.length)
-        line = Projection(body, stations)(system.expand(part, found.coordinates))
+        known = body.cache.get(_Sections, lambda: _sections(body, scene.length))
+        stations = known.stations
+        line = known.project(system.expand(part, found.coordinates))
     return ShaftDeflection(part, model, stations, line, ports, bearings)
 
 
-def _stations(body: Body, length: float) -> np.ndarray:
-    """Places of a deflection line, m: the nodes of a beam, between which sections would be guessed."""
-    if any(block.sections is not None for block in body.blocks):
-        return np.linspace(0.0, length, STATIONS)
-    return np.unique(min((block.y for block in body.blocks), key=len))
+@dataclass(frozen=True)
+class _Sections:
+    """Places of the deflection line of a body, m, and what finds the motions of sections there."""
+
+    stations: np.ndarray
+    project: Projection
+
+
+def _sections(body: Body, length: float) -> _Sections:
+    """Sections of a line: at the nodes of a beam, between which they would be guessed."""
+    stations = np.linspace(0.0, length, STATIONS)
+    if all(block.sections is None for block in body.blocks):
+        stations = np.unique(min((block.y for block in body.blocks), key=len))
+    return _Sections(stations, Projection(body, stations))
 
 
 def _rigid_line(

@@ -10,6 +10,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.judge.deviations import WITHIN, gap_verdict
+from solidgear.machine.threads import pinned
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import SIDES
 from solidgear.studies.bearing_life import left_open
@@ -133,6 +134,8 @@ class Deflections:
         The judge last.
     standings : tuple of Standing
     cautions : tuple of str
+    points : tuple of TrainDeflection
+        By the judge, at every operating point of the train; none where one is asked for.
     """
 
     title: str
@@ -140,6 +143,7 @@ class Deflections:
     found: tuple[TrainDeflection, ...]
     standings: tuple[Standing, ...]
     cautions: tuple[str, ...]
+    points: tuple[TrainDeflection, ...] = ()
 
     @property
     def judge(self) -> TrainDeflection:
@@ -157,7 +161,11 @@ class Deflections:
             return "One model was solved: which is enough is not judged."
         asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
         if self.cheapest is None:
-            return f"No cheaper model is known to hold {asked}: use {self.judge.pinion}."
+            near = min(self.standings, key=lambda one: abs(one.gap))
+            return (
+                f"No cheaper model is known to hold {asked}: use {self.judge.pinion}. The nearest, "
+                f"{near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
+            )
         one = self.cheapest
         return (
             f"Cheapest model that holds {asked}: {one.model} "
@@ -173,6 +181,7 @@ class Deflections:
             "models": {one.pinion: one.as_dict() for one in self.found},
             "standings": [vars(one) for one in self.standings],
             "cautions": list(self.cautions),
+            "points": [one.as_dict() for one in self.points],
         }
 
 
@@ -181,6 +190,7 @@ def deflect_train(
     point: OperatingPoint,
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
+    every: bool = False,
 ) -> Deflections:
     """Deflection and misalignment of a train at an operating point by several models.
 
@@ -192,6 +202,8 @@ def deflect_train(
         Of both shafts, the finest last.
     progress : callable, optional
         Told each model.
+    every : bool
+        Also at every operating point of the train, by the last model.
 
     Returns
     -------
@@ -217,21 +229,41 @@ def deflect_train(
     progress("what the data of bearings leave open")
     found[-1] = _with_ranges(workshop, found[-1])
     standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
+    points: list[TrainDeflection] = []
+    if every:
+        progress(f"{len(workshop.train.operation)} operating points")
+        points = deflections(workshop, workshop.train.operation, models[-1], models[-1])
     title = workshop.train.title or workshop.train.name
     return Deflections(
-        title, workshop.train.ask.tolerance, tuple(found), standings, workshop.contact.cautions
+        title,
+        workshop.train.ask.tolerance,
+        tuple(found),
+        standings,
+        workshop.contact.cautions,
+        tuple(points),
     )
 
 
 def deflection(
     workshop: Workshop, point: OperatingPoint, pinion: str, gear: str
 ) -> TrainDeflection:
-    """Deflection of a train at an operating point by one model of each shaft.
+    """Deflection of a train at an operating point by one model of each shaft, as
+    :func:`deflections`.
+    """
+    return deflections(workshop, [point], pinion, gear)[0]
+
+
+@pinned
+def deflections(
+    workshop: Workshop, points: Sequence[OperatingPoint], pinion: str, gear: str
+) -> list[TrainDeflection]:
+    """Deflection of a train at several operating points by one model of each shaft.
 
     Parameters
     ----------
     workshop : Workshop
-    point : OperatingPoint
+    points : sequence of OperatingPoint
+        Each is begun at the one before.
     pinion, gear : str
 
     Raises
@@ -246,11 +278,23 @@ def deflection(
                 f"a {rung} shaft has its bearings condensed into it, and no places of their own; "
                 f"use one of {', '.join(MODELS)}"
             )
-    bodies = {side: workshop.shaft(side, rung).body for side, rung in rungs.items()}
-    start = perf_counter()
-    state = Operating(workshop, pinion, gear).at(point)
-    seconds = perf_counter() - start
-    system = state.system
+    for side, rung in rungs.items():
+        workshop.shaft(side, rung)  # no settling to be timed
+    operating = Operating(workshop, pinion, gear)
+    state: OperatingState | None = None
+    out = []
+    for point in points:
+        start = perf_counter()
+        state = operating.at(point, state)
+        out.append(_told(workshop, state, rungs, perf_counter() - start))
+    return out
+
+
+def _told(
+    workshop: Workshop, state: OperatingState, rungs: dict[str, str], seconds: float
+) -> TrainDeflection:
+    """Deflection of a train at rest."""
+    point, system = state.point, state.system
     bars = StaticBars(workshop, state, rungs)
     measures = misalignment(workshop.on_flank(point.coast), system)
     told = tuple(
@@ -264,7 +308,7 @@ def deflection(
             workshop.scenes[side],
             system,
             state.equilibrium,
-            None if rung.partition("/")[0] == RIGID else bodies[side],
+            None if rung.partition("/")[0] == RIGID else workshop.shaft(side, rung).body,
             state.made,
         )
         for side, rung in rungs.items()
@@ -272,7 +316,15 @@ def deflection(
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     moved = {side: _six(workshop, side, state, bars) for side in SIDES}
     return TrainDeflection(
-        point, pinion, gear, state.mesh_force, told, moved, shafts, tuple(notes), seconds
+        point,
+        state.pinion,
+        state.gear,
+        state.mesh_force,
+        told,
+        moved,
+        shafts,
+        tuple(notes),
+        seconds,
     )
 
 
