@@ -36,6 +36,8 @@ from tests.made_up_run import fixture_results
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
 COARSE = {"order": 3, "layers": 0, "edge_layers": 0}
+#: better than the bar of the reference
+FINE = {"order": 4, "layers": 2, "edge_layers": 1}
 #: of the chart in the report
 SPEED = 'aria-label="Error against wall time'
 SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}
@@ -53,7 +55,7 @@ def few(scene=None, full=False):
             {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5},
         ),
         Row("harmonic", "harmonic p graded", 1, "harmonic", {"order": 99}),
-        Row("harmonic", "harmonic p graded", 2, "harmonic", COARSE),
+        Row("harmonic", "harmonic p graded", 2, "harmonic", FINE),
     ]
 
 
@@ -64,7 +66,7 @@ def light():
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "plan", few)
-        patch.setattr(racing, "REFERENCE", COARSE)
+        patch.setattr(racing, "SURE", 1e-2)
         patch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
         patch.setattr(cases, "setup_seconds", lambda: SETUP)
         patch.setattr(automatic, "automatic_rows", list)
@@ -122,7 +124,7 @@ def test_rows_hold_every_case_with_runs_times_errors_and_reasons(raced, tmp_path
         and bad["error_C_zz"] == ""
         and bad["front_C_zz"] == ""
     )
-    # the last case is the reference itself, which is as good as it gets
+    # the last case is within the bar of the reference, which is as good as it gets
     assert lines[4]["resolved_C_zz"] == "no" and "seconds" in lines[4]["front_C_zz"]
 
 
@@ -130,7 +132,7 @@ def test_machine_block_says_where_times_and_errors_come_from(raced, tmp_path):
     write_rows(raced, tmp_path)
     machine = json.loads((tmp_path / MACHINE).read_text())
     assert machine["environment"]["numpy"] and machine["environment"]["cores"]
-    assert machine["reference"]["options"] == COARSE and machine["reference"]["bands"]["C_zz"] > 0
+    assert 0 < machine["reference"]["bands"]["C_zz"] < 1e-2 and machine["reference"]["setting"]
     assert machine["setup"]["gmsh, first use"] == 0.1 and machine["runs"] == 2
 
 
@@ -176,6 +178,7 @@ def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
     )
     reference = {
         "options": COARSE,
+        "setting": "order 3",
         "unknowns": 1,
         "seconds": 9.0,
         "values": {"C_zz": 1.0, "bending 1": 1.0},
@@ -213,9 +216,7 @@ def test_the_automatic_choice_is_charted_at_its_largest_system():
 @pytest.mark.long
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     rows = [replace(row) for row in AUTOMATIC[:2]]
-    found = race(
-        sg.load(SCENE), rows, runs=1, against={"order": 4, "layers": 3}, solver=automatic.solved
-    )
+    found = race(sg.load(SCENE), rows, runs=1, sure=2e-4, solver=automatic.solved)
     # a twentieth of the tighter tolerance
     assert max(found.reference["bands"].values()) < 5e-4
     assert [row.status for row in found.rows] == ["ok", "ok"]

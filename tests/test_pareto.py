@@ -164,7 +164,7 @@ def test_uniform_means_no_grading(scene):
 # ------------------------------------------------------------------------------------------------- race
 @pytest.fixture(scope="module")
 def raced(scene):
-    return race(scene, rows(), runs=3, against=COARSE)
+    return race(scene, rows(), runs=3, sure=1e-2)
 
 
 def test_a_failure_is_a_row_with_its_reason_and_stops_nothing(raced):
@@ -180,7 +180,7 @@ def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
     body = sg.build(scene, "timoshenko")
     c = sg.condense(body, scene, scene.port.name).compliance[2, 2]
     f = sg.modes(body, scene, 10).named("bending 1").frequency_hz
-    reference = sg.build(scene, "harmonic", **COARSE)
+    reference = sg.build(scene, "harmonic", **raced.reference["options"])
     c0 = sg.condense(reference, scene, scene.port.name).compliance[2, 2]
     f0 = sg.modes(reference, scene, 10).named("bending 1").frequency_hz
     assert beam.values == pytest.approx({"C_zz": c, "bending 1": f}, rel=1e-12)
@@ -236,6 +236,7 @@ class Stage:
         monkeypatch.setattr(racing, "answer", self.answer)
         reference = {
             "options": COARSE,
+            "setting": "order 3",
             "unknowns": 1,
             "seconds": 1.0,
             "values": {"C_zz": 1e-9, "bending 1": 1e3},
@@ -372,7 +373,7 @@ def test_bad_settings_are_refused_before_anything_runs(scene, monkeypatch, wrong
 
 def test_a_free_shaft_is_charted_by_its_frequency_alone():
     free = sg.load(GEOMETRY / "cylinder_free.toml")
-    found = race(free, [Row("beam", "Timoshenko", 1, "timoshenko", {})], runs=1, against=COARSE)
+    found = race(free, [Row("beam", "Timoshenko", 1, "timoshenko", {})], runs=1, sure=1e-2)
     assert list(found.reference["values"]) == ["bending 1"]
     assert list(found.rows[0].values) == ["bending 1"]
 
@@ -382,9 +383,7 @@ def test_the_bar_of_the_reference_holds_its_error(scene, monkeypatch):
     floor.
     """
     monkeypatch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
-    record, _ = racing._reference(
-        scene, {"order": 4, "layers": 1, "edge_layers": 1}, 10, lambda _: None
-    )
+    record, _ = racing._reference(scene, 1e-2, 10, lambda _: None)
     fine = sg.build(scene, "harmonic", order=5, layers=2, edge_layers=2)
     c = sg.condense(fine, scene, scene.port.name).compliance[2, 2]
     true = abs(record["values"]["C_zz"] / c - 1)

@@ -94,12 +94,9 @@ def footer(race: Race) -> str:
 
 def _reference(race: Race) -> str:
     reference = race.reference
-    options = ", ".join(f"{name} {value}" for name, value in reference["options"].items())
-    order = reference["options"]["order"]
     return (
-        f"Reference: harmonic solid, {options}, {reference['unknowns']} unknowns, "
-        f"{seconds(reference['seconds'])} s; its error bar is the grid convergence index "
-        f"of orders {order - 2} to {order}."
+        f"Reference: harmonic solid, {reference['setting']}, {reference['unknowns']} unknowns, "
+        f"{seconds(reference['seconds'])} s; its error bar is that of local problems."
     )
 
 

@@ -1,7 +1,7 @@
 """Error against cost: discretisations of one scene, and those that no other beats in both.
 
-The error is that against a refined harmonic solid, whose own error bar (grid convergence index over
-its order) is the floor: what lies below it is not resolved.
+The error is that against a refined harmonic solid, whose own error bar (of local problems) is the
+floor: what lies below it is not resolved.
 """
 
 from __future__ import annotations

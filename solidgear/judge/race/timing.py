@@ -18,18 +18,18 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.judge.convergence import gci
 from solidgear.judge.lumped import preferred, sources
 from solidgear.judge.race.pareto import CHARTED, Race, Row
+from solidgear.judge.settle import settle
 from solidgear.judge.solving import Answer, solve
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.corners import sharpest_corner
 from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import synthesise
 
 log = logging.getLogger(__name__)
-REFERENCE = {"order": 8, "layers": 4, "edge_layers": 2}
+#: relative error bar of the reference
+SURE = 1e-6
 #: good to about 3e-5, far below the error of any beam
 LIKE_FOR_LIKE = {"order": 4, "layers": 3, "edge_layers": 1}
 BUDGET, FULL_BUDGET = 240.0, 3600.0
@@ -50,7 +50,7 @@ def race(
     solver: Solve | None = None,
     runs: int = 5,
     budget: float = BUDGET,
-    against: dict | None = None,
+    sure: float | None = None,
     setup: dict[str, float] | None = None,
     progress: Callable[[str], None] = lambda _: None,
     keep: Callable[[Race], None] = lambda _: None,
@@ -69,8 +69,8 @@ def race(
         Of each case; cases above 8 s get at most three, above 20 s one.
     budget : float
         Seconds for all, the reference included.  A level that would not fit in with all its runs is left out.
-    against : dict, optional
-        Builder options of the reference; its order must be at least 3.
+    sure : float, optional
+        Relative error bar that the reference is refined to; 1e-6 by default.
     setup : dict of str to float, optional
         What a process pays once, for the record.
     progress : callable
@@ -96,7 +96,7 @@ def race(
     start = time.perf_counter()
     solver = solver or answer
     n = max(scene.ask.modes, 10)
-    against, compliance = _reference(scene, against or REFERENCE, n, progress)
+    against, compliance = _reference(scene, sure or SURE, n, progress)
     found = Race(
         json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget
     )
@@ -179,44 +179,32 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
     return float(np.abs((a - b) / np.outer(size, size)).max())
 
 
-def _reference(scene, options: dict, n: int, progress) -> tuple[dict, np.ndarray]:
-    """Record of the refined harmonic solid with the error bar from its two lower orders, and its
-    compliance.
-    """
-    top = options["order"]
-    orders, values = (top - 2, top - 1, top), []
-    for order in orders:
-        progress(f"reference: harmonic solid of order {order}")
-        start = time.perf_counter()
-        found = answer(scene, "harmonic", {**options, "order": order}, n)
-        seconds, unknowns = time.perf_counter() - start, found.body.size
-        compliance = found.condensed.compliance
-        values.append(found.quantities)
-        del found
-    have = [q for q in CHARTED if all(q in v for v in values)]
+def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
+    """Record of the harmonic solid refined to an error bar, and its compliance."""
+    progress("reference: refined harmonic solid")
+    made = settle(scene, sure, progress=progress)
+    start = time.perf_counter()
+    found = answer(scene, "harmonic", made.options, n)
+    seconds, values = time.perf_counter() - start, found.quantities
+    have = [q for q in CHARTED if q in values and q in made.bars]
     if not have:
         raise SolidgearError(
             f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port "
             f"{scene.port.name!r} (bearings must resist z there)"
         )
-    # A p-sequence on a corner converges twice as fast as an h-sequence (Babuska and Suri 1987).
-    expected = 4 * sharpest_corner(scene)[1]
-    bands = {
-        q: gci([v[q] for v in values], [1 / p for p in orders], expected, 20.0, expected).gci
-        for q in have
-    }
     progress("reference with section ties")
     like = answer(scene.with_attachment("section"), "harmonic", LIKE_FOR_LIKE, n).quantities
     record = {
-        "options": options,
-        "unknowns": unknowns,
+        "options": json.loads(json.dumps(made.options)),
+        "setting": made.setting,
+        "unknowns": found.body.size,
         "seconds": seconds,
-        "values": {q: values[-1][q] for q in have},
-        "bands": bands,
+        "values": {q: values[q] for q in have},
+        "bands": {q: made.bars[q] for q in have},
         "like_for_like": {q: like[q] for q in have if q in like},
         "like_for_like_options": LIKE_FOR_LIKE,
     }
-    return record, compliance
+    return record, found.condensed.compliance
 
 
 def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver: Solve) -> None:
