@@ -63,42 +63,6 @@ def differences(a, b, relative: float, where: str = "") -> Iterator[str]:
         yield f"{where}: {a!r}, then {b!r}"
 
 
-def renamed(record: dict) -> dict:
-    """A record of schema 2 with the names that schema 3 has for the same numbers."""
-    if record.get("schema") != 2:
-        return record
-    out = json.loads(json.dumps(record))
-    out["schema"] = 3
-    for model in out["models"].values():
-        if model.get("band"):
-            del model["band"]["bending_1"]
-        if model.get("convergence"):
-            found = model["convergence"]
-            each = {name: found.pop(_old_name(name)) for name in model["band"]["each"]}
-            levels = [_gathered(level, "c_zz", "bending_1_hz") for level in found["levels"]]
-            model["convergence"] = {"levels": levels, "quantities": each}
-    for variants in out["attachments"].values():
-        for name, found in variants.items():
-            found = {k: v for k, v in found.items() if v is not None}
-            variants[name] = _gathered(found, "c_zz", "k_zz", "bending_1_hz")
-    out["causes"] = [_gathered(cause, "c_zz", "k_zz", "bending_1") for cause in out["causes"]]
-    for lumped in out["lumped"].values():
-        if "first_bending_hz" in lumped:
-            lumped["frequency_hz"] = lumped.pop("first_bending_hz")
-    return out
-
-
-def _old_name(quantity: str) -> str:
-    return quantity.replace(" ", "_").lower()
-
-
-def _gathered(record: dict, *names: str) -> dict:
-    """The same with quantities under their own names, in one place."""
-    new = {"c_zz": "C_zz", "k_zz": "K_zz", "bending_1_hz": "bending 1", "bending_1": "bending 1"}
-    rest = {k: v for k, v in record.items() if k not in names}
-    return rest | {"quantities": {new[n]: record[n] for n in names if n in record}}
-
-
 def lost(found: Iterator[str]) -> list[str]:
     """Differences without what is only there now."""
     return [line for line in found if not line.endswith(": only after")]
@@ -116,7 +80,7 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
             before = results(options.before.resolve(), scene, Path(one))
             after = results(ROOT, scene, Path(two))
-        found = lost(differences(renamed(before), after, options.relative))
+        found = lost(differences(before, after, options.relative))
         wrong += len(found)
         print(f"{scene.stem}: {len(found)} differences", flush=True)
         for line in found[:20]:
