@@ -10,16 +10,18 @@ import pytest
 
 import solidgear as sg
 from solidgear.cli import shipped
-from solidgear.cli.starts import STARTS, start
+from solidgear.cli.starts import SHAFTS, STARTS, start
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.file import load
+from solidgear.studies.train.deflection import deflection
+from solidgear.studies.train.models import Workshop
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent
 
 
-@pytest.mark.parametrize("kind", STARTS)
+@pytest.mark.parametrize("kind", [kind for kind in STARTS if kind not in SHAFTS])
 def test_a_new_scene_runs(kind, tmp_path):
     done = command("new", tmp_path / "deep" / "my fan 2", "--kind", kind)
     assert done.exit_code == 0 and "solidgear check" in done.stdout
@@ -27,6 +29,19 @@ def test_a_new_scene_runs(kind, tmp_path):
     assert scene.title == "my fan 2"
     found = sg.answer(scene, ask="bending")
     assert found.reached and found.values[0].value > 100
+
+
+@pytest.mark.parametrize("kind", SHAFTS)
+def test_a_new_train_runs_and_its_shafts_do(kind, tmp_path):
+    done = command("new", tmp_path / "my box", "--kind", kind)
+    assert done.exit_code == 0 and len(list(tmp_path.iterdir())) == 3
+    assert len(start(kind, "my box")) == 3
+    train = sg.load_train(tmp_path / "my box.toml")
+    assert train.title == "my box" and not Workshop(train).cautions
+    found = deflection(Workshop(train), train.operation[0], "timoshenko", "timoshenko")
+    assert found.mesh_force > 1000 and not found.notes
+    again = command("new", tmp_path / "my box", "--kind", kind)
+    assert "there is such a file already" in str(again.exception)
 
 
 def test_a_new_scene_is_never_written_over_another(tmp_path):

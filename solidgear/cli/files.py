@@ -25,11 +25,15 @@ def new(
     name: Annotated[Path, typer.Argument(help="Scene file to write, with or without .toml.")],
     kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
 ) -> None:
-    """Write a short, commented scene that runs, to change into one's own."""
+    """Write a short, commented scene that runs, or a train, to change into one's own."""
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
-    text = start(kind, path.stem)
-    _write(path, text)
-    typer.echo(f"{path}: {STARTS[kind]}. Next: solidgear check {path}")
+    made = {path.parent / one: text for one, text in start(kind, path.stem).items()}
+    for one in made:
+        _refuse_existing(one)
+    for one, text in made.items():
+        _write(one, text)
+    beside = f" (with {', '.join(str(one) for one in made if one != path)})" * (len(made) > 1)
+    typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
 
 
 @command

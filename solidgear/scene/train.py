@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import model_validator
 
 from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.cylindrical import cylindrical_problems, rolling
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation, operation_problems
 from solidgear.scene.stations import Bearing
@@ -42,7 +43,7 @@ class Train(Model):
     Raises
     ------
     SceneError
-        Every problem of its parts, names that both shafts use, hands that cannot mesh, a ratio
+        Every problem of its parts, hands that cannot mesh, a ratio
         that is not that of the teeth, springs on ports that are not there, operating points that
         the teeth contradict, and shafts that a torque cannot turn.
 
@@ -70,24 +71,14 @@ class Train(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Train:
-        problems = [*self._names(), *self._teeth(), *self._springs(), *self._operation()]
+        problems = [*self._teeth(), *self._springs(), *self._operation()]
         if problems:
             raise SceneError.of(problems)
         return self
 
-    def _names(self) -> Iterator[SceneError]:
-        taken = {s.name for s in self.pinion.scene.stations}
-        twice = [s.name for s in self.gear.scene.stations if s.name in taken]
-        if twice:
-            yield SceneError(
-                f"bearings or lumped points of both shafts are called {listed(twice)}; "
-                "each carries one shaft and needs its own name",
-                path=("gear", "scene"),
-            )
-
     def _teeth(self) -> Iterator[SceneError]:
         hands = (self.pinion.hand, self.gear.hand)
-        curved = any(m.spiral_angle for m in (self.pinion, self.gear))
+        curved = any(m.spiral_angle or m.helix_angle for m in (self.pinion, self.gear))
         if curved and None not in hands and hands[0] == hands[1]:
             pair = (
                 "spiral bevel pair" if self.mesh.shaft_angle else "helical pair on parallel shafts"
@@ -97,6 +88,7 @@ class Train(Model):
                 path=("gear", "hand"),
             )
         yield from self._flanks()
+        yield from cylindrical_problems(self.pinion, self.gear, self.mesh)
         ratio = self.gear.teeth / self.pinion.teeth
         given = self.mesh.ratio
         if given is not None and not isclose(given, ratio, rel_tol=RATIO_TYPED):
@@ -210,6 +202,18 @@ class Train(Model):
     def ratio(self) -> float:
         """Teeth of the gear over teeth of the pinion."""
         return self.gear.teeth / self.pinion.teeth
+
+    @property
+    def rolling(self) -> Train:
+        """The same with pitch radii and angles of parallel shafts where their wheels roll on each
+        other: what module, helix angle, profile shifts and centre distance come to.
+
+        Raises
+        ------
+        SceneError
+            For a centre distance or profile shifts that no pressure angle meets.
+        """
+        return self.with_changes(**rolling(self.pinion, self.gear, self.mesh))
 
     def member(self, side: str) -> Member:
         """``pinion`` or ``gear``."""

@@ -76,6 +76,11 @@ class Member(Model):
         At the heel and along the cone, m.
     pitch_angle, spiral_angle : float or None
         rad.
+    module, helix_angle : float or None
+        Of cylindrical gears instead: normal module, m, and helix angle at the reference cylinder, rad;
+        radii follow from the teeth.
+    profile_shift : float
+        Of cylindrical gears, in modules.
     apex : {'start', 'end'}
         Towards which end of the shaft the pitch apex lies.
     head : HeadInertia or None
@@ -92,6 +97,9 @@ class Member(Model):
     face_width: PositiveLength | None = None
     pitch_angle: PitchAngle | None = None
     spiral_angle: SpiralAngle | None = None
+    module: PositiveLength | None = None
+    helix_angle: SpiralAngle | None = None
+    profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
     apex: Literal["start", "end"] = "start"
     head: HeadInertia | None = None
     scene_load: Literal["added", "replaced"] | None = None
@@ -225,7 +233,10 @@ class Mesh(Model):
     ratio : float or None
         Teeth of the gear over teeth of the pinion, where a source gives it.
     pressure_angle : float or None
-        Normal to the tooth, for a line of action from gear geometry, rad.
+        Normal to the tooth, for a line of action from gear geometry, rad; where there is a module, at
+        the reference cylinder.
+    centre_distance : float or None
+        Of parallel shafts, m; by default that without backlash.
     line_of_action, point : tuple of float or None
         Given instead, in the pinion's frame, from its lumped point.
     contact_cells : tuple of Cell
@@ -247,6 +258,7 @@ class Mesh(Model):
     shaft_angle: ShaftAngle = pi / 2
     ratio: Annotated[float, Field(gt=0)] | None = None
     pressure_angle: PressureAngle | None = None
+    centre_distance: PositiveLength | None = None
     line_of_action: tuple[float, float, float] | None = None
     line_of_action_status: Status = "assumed"
     point: Vector | None = None

@@ -1,20 +1,27 @@
-"""Scene files to begin with: short, commented, and sound as they are."""
+"""Scene and train files to begin with: short, commented, and sound as they are."""
 
 from __future__ import annotations
 
 from solidgear.errors import SolidgearError, nearest, show
 
-#: what a scene may begin as, and what it then is
+#: what one may begin with, and what it then is
 STARTS = {
     "overhung": "bevel pinion overhung on two bearings",
     "straddle": "bevel pinion between two bearings, and a third one behind",
     "rotor": "motor rotor: a stack of a second material, and a fan as a rigid mass",
     "gearbox": "gearbox shaft of eight segments on two bearings",
+    "helical": "train of two helical gears on catalogue bearings",
+    "bevel": "train of a spiral bevel pair",
+}
+#: files that a train has beside its own: what follows its name, and the text
+SHAFTS = {
+    "helical": {"_pinion": "helical_pinion", "_wheel": "helical_wheel"},
+    "bevel": {"_pinion": "overhung", "_gear": "bevel_gear"},
 }
 
 
-def start(kind: str, name: str) -> str:
-    """Text of a scene file to begin with.
+def start(kind: str, name: str) -> dict[str, str]:
+    """Files to begin with.
 
     Parameters
     ----------
@@ -25,8 +32,8 @@ def start(kind: str, name: str) -> str:
 
     Returns
     -------
-    str
-        TOML.
+    dict of str to str
+        Names of files, the one to solve first, and their texts, TOML.
 
     Raises
     ------
@@ -35,8 +42,10 @@ def start(kind: str, name: str) -> str:
 
     Examples
     --------
-    >>> print(start("rotor", "fan").splitlines()[0])
+    >>> print(start("rotor", "fan")["fan.toml"].splitlines()[0])
     # A motor rotor: a shaft with a laminated stack as a second material, and a fan as a rigid mass.
+    >>> list(start("helical", "box"))
+    ['box.toml', 'box_pinion.toml', 'box_wheel.toml']
     """
     from importlib.resources import files  # every command reads this module
 
@@ -48,5 +57,11 @@ def start(kind: str, name: str) -> str:
         raise SolidgearError(
             f"name {show(name, 60)}: use letters, digits, blanks, _, - and full stops"
         )
-    text = files(__name__).joinpath(f"{kind}.toml").read_text("utf-8")
-    return text.replace("{name}", name)
+    texts = {"": kind} | SHAFTS.get(kind, {})
+    return {
+        f"{name}{more}.toml": files(__name__)
+        .joinpath(f"{text}.toml")
+        .read_text("utf-8")
+        .replace("{name}", name + more)
+        for more, text in texts.items()
+    }

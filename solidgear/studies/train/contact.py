@@ -42,6 +42,8 @@ OUTSIDE_RADIUS, OUTSIDE_LENGTH = 0.02, 0.5
 LOAD_ASIDE = np.radians(20.0)
 #: which of the pinion's data geometry needs
 GEOMETRY = ("hand", "loaded_side", "pitch_radius", "pitch_angle", "spiral_angle", "face_width")
+#: how parallel shafts call them
+CYLINDRICAL = {"spiral_angle": "helix_angle", "pitch_radius": "module"}
 #: pressure angle to judge a given line with, where the file has none
 USUAL_PRESSURE_ANGLE = np.radians(20.0)
 
@@ -94,6 +96,7 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     >>> round(abs(found.gear.lever / found.pinion.lever), 4), found.cautions[0][:43]
     (3.2143, 'the pitch angle of 0.391 rad is not that of')
     """
+    train = train.rolling
     mesh, cautions = train.mesh, compared(train)
     wrench = None
     if mesh.contact_cells:
@@ -162,9 +165,12 @@ def _needs(train: Train, *keys: str, what: str) -> None:
     if straight and {"hand", "loaded_side"} & set(missing):
         both = ": of straight teeth both together say which flank is loaded"
         words |= {"hand": both, "loaded_side": both}
+    called = {} if train.mesh.shaft_angle else CYLINDRICAL
     if missing:
         raise SceneError.of(
-            SceneError(f"is missing; {what} needs it{words[key]}", path=("pinion", key))
+            SceneError(
+                f"is missing; {what} needs it{words[key]}", path=("pinion", called.get(key, key))
+            )
             for key in missing
         )
 
