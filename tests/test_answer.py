@@ -413,8 +413,10 @@ def test_command_line():
     assert done.returncode == 0 and found["reached"] and found["values"][0]["bar"] <= 0.05
     told = run("geometry/cylinder_free.toml", "--ask", "C_zz")
     assert told.returncode == 3 and "Not there: C_zz" in told.stdout
-    share = run("geometry/shaft_stepped.toml", "--tol", "1%")
-    assert share.returncode == 2 and "write 0.01" in " ".join(share.stderr.split())
+    share = run("geometry/shaft_stepped.toml", "--tol", "5%", "--ask", "bending", "--json")
+    assert json.loads(share.stdout)["tolerance"] == found["tolerance"] == 0.05
+    none = run("geometry/shaft_stepped.toml", "--tol", "one")
+    assert none.returncode == 2 and "or 1%" in " ".join(none.stderr.split())
     with pytest.raises(sg.SolidgearError, match='did you mean "bending 1"'):
         answer(sg.load("geometry/shaft_stepped.toml"), ask="f1")
     wrong = run("geometry/shaft_stepped.toml", "--tol", "0")

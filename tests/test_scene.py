@@ -226,6 +226,21 @@ def test_units_known_by_heart_are_what_pint_says(unit):
     assert COMMON[unit] == _by_pint(unit)
 
 
+@pytest.mark.parametrize(
+    ("text", "dimension", "value"),
+    [
+        ("115 Nm", "torque", 115.0),
+        ("2.5 kNm", "torque", 2500.0),
+        ("3 Nmm", "torque", 3e-3),
+        ("3e6 Nm/rad", "moment", 3e6),
+        ("1500 1/min", "speed", 50 * math.pi),
+        ("1500 min^-1", "speed", 50 * math.pi),
+    ],
+)
+def test_units_as_they_stand_on_a_nameplate(text, dimension, value):
+    assert quantity(text, dimension) == pytest.approx(value, rel=1e-13)
+
+
 def test_plain_numbers_do_not_import_pint():
     code = "import sys; from solidgear.scene import *; Scene.from_parts([Segment.cylinder('rod', length=0.3, diameter=0.06)]); print('pint' in sys.modules)"
     out = subprocess.run(

@@ -6,7 +6,6 @@ is added to a group, all these commands take.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -52,19 +51,14 @@ else:
 
 
 def share(text: str) -> float:
-    """A relative error from the command line."""
+    """A relative error from the command line, as a share or in per cent."""
+    number = text.strip().removesuffix("%")
     try:
-        return float(text)
+        return float(number) / (100 if number != text.strip() else 1)
     except ValueError:
-        percent = text.strip().removesuffix("%").strip()
-        meant = f"{float(percent) / 100:g}" if _is_number(percent) else "0.01"
         raise typer.BadParameter(
-            f'"{text}" is no plain number; a tolerance is a share: write {meant}'
+            f'"{text}" is no number; a tolerance is a share such as 0.01, or 1%'
         ) from None
-
-
-def _is_number(text: str) -> bool:
-    return re.fullmatch(r"[0-9]*[.]?[0-9]+", text) is not None
 
 
 Settings = Annotated[

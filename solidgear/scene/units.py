@@ -85,6 +85,9 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     "cSt": (1e-6, 0.0, _VISCOSITY),
 }
 
+#: what else stands on a nameplate for revolutions a minute
+TURNS = dict.fromkeys(("1/min", "min^-1", "min-1", "rev/min", "r/min", "U/min"), "rpm")
+
 #: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of
 #: such numbers neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
@@ -215,8 +218,10 @@ def _si_factor(unit: str) -> tuple[float, float, Dimension] | None:
     """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
     does not know it.
     """
-    # m2 for m^2, as people write inertias
+    # m2 for m^2, as people write inertias, and Nm for N*m (to pint the count of a yarn)
     unit = re.sub(r"(?<=m)2\b", "^2", unit)
+    unit = re.sub(r"\b([mkM]?N)(?=[mc]?m\b)", r"\1*", unit)
+    unit = TURNS.get(unit, unit)
     return COMMON[unit] if unit in COMMON else _by_pint(unit)
 
 
