@@ -15,8 +15,9 @@ from solidgear.solve.statics import flexibility
 from solidgear.studies.stress import notch
 from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors
 from solidgear.studies.stress.piece import piece_around
+from solidgear.studies.stress.published import CHARTS
 from solidgear.studies.stress.shaft import shaft_stress, sharp_corners
-from validation.manual.exact_fillets import CHARTS, finite_elements
+from validation.manual.exact_fillets import finite_elements
 
 LOADS = UNIT_LOADS[:3]
 

@@ -17,7 +17,7 @@ from solidgear.studies.stress.shaft import shaft_stress
 @pytest.fixture(scope="module")
 def found():
     scene = shoulder(strength=STRONG)
-    return shaft_stress(scene, loads_on(scene), tolerance=0.05, conditions=Conditions(6.3e-6))
+    return shaft_stress(scene, loads_on(scene), tolerance=0.05, conditions=Conditions(roughness="6.3 um"))
 
 
 def test_every_section_force_is_read_off(found):
