@@ -740,7 +740,7 @@ MUTATIONS = (
     Mutation(
         "fillets: shear counts with the wrong sign in one plane",
         "solidgear/studies/stress/shaft.py",
-        "_local",
+        "local_stress",
         "((-m_x, q_z), (m_z, q_x))",
         "((-m_x, q_z), (-m_z, q_x))",
         "tests/test_fillet_stress.py::test_amplitude_does_not_depend_on_the_direction_of_the_load",

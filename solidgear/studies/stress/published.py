@@ -62,7 +62,7 @@ def peterson(load: Load, large: float, small: float, radius: float) -> float | N
     Examples
     --------
     >>> round(peterson("bending", 60.0, 40.0, 4.0), 2)
-    1.69
+    1.74
     """
     steep = (large - small) / 2 / radius
     if not RANGE[load][0] <= steep <= RANGE[load][1]:
@@ -76,5 +76,5 @@ def peterson(load: Load, large: float, small: float, radius: float) -> float | N
 #: by their source
 PUBLISHED: dict[str, Callable[[Load, float, float, float], float | None]] = {
     "Peterson": peterson,
-    "DIN 743-2": form_factor,
+    "DIN 743": form_factor,
 }

@@ -165,6 +165,20 @@ def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
     return SectionForces(np.array(places), tuple(names), *sides)
 
 
+def forces_of(
+    scene: Scene, loads: Mapping[str, ArrayLike], gravity: ArrayLike | None = None
+) -> SectionForces:
+    """Section forces of a shaft under loads on its ports, and its weight where there is gravity.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`on_ports` and :func:`section_forces`.
+    """
+    falling = [] if gravity is None else weight(scene, gravity)
+    return section_forces([*on_ports(scene, loads), *falling], scene.length)
+
+
 def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
     """Loads on the shaft by the names of the ports that they act on.
 
