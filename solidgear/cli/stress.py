@@ -27,20 +27,20 @@ class Rated(Group):
         str | None, typer.Option(help='Rz of the fillets, such as "6.3 um"; else K_F is 1.')
     ] = None
     ultimate_at_size: Annotated[
-        str | None,
+        float | None,
         typer.Option(help="K_1 of the tensile strength, by the size of the part; else 1."),
     ] = None
     yield_at_size: Annotated[
-        str | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
+        float | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
     ] = None
     hardening: Annotated[
-        str | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
+        float | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
     ] = None
     force_share: Annotated[
-        str | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
+        float | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
     ] = None
     torque_share: Annotated[
-        str | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
+        float | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
     ] = None
     constant_mean: Annotated[
         bool,
@@ -97,8 +97,8 @@ def stress(
 ) -> None:
     """Stress of shafts at rest: section forces, nominal stress, fillets by the solid, DIN 743."""
     from solidgear.report.folder import held
-    from solidgear.report.stress_files import sentences, shaft_tables, write_stress
-    from solidgear.report.units import units_named
+    from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
+    from solidgear.report.units import in_ascii, units_named
     from solidgear.studies.loading import explained
     from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
 
@@ -125,6 +125,7 @@ def stress(
         say(f"{found.title}: stress", lead, soft_wrap=False)
         for shaft in found.shafts:
             say(*shaft_tables(found, shaft, shown, every=False), soft_wrap=False)
+        say(*filter(None, [in_ascii(headline(found, shown))]), soft_wrap=False)
         say(*sentences(found, shown), *map(caution, found.cautions), soft_wrap=False)
         say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
     if not found.reached:

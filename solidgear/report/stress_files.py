@@ -48,7 +48,7 @@ def write_stress(
         folder,
         "stress",
         f"{found.title}: stress",
-        lead,
+        f"{lead} {headline(found, units)}".strip(),
         [table for shaft in found.shafts for table in shaft_tables(found, shaft, units)],
         found.as_dict(),
         lines=lines,
@@ -76,6 +76,24 @@ def shaft_tables(
         *(tables.rating(notch, units, of) for notch in rated[: None if every else 1]),
     ]
     return [table for table in out if table]
+
+
+def headline(found: StressAtRest, units: Units = ENGINEERING) -> str:
+    """Sentence on the worst fillet of all shafts; empty where none has one."""
+    worst = [(shaft, shaft.found.worst[0]) for shaft in found.shafts if shaft.found.notches]
+    if not worst:
+        return ""
+    shaft, notch = min(worst, key=lambda pair: pair[1].severity)
+    value, bar = (
+        units.number(stress, tables.STRESS, digits)
+        for stress, digits in ((notch.local.amplitude, 4), (notch.local.amplitude_bar, 2))
+    )
+    where = f"{shaft.name}, {notch.name}" if len(found.shafts) > 1 else notch.name
+    told = f"Worst at {where}: {value} ± {bar} {units.unit(tables.STRESS)} by bending"
+    if notch.rating is not None:
+        fatigue, yielding = map(tables.safety, (notch.rating.fatigue, notch.rating.yielding))
+        told += f", safety {fatigue} against fatigue and {yielding} against yielding by DIN 743"
+    return f"{told}."
 
 
 def sentences(found: StressAtRest, units: Units = ENGINEERING) -> list[str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.errors import listed
 from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import percent
@@ -38,6 +39,8 @@ LOADS = ("tension", "bending", "torsion")
 BY = {"tension": "mean", "bending": "amplitude", "torsion": "shear"}
 #: of the largest value of a table: what is less is rounding, or couplings of no weight
 NOTHING = 1e-9
+#: share of a value that is left open from which on it is told
+LITTLE = 1e-3
 #: safety that DIN 743 asks for where loads and strength are sure
 LEAST = 1.2
 
@@ -64,7 +67,7 @@ def section_forces(
     """
     rows = [
         (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
-        for y, name, side, six in _sides(forces)
+        for y, name, side, six in _sides(forces, forces.told)
     ]
     force = _of_weight(value for row in rows for value in (row[3], row[4]))
     moment = _of_weight(value for row in rows for value in (row[5], row[6]))
@@ -78,7 +81,9 @@ def section_forces(
         quantity("T", "N m", units, lambda row: moment(row[6])),
     ]
     note = f"{CONVENTION} N is positive in tension; Q and M are sizes of two components."
-    if open_ is not None:
+    if forces.told != forces.names:
+        note += " Weight acts between, at the middle of each segment."
+    if open_ is not None and open_[1] > (1 + LITTLE) * open_[0]:
         low, high = (units.number(value, "N m", 4) for value in open_)
         note += f" Largest M {low} to {high} {units.unit('N m')} by {open_by} of the bearings."
     return Table(_titled("Section forces", of), columns, rows, note)
@@ -96,19 +101,22 @@ def components(forces: SectionForces) -> Table:
     columns = ["y [m]", "acts there", "side", *heads]
     rows = [
         [y, name, side, *(float(six[k]) for _, k, _ in COMPONENTS)]
-        for y, name, side, six in _sides(forces)
+        for y, name, side, six in _sides(forces, forces.names)
     ]
     return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in columns], rows)
 
 
-def _sides(forces: SectionForces) -> list[tuple[float, str, str, np.ndarray]]:
-    """Place, what acts there, side and section forces; without what lies outside of the shaft."""
+def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str, str, np.ndarray]]:
+    """Place, what acts there, side and section forces; without places without a name, and without
+    what lies outside of the shaft.
+    """
     last = len(forces.y) - 1
+    ends = {0: names[0] or "end", last: names[-1] or "end"}
     out = []
-    for k, (y, name) in enumerate(zip(forces.y.tolist(), forces.names)):
-        name = name or "end"
-        out += [(y, name, "before", forces.left[k])] if k else []
-        out += [(y, name, "beyond", forces.right[k])] if k < last else []
+    for k, (y, name) in enumerate(zip(forces.y.tolist(), names)):
+        named = ends.get(k, name)
+        out += [(y, named, "before", forces.left[k])] if named and k else []
+        out += [(y, named, "beyond", forces.right[k])] if named and k < last else []
     return out
 
 
@@ -261,9 +269,9 @@ def safeties(found: ShaftStress, of: str = "") -> Table:
     """Safeties of all fillets that are rated, the least first."""
     columns = [
         text("fillet", lambda notch: notch.name),
-        Column("S, fatigue", lambda notch: _safety(notch.rating.fatigue), kind="number"),
+        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue), kind="number"),
         Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2), kind="number"),
-        Column("S, yielding", lambda notch: _safety(notch.rating.yielding), kind="number"),
+        Column("S, yielding", lambda notch: safety(notch.rating.yielding), kind="number"),
     ]
     rows = [notch for notch in found.worst if notch.rating is not None]
     note = (
@@ -293,8 +301,8 @@ def rating(notch: Notch, units: Units = ENGINEERING, of: str = "") -> Table:
         text("source", _source),
     ]
     note = (
-        f"Safety against fatigue {_safety(found.fatigue)}, against yielding "
-        f"{_safety(found.yielding)}. Of nominal stress, as the norm has it: without shear forces."
+        f"Safety against fatigue {safety(found.fatigue)}, against yielding "
+        f"{safety(found.yielding)}. Of nominal stress, as the norm has it: without shear forces."
     )
     if found.assumed:
         note += f" Assumed, for nobody gave it: {', '.join(found.assumed)}."
@@ -323,11 +331,24 @@ def _source(entry: Entry) -> str | Cell:
     return Cell(entry.source, "mark assumed") if "assumed" in entry.source else entry.source
 
 
-def _safety(value: float) -> str:
+def safety(value: float) -> str:
+    """A safety as it is written."""
     return plain(value, 3) if math.isfinite(value) else "endless"
 
 
 def remarks(found: ShaftStress, units: Units = ENGINEERING) -> list[str]:
     """Sentences on places without a number, and on what is left out."""
-    sharp: list[Any] = [f"y = {units.text(one.y, 'm')}: {one.reason}." for one in found.sharp]
-    return sharp + [f"{remark}." for remark in found.remarks]
+    out = []
+    for chamfered, what in ((False, "sharp corners"), (True, "chamfers, two obtuse corners each")):
+        places = [
+            f"y = {units.text(one.y, 'm')} ({'in the bore, ' * (one.surface == 'bore')}"
+            f"{' to '.join(one.between)})"
+            for one in found.sharp
+            if one.chamfered == chamfered
+        ]
+        if places:
+            out.append(
+                f"{what} at {listed(places)}: a stress does not exist there, it grows without end "
+                "as a mesh is refined; give fillets."
+            )
+    return out + [f"{remark}." for remark in found.remarks]

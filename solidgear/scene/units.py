@@ -380,17 +380,6 @@ Tolerance = Annotated[
     _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent"),
 ]
 
-# Of a rating of strength.
-Roughness = Annotated[
-    Length,
-    _POSITIVE,
-    _must(lambda v: v <= 1e-3, "is above 1 mm, rougher than any shaft: probably wrong units"),
-]
-StrengthFactor = Annotated[
-    float, _in("dimensionless"), _between(0.1, 10.0, "0.1 and 10; no change is 1")
-]
-Share = Annotated[float, _in("dimensionless"), _NOT_NEGATIVE]
-
 # Quantities of a train.
 Inertia = Annotated[float, _in("inertia"), _POSITIVE]
 TorsionSpring = Annotated[float, _in("moment"), _POSITIVE]

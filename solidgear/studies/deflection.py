@@ -242,8 +242,8 @@ def load_of(scene: Scene) -> np.ndarray:
     """
     if scene.load is None:
         raise SolidgearError(
-            f"{scene.name}: there is no load; write [load] with forces at the port, such as "
-            'z = "2 kN", or give --load'
+            'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
+            "--load"
         )
     return np.array(scene.load.six)
 

@@ -177,27 +177,32 @@ def fillet_factors(
     corner = next(c for c in scene.corners if c.name == name)
     found: FilletFactors | None = None
     for order in orders:
-        try:
-            with np.errstate(invalid="ignore"):  # of cells that fold; their matrix is refused
-                body = harmonic(
-                    piece, order=order, layers=LAYERS, edge_layers=0, refinement=refinement
-                )
-            profiles = _profiles(piece, body, section, radius)
-        except FactorError:
-            raise SolidgearError(
-                f'fillet "{name}": cells of the mesh around it fold, of order {order}; make it, or '
-                "what lies beside it, smaller"
-            ) from None
+        unknowns, profiles = _solved(piece, section, radius, order, refinement)
         before = found.factors if found else {}
         factors = {k: _factor(one, k, before.get(k)) for k, one in profiles.items()}
         values = {load: factor.value for load, factor in factors.items()}
-        unknowns = sum(block.size for block in body.blocks if block.mirror is None)
         steps = (*(found.steps if found else ()), Step(order, unknowns, values))
         found = FilletFactors(name, corner, section, radius, factors, profiles, steps)
         if found.widest <= tolerance:
             break
     assert found is not None, "no order was asked for"
     return found
+
+
+def _solved(
+    piece: Piece, section: CrossSection, radius: float, order: int, refinement: float
+) -> tuple[int, dict[str, ArcStress]]:
+    """Unknowns of a mesh and what it finds; the mesh itself, which may be large, ends here."""
+    try:
+        with np.errstate(invalid="ignore"):  # of cells that fold; their matrix is refused
+            body = harmonic(piece, order=order, layers=LAYERS, edge_layers=0, refinement=refinement)
+        profiles = _profiles(piece, body, section, radius)
+    except FactorError:
+        raise SolidgearError(
+            f'fillet "{piece.corner.name}": cells of the mesh around it fold, of order {order}; make '
+            "it, or what lies beside it, smaller"
+        ) from None
+    return sum(block.size for block in body.blocks if block.mirror is None), profiles
 
 
 def _reference(piece: Piece) -> tuple[CrossSection, float]:

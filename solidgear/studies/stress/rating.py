@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
 
 from solidgear.scene.typed import Model
-from solidgear.scene.units import Roughness, Share, StrengthFactor
+from solidgear.scene.units import PositiveLength
 from solidgear.studies.stress import din743
 from solidgear.studies.stress.din743 import LOADS, Load
 
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
     from solidgear.studies.stress.nominal import NominalStress
     from solidgear.studies.stress.notch import FilletFactors
 
+#: m, Rz of no shaft is larger; a factor of strength by size or surface, a share of a mean
+ROUGHEST = 1e-3
+StrengthFactor = Annotated[float, Field(gt=0, le=10)]
+Share = Annotated[float, Field(ge=0)]
 ASSUMED = "assumed"
 OWN = "solid of this shaft"
 STILL = "section forces, loads at rest, shaft turning"
@@ -98,7 +104,7 @@ class Conditions(Model):
     6.3e-06
     """
 
-    roughness: Roughness | None = None
+    roughness: Annotated[PositiveLength, Field(le=ROUGHEST)] | None = None
     ultimate_at_size: StrengthFactor | None = None
     yield_at_size: StrengthFactor | None = None
     hardening: StrengthFactor | None = None

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
 NEAR, TOUCHING = 1.0, 0.01
+#: share of an amplitude by shear that is told
+SHEARED = 0.05
 #: relative bar below which no order leads
 FINEST = 3e-3
 
@@ -111,12 +113,23 @@ class Notch:
     rating: Rating | None
     remark: str
 
+    @property
+    def severity(self) -> tuple[float, float]:
+        """What is least of the worst fillet: its safety, and without any less its stress."""
+        safety = self.rating.fatigue if self.rating else np.inf
+        return safety, -(self.local.amplitude + abs(self.local.mean))
+
 
 class SharpCorner(NamedTuple):
-    """Place, m, where a stress does not exist, and why."""
+    """Place, m, where a stress does not exist: it grows without end as a mesh is refined.
+
+    A chamfer at the root of a step leaves two of them, which are obtuse.
+    """
 
     y: float
-    reason: str
+    surface: str
+    between: tuple[str, str]
+    chamfered: bool
 
 
 @dataclass(frozen=True)
@@ -143,11 +156,7 @@ class ShaftStress:
     def worst(self) -> tuple[Notch, ...]:
         """Fillets, that with the least safety first; without strength, that with the largest stress."""
 
-        def rank(notch: Notch) -> tuple[float, float]:
-            safety = notch.rating.fatigue if notch.rating else np.inf
-            return safety, -(notch.local.amplitude + abs(notch.local.mean))
-
-        return tuple(sorted(self.notches, key=rank))
+        return tuple(sorted(self.notches, key=lambda notch: notch.severity))
 
 
 def shaft_stress(
@@ -241,20 +250,13 @@ def check_tolerance(tolerance: float) -> None:
 
 def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
     """Re-entrant corners of the outline that have no fillet."""
-    rounded = {(c.y, c.surface): c.kind for c in scene.corners if c.root}
+    blended = [corner for corner in scene.corners if corner.root]
     for low, high in zip(scene.segments, scene.segments[1:]):
-        for surface, word in (("outer", "outside"), ("bore", "in the bore")):
-            kind = next(
-                (k for (y, s), k in rounded.items() if s == surface and abs(y - low.y1) <= TOUCH),
-                "",
-            )
+        for surface in ("outer", "bore"):
+            at = (c.kind for c in blended if c.surface == surface and abs(c.y - low.y1) <= TOUCH)
+            kind = next(at, "")
             if kind != "fillet" and _re_entrant(low, high, surface):
-                what = "two obtuse corners of a chamfer" if kind else "sharp corner"
-                yield SharpCorner(
-                    low.y1,
-                    f'{what} {word} between "{low.name}" and "{high.name}": a stress does not '
-                    "exist there, it grows without end as a mesh is refined; give a fillet",
-                )
+                yield SharpCorner(low.y1, surface, (low.name, high.name), bool(kind))
 
 
 def _re_entrant(low: Segment, high: Segment, surface) -> bool:
@@ -282,7 +284,7 @@ def _notch(
     found = fillet_factors(scene, corner.name, tolerance)
     here = forces.at(found.reference)
     nominal = nominal_stress(found.section, here, found.radius)
-    small, large = _diameters(scene, corner)
+    local, (small, large) = local_stress(found, here), _diameters(scene, corner)
     strength = scene.segments[corner.owner].material.strength
     published, rating, fatigue = {}, None, {}
     if corner.surface == "outer":
@@ -303,11 +305,11 @@ def _notch(
         found,
         here,
         nominal,
-        local_stress(found, here),
+        local,
         published,
         fatigue,
         rating,
-        _remark(corner, seats, found, tolerance),
+        _remark(corner, seats, found, tolerance, _by_shear(found, nominal, local)),
     )
 
 
@@ -345,8 +347,20 @@ def local_stress(found: FilletFactors, forces: np.ndarray) -> Local:
     )
 
 
+def _by_shear(found: FilletFactors, nominal: NominalStress, local: Local) -> float:
+    """By how much the amplitude on a fillet is more than form factor times nominal stress, relative;
+    shear is what makes the difference.
+    """
+    bent = found.factors["bending"].value * nominal.bending
+    return local.amplitude / bent - 1 if bent > 0 else np.inf * local.amplitude
+
+
 def _remark(
-    corner: Corner, seats: Sequence[tuple[float, float]], found: FilletFactors, tolerance: float
+    corner: Corner,
+    seats: Sequence[tuple[float, float]],
+    found: FilletFactors,
+    tolerance: float,
+    by_shear: float,
 ) -> str:
     """What a user must know about the numbers of a fillet."""
     told = []
@@ -358,6 +372,12 @@ def _remark(
         told.append(f"a load enters {away}: its own disturbance is not in the factors")
     if found.widest > tolerance:
         told.append(f"bar {100 * found.widest:.2g} %, above the {100 * tolerance:.2g} % asked for")
+    if by_shear > SHEARED:
+        share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"
+        told.append(
+            f"its amplitude is {share} Kt times nominal bending, by the shear force, which a rating "
+            "by DIN 743 leaves out"
+        )
     if corner.surface == "bore":
         told.append("DIN 743 has no formula for a step in a bore")
     return "; ".join(told)
