@@ -42,7 +42,7 @@ def write_stress(
     for shaft in found.shafts:
         name = f"section_forces_{re.sub(r'[^A-Za-z0-9_-]', '_', shaft.name)}"
         lines[name] = tables.components(shaft.found.forces)
-        title = f"Section forces, {shaft.name}"
+        title = f"Section forces, {shaft.name}" if len(found.shafts) > 1 else "Section forces"
         charts[name] = partial(section_chart, shaft.found.forces, title, units)
     return write_files(
         folder,
