@@ -7,7 +7,12 @@ live in; it is found by name when it is first needed, so that nothing below impo
 from __future__ import annotations
 
 import importlib
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 
 if TYPE_CHECKING:
     from solidgear.report.table import Table
@@ -59,3 +64,25 @@ class Displayed:
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
+
+
+def plain(value: Any) -> Any:
+    """A result as data that JSON can hold: dataclasses by their fields, those that no `repr` shows
+    left out; arrays as lists; what is infinite as None.
+
+    Examples
+    --------
+    >>> plain({"load": np.array([1.0, 2.0]), "life": math.inf})
+    {'load': [1.0, 2.0], 'life': None}
+    """
+    if is_dataclass(value):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value) if f.repr}
+    if hasattr(value, "_asdict"):  # a named tuple
+        return plain(value._asdict())
+    if isinstance(value, Mapping):
+        return {key: plain(one) for key, one in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -88,7 +88,14 @@ def test_both_cases_meet_where_the_part_yields():
 def test_what_nobody_gave_is_said_and_what_is_given_is_not():
     bare = rated(notch(), BENDING, STRONG, Conditions(), LARGE)
     assert bare.assumed == ("K_1 (sigma_B)", "K_1 (sigma_S)", "K_F", "K_V", "sigma_a")
-    told = Conditions(5e-6, 0.9, 0.85, 1.1, 0.0, 0.0)
+    told = Conditions(
+        roughness="5 um",
+        ultimate_at_size=0.9,
+        yield_at_size=0.85,
+        hardening=1.1,
+        force_share=0.0,
+        torque_share=0.0,
+    )
     full = rated(notch(), BENDING, STRONG, told, LARGE)
     assert full.assumed == ()
     assert entry(full, "K_1 (sigma_B)").values == (0.9,) * 3
@@ -110,7 +117,9 @@ def test_a_notch_factor_is_never_below_one():
 @pytest.mark.parametrize(
     "given, words",
     [
-        ({"roughness": 0.0}, "roughness = 0.0: it must be"),
+        ({"roughness": 0.0}, "roughness = 0.0: must be greater than zero"),
+        ({"roughness": 6.3}, "roughness = 6.3: must be"),
+        ({"hardening": 110}, "hardening = 110: must be"),
         ({"force_share": -1}, "force_share = -1"),
     ],
 )

@@ -294,6 +294,22 @@ def test_a_solid_deflects_as_the_harmonic_solid_does(folder):
     assert abs(beam[1] / harmonic[1] - 1) > 1e-2
 
 
+def test_a_clamped_shaft_deflects_as_its_compliance_says():
+    """Held seats are as stiff as Newton's search resolves: a millionth of the shaft's flexibility."""
+    scene = sg.load(GEOMETRY / "rotor_disc.toml").with_changes(load={"z": 1000.0, "y": 100.0})
+    found = deflect_scene(scene, ["timoshenko"]).shafts[0]
+    body = sg.build(scene, "timoshenko")
+    told = sg.condense(body, scene, port="fan").compliance @ np.array(scene.load.six)
+    assert found.ports["fan"] == pytest.approx(told, rel=1e-5, abs=1e-13)
+    assert sum(b.load for b in found.bearings)[[1, 2]] == pytest.approx([100.0, 1000.0])
+
+
+def test_a_shaft_without_bearings_is_refused():
+    scene = sg.load(GEOMETRY / "cylinder_free.toml").with_changes(load={"z": 1000.0})
+    with pytest.raises(SolidgearError, match="it has no bearing"):
+        deflect_scene(scene, ["euler"])
+
+
 # ----------------------------------------------------------------------- misalignment
 def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical):
     stiff = [

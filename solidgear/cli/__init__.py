@@ -33,6 +33,7 @@ from solidgear.cli import (
     receptance,
     solve,
     stiffness,
+    stress,
     sweep,
     train,
     train_judge,

@@ -9,41 +9,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from solidgear.cli.acting import Acting, AtRestFile, load_in_words
 from solidgear.cli.app import Progress, caution, command, say
 from solidgear.cli.shared import BY_MODEL, Shown
-from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
+    from solidgear.scene import Scene
     from solidgear.scene.operation import OperatingPoint
     from solidgear.scene.train import Train
 
 
 @command
 def deflect(
-    file: Annotated[
-        Path,
-        typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml."),
-    ],
+    file: AtRestFile,
     *,
-    torque: Annotated[
-        str | None,
-        typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
-    ] = None,
-    of: Annotated[str, typer.Option("--of", help="Shaft of --torque: pinion or gear.")] = "pinion",
-    point: Annotated[
-        str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
-    ] = None,
-    weight: Annotated[
-        str | None,
-        typer.Option(help="With --torque: direction of weight in the pinion's scene, such as -z."),
-    ] = None,
-    load: Annotated[
-        str | None,
-        typer.Option(
-            "--load",
-            help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
-        ),
-    ] = None,
+    acting: Acting,
     fidelity: Annotated[
         list[str] | None,
         typer.Option(
@@ -60,60 +40,21 @@ def deflect(
 ) -> None:
     """Deflection of shafts under torque: displacements, misalignment of the gears, bearing loads."""
     from solidgear.report.folder import held
-    from solidgear.scene.toml_file import is_train
 
-    of_train = {"--torque": torque, "--point": point, "--weight": weight}
+    given = acting.read(file)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        if is_train(file):
-            _refuse({"--load": load}, "a shaft", file, "a train takes --torque")
-            how = _point(file, torque, of, point, weight)
-            every = torque is None and point is None and len(how[0].operation) > 1
-            told = _train(file, *how, fidelity, out, run.units, progress, every)
+        if isinstance(given, tuple):
+            every = acting.torque is None and acting.point is None and len(given[0].operation) > 1
+            data, lines = _train(*given, fidelity, out, run.units, progress, every)
         else:
-            _refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
-            told = _shaft(file, load, fidelity, out, run.units, progress)
-    data, lines = told
+            data, lines = _shaft(file, given, fidelity, out, run.units, progress)
     if run.as_json:
         print(json.dumps(data, allow_nan=False))
         return
     say(*lines, soft_wrap=False)
 
 
-def _refuse(options: dict[str, str | None], what: str, file: Path, instead: str) -> None:
-    for option, given in options.items():
-        if given is not None:
-            raise SolidgearError(f"{option} is for {what}, and {file} is none: {instead}")
-
-
-def _point(
-    file: Path, torque: str | None, of: str, point: str | None, weight: str | None
-) -> tuple[Train, OperatingPoint]:
-    """A train and the operating point that options and file name."""
-    from solidgear.scene.operation import OperatingPoint
-    from solidgear.studies.loading import load_train
-    from solidgear.studies.train.operation import named_point
-
-    if torque is None:
-        _refuse({"--weight": weight}, "a --torque", file, "write weight into its [operation]")
-        train = load_train(file)
-        if not train.operation:
-            raise SolidgearError(
-                f'{file}: no torque is given; write [operation] with torque = "115 N*m", or give '
-                "--torque"
-            )
-        return train, train.operation[0] if point is None else named_point(train, point)
-    if point is not None:
-        raise SolidgearError("give either --torque or --point, not both")
-    given: dict[str, Any] = {"torque": torque, "of": of} | ({"weight": weight} if weight else {})
-    try:
-        own = OperatingPoint(**given)
-    except SceneError as error:
-        raise SolidgearError(f"--torque {show(torque, 40)}: {error}") from None
-    return load_train(file, own), own
-
-
 def _train(
-    file: Path,
     train: Train,
     at: OperatingPoint,
     models: list[str] | None,
@@ -161,30 +102,22 @@ def _train(
 
 def _shaft(
     file: Path,
-    load: str | None,
+    scene: Scene,
     models: list[str] | None,
     out: Path | None,
     units: str,
     progress: Progress,
 ) -> tuple[dict, list]:
-    from solidgear.cli.bearing import loaded_by
     from solidgear.report import deflection_tables as tables
     from solidgear.report.deflection_files import write_deflection
     from solidgear.report.units import units_named
-    from solidgear.scene.file import load as read
     from solidgear.studies.deflection import MODELS, deflect_scene
     from solidgear.studies.loading import explained
 
-    scene = read(file) if load is None else loaded_by(read(file), load)
     with explained(file):
         found = deflect_scene(scene, models or MODELS, progress)
     shown, judge = units_named(units), found.shafts[-1]
-    told = ", ".join(
-        f"{name} {shown.text(float(v), si, 4)}"
-        for name, v, si in zip(tables.DOFS, found.load, tables.LOAD_OF)
-        if v
-    )
-    lead = f"Under {told} at {scene.port.name}; numbers by {judge.model}."
+    lead = f"Under {load_in_words(scene, shown)}; numbers by {judge.model}."
     lines: list[Any] = [
         found.title,
         lead,

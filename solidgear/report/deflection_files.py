@@ -9,9 +9,8 @@ from typing import Any
 
 from solidgear.report import deflection_tables as tables
 from solidgear.report.deflection_chart import deflection_chart
+from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Table
-from solidgear.report.train_files import write_data
-from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 
 
@@ -50,13 +49,14 @@ def write_deflection(
     judge = list(models.values())[-1]
     charts = {"deflection": partial(deflection_chart, models, title, shown)}
     lines = {f"deflection_{shaft.name}": tables.line(shaft) for shaft in judge}
-    files = write_data(folder, lines, data, charts, "deflection")
-    page = write_sheet(
-        folder / "deflection.html",
+    return write_files(
+        folder,
+        "deflection",
         title,
         lead,
         [*told, *tables.bearings(judge, shown), tables.displacements(judge, shown)],
+        data,
+        lines=lines,
         charts=charts,
         cautions=cautions,
     )
-    return [page, *files]

@@ -68,13 +68,15 @@ def _unwritable(out: str | os.PathLike, error: OSError) -> SolidgearError:
 
 @contextmanager
 def held(out: str | os.PathLike) -> Iterator[Path]:
-    """A folder that can be written and that no other process takes meanwhile.
+    """A folder that can be written and that no other process takes meanwhile; one that was made for
+    it and stays empty goes again.
 
     Raises
     ------
     SolidgearError
         If it cannot be written, or another run holds it.
     """
+    made = not Path(out).exists()
     folder = prepare(out)
     place = folder.resolve()
     if place in _held:
@@ -90,6 +92,8 @@ def held(out: str | os.PathLike) -> Iterator[Path]:
             # Removed while it is held: whoever waits for this very file sees that it is gone.
             (folder / LOCK).unlink(missing_ok=True)
             lock.close()
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
 
 
 def _locked(folder: Path, out) -> IO | None:

@@ -4,7 +4,6 @@ them.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -12,14 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.machine.whole_file import whole
 from solidgear.report import speed_tables, train_tables
 from solidgear.report.measured_chart import measured_chart
 from solidgear.report.order_chart import order_chart
-from solidgear.report.plot import WIDE, Make
+from solidgear.report.plot import Make
+from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Column, Table
 from solidgear.report.train_chart import label, receptance_chart, response_chart
-from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 
 
@@ -30,16 +28,16 @@ def write_response(
     teeth: int,
     band: float,
     notes: Mapping[str, Any],
-    orders: Any = None,
-    train: Mapping[str, Any] | None = None,
+    orders: Any,
+    train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
     speed: Any = None,
 ) -> list[Path]:
     """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
-    ``response.json`` with peaks and what else is told, and ``orders`` as table and charts; with
-    `train`, what is known of it as plain data, also the page ``response.html``; with `speed`, an
-    :class:`solidgear.studies.train.at_speed.AtSpeed`, ``lines.csv``, and of a measured spectrum
-    ``peaks.csv`` and the chart ``measured``.
+    ``response.json`` with peaks and what else is told, and the page ``response.html``, for which
+    `train` is what is known of it as plain data; with `orders` these as table and charts; with
+    `speed`, an :class:`solidgear.studies.train.at_speed.AtSpeed`, ``lines.csv``, and of a measured
+    spectrum ``peaks.csv`` and the chart ``measured``.
 
     Charts and page are in `units`, all else in SI.
 
@@ -72,19 +70,18 @@ def write_response(
     peaks = [
         {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
     ]
-    files = write_data(folder, tables, {"title": title, "responses": peaks, **notes}, charts)
-    if train is None:
-        return files
-    page = write_sheet(
-        folder / "response.html",
+    return write_files(
+        folder,
+        "response",
         title,
         f"Steady response, {first.damping} losses; tables of {label(first)}.",
         [*told, train_tables.facts(train, shown)],
+        {"title": title, "responses": peaks, **notes},
+        lines=tables,
         charts=charts,
         notes=remarks,
         cautions=notes.get("cautions", ()),
     )
-    return [page, *files]
 
 
 def write_receptance(
@@ -93,12 +90,11 @@ def write_receptance(
     title: str,
     teeth: int,
     notes: Mapping[str, Any],
-    train: Mapping[str, Any] | None = None,
+    train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
 ) -> list[Path]:
-    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all, and
-    ``receptance.json`` with the peaks and what else is told; with `train` also the page
-    ``receptance.html``.
+    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all,
+    ``receptance.json`` with the peaks and what else is told, and the page ``receptance.html``.
 
     Parameters
     ----------
@@ -109,7 +105,7 @@ def write_receptance(
     teeth : int
         Of the pinion.
     notes : mapping
-    train : mapping, optional
+    train : mapping
         What is known of the train, as plain data.
     units : str or Units
         Of chart and page; all else is SI.
@@ -132,58 +128,26 @@ def write_receptance(
     )
     charts: dict[str, Make] = {"receptance": partial(receptance_chart, found, title, teeth, shown)}
     data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
-    files = write_data(folder, {"receptance": table}, data, charts)
-    if train is None:
-        return files
-    page = write_sheet(
-        folder / "receptance.html",
+    return write_files(
+        folder,
+        "receptance",
         title,
         f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
         [
             train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
             train_tables.facts(train, shown),
         ],
+        data,
+        lines={"receptance": table},
         charts=charts,
         cautions=notes.get("cautions", ()),
     )
-    return [page, *files]
 
 
 def _plain(one: Any) -> dict[str, Any]:
     keys = ("frequency_hz", "amplitude", "mode")
     peaks = [dict(zip(keys, peak)) for peak in one.peaks]
     return {"pinion": one.pinion, "gear": one.gear, "damping": one.damping, "peaks": peaks}
-
-
-def write_data(
-    folder: Path,
-    tables: Mapping[str, Table],
-    data: Mapping[str, Any],
-    charts: Mapping[str, Make],
-    name: str = "",
-) -> list[Path]:
-    """Write tables as CSV and charts, by their names, and the data, by that of the first table or
-    another.
-
-    Returns
-    -------
-    list of Path
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    first, *others = [table.write(folder / f"{name}.csv") for name, table in tables.items()]
-    files = [first, first.with_name(f"{name or first.stem}.json"), *others]
-    with whole(files[1]) as half:
-        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
-    for name, make in charts.items():
-        files += write_charts(folder / name, make)
-    return files
-
-
-def write_charts(stem: Path, make: Make) -> list[Path]:
-    """A chart as PNG and SVG beside each other."""
-    chart = make(WIDE)
-    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
-    return [chart.write(file) for file in files] if chart else []
 
 
 def over_frequency(response: Any, teeth: int) -> Table:

@@ -19,9 +19,10 @@ from solidgear.report.order_chart import order_chart
 from solidgear.report.page_parts import data_uri, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
+from solidgear.report.sheet_files import write_charts
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.train_chart import response_chart
-from solidgear.report.train_files import crossings, over_frequency, write_charts
+from solidgear.report.train_files import crossings, over_frequency
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import capital, seconds
 

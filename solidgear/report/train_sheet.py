@@ -1,4 +1,4 @@
-"""A page on one question about a train: charts to be read, modes to be turned, and the numbers."""
+"""A page on one question: charts to be read, modes to be turned, and the numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from solidgear.report.page_parts import template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.table import Table
 
-#: what charts of a train say in words, by their names
+#: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of every model drawn.",
     "orders": (
@@ -24,6 +24,10 @@ WORDS = {
     "measured": (
         "The measured spectrum with the orders that its peaks are at this speed, above the computed "
         "mesh force over the same frequencies. Grey lines: natural frequencies."
+    ),
+    "section_forces": (
+        "Section forces along the shaft; where two components are drawn, the dashed line is the size "
+        "of both."
     ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
 }
@@ -49,7 +53,7 @@ def write_sheet(
         What is shown, and with which models.
     tables : iterable of Table
     charts : mapping of str to callable, optional
-        A chart each, by its name in ``WORDS``.
+        A chart each, by a name that begins with one of ``WORDS``.
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
     notes, cautions : sequence of str
@@ -66,9 +70,13 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=[(Markup(svg.decode()), WORDS[name]) for name, svg in drawn.items() if svg],
+        charts=[(Markup(svg.decode()), _words(name)) for name, svg in drawn.items() if svg],
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
     )
     return write_page(path, page)
+
+
+def _words(name: str) -> str:
+    return next(words for start, words in WORDS.items() if name.startswith(start))

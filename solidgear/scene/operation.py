@@ -95,7 +95,7 @@ class OperatingPoint(Model):
         """Name, torque and speed."""
         told = f"{self.torque:.6g} N m on the {self.of}"
         if self.speed is not None:
-            told += f", {self.speed * 30 / pi:.4g} rpm"
+            told += f", {self.speed * 30 / pi:.6g} rpm"
         return f"{self.name} ({told})" if self.name else told
 
     @property

@@ -11,7 +11,7 @@ from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import made_of, mounted
+from solidgear.bearings.solved import AS_TOLD, Choice, made_of, mounted
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import shift
@@ -31,6 +31,8 @@ MODELS = ("euler", "timoshenko", LADDER.judges[0])
 SHAFT = "shaft"
 #: modes kept of a body whose statics alone are asked for
 FEW = 6
+#: N/m and N m/rad of a held seat at rest: a millionth of a shaft's flexibility, and rounding as small
+FIRM = 1e15
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,24 +225,56 @@ def deflect_scene(
     >>> round(sum(float(b.load[2]) for b in found.shafts[0].bearings), 6)
     1400.0
     """
-    if scene.load is None:
-        raise SolidgearError(
-            f"{scene.name}: there is no load; write [load] with forces at the port, such as "
-            'z = "2 kN", or give --load'
-        )
-    load = np.array(scene.load.six)
-    made = {f"{SHAFT}.{name}": one for name, one in made_of(scene).items()}
-    seats = seats_of(SHAFT, scene, made)
-    shafts = []
+    load, shafts = load_of(scene), []
     for model in models:
         progress(model)
-        body = build(scene, model)
-        system = System({SHAFT: rubin(body, n=FEW)})
-        found = OnBearings(system, (seats,)).equilibrium(
-            system.load({f"{SHAFT}.{scene.port.name}": load})
-        )
-        shafts.append(shaft_deflection(SHAFT, model, scene, system, found, body, made))
+        shafts.append(ShaftAtRest(scene, model).settled())
     return SceneDeflection(scene.title or scene.name, load, tuple(shafts))
+
+
+def load_of(scene: Scene) -> np.ndarray:
+    """Load (6,) at the lumped point of a scene, N and N m.
+
+    Raises
+    ------
+    SolidgearError
+        For a scene without load.
+    """
+    if scene.load is None:
+        raise SolidgearError(
+            'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
+            "--load"
+        )
+    return np.array(scene.load.six)
+
+
+class ShaftAtRest:
+    """A shaft by one model, to be settled under the load of its scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    model : str
+    """
+
+    def __init__(self, scene: Scene, model: str):
+        self.scene, self.model = scene, model
+        self.body = build(scene, model)
+        self.system = System({SHAFT: rubin(self.body, n=FEW)})
+        self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
+
+    def settled(self, choice: Choice = AS_TOLD) -> ShaftDeflection:
+        """Deflection with the bearings at a place in the ranges of their data.
+
+        Raises
+        ------
+        SolidgearError
+            If nothing holds the shaft.
+        """
+        made = {f"{SHAFT}.{name}": one for name, one in made_of(self.scene, choice).items()}
+        held = OnBearings(self.system, (seats_of(SHAFT, self.scene, made),))
+        found = held.equilibrium(self.load)
+        return shaft_deflection(SHAFT, self.model, self.scene, self.system, found, self.body, made)
 
 
 def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
@@ -255,10 +289,18 @@ def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
         Bearings of catalogue data, by ``part.name``.
     """
     own = {b.name: made[f"{part}.{b.name}"] for b in scene.bearings if b.catalogue is not None}
-    holding = [one for one in mounted(scene, own) if _holds(one)]
+    firm = scene.with_changes(bearings=tuple(map(_firm, scene.bearings)))
+    holding = [one for one in mounted(firm, own) if _holds(one)]
     places = {b.name: b.y for b in scene.bearings}
     around = scene.housing or scene.housing_axial
     return Seats(part, tuple(holding), tuple(places[one.port] for one in holding), around)
+
+
+def _firm(bearing: Bearing) -> Bearing:
+    """A held seat with springs that Newton's search resolves beside those of the shaft."""
+    if bearing.hold is None:
+        return bearing
+    return bearing.with_changes(hold=None, matrix=np.minimum(bearing.stiffness, FIRM).tolist())
 
 
 def _holds(one: Mounted) -> bool:

@@ -129,6 +129,8 @@ class OnBearings:
     def _length(self) -> float:
         """Distance of the farthest seats, m: what makes a rotation a displacement."""
         points = np.array([self.system.port(end).point for own in self.seats for end in own.ends])
+        if not len(points):
+            raise SolidgearError("nothing holds the shaft against its loads: it has no bearing")
         return float(np.ptp(points, axis=0).max(initial=0.0)) or 1.0
 
     @cached_property

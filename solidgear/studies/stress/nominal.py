@@ -144,7 +144,8 @@ def nominal_stress(
 
 
 def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
-    """Cross-sections on both sides of every place where a load acts or a segment ends.
+    """Cross-sections on both sides of every place where a load acts, weights left out, or a segment
+    ends.
 
     Parameters
     ----------
@@ -157,9 +158,9 @@ def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[No
         In the order of their places, the side before each first.
     """
     ends = [segment.y1 for segment in segments[:-1]]
-    names = dict(zip(forces.y.tolist(), forces.names))
-    loaded = sorted(names)
-    marks = sorted([*loaded, *(y for y in ends if np.abs(forces.y - y).min() > TOUCH)])
+    names = {y: name for y, name in zip(forces.y.tolist(), forces.told) if name}
+    loaded = np.array([*names, np.inf])
+    marks = sorted([*names, *(y for y in ends if np.abs(loaded - y).min() > TOUCH)])
     rows = []
     for y in marks:
         for segment, six in _sides(segments, forces, y):

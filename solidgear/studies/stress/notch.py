@@ -17,7 +17,7 @@ against meshes four times as fine.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,17 +106,22 @@ class FilletFactors:
     """
 
     name: str
-    corner: Corner
+    corner: Corner = field(repr=False)
     section: CrossSection
     radius: float
     factors: Mapping[str, Factor]
-    profiles: Mapping[str, ArcStress]
+    profiles: Mapping[str, ArcStress] = field(repr=False)
     steps: tuple[Step, ...]
 
     @property
     def reference(self) -> float:
         """Where the fillet meets the cylinder, m: the place of its section forces."""
         return self.corner.on_cylinder[1]
+
+    @property
+    def widest(self) -> float:
+        """Largest bar of the factors of tension, bending and torsion, relative."""
+        return max(self.factors[load].bar / self.factors[load].value for load in UNIT_LOADS[:3])
 
 
 def fillet_factors(
@@ -138,7 +143,7 @@ def fillet_factors(
     tolerance : float
         Relative bar of the factors of tension, bending and torsion at which to stop.
     orders : sequence of int
-        That are tried, ascending.
+        That are tried, ascending; one at least.
     refinement : float
         Multiplies the number of cells, for studies of convergence.
     reach : float
@@ -169,29 +174,35 @@ def fillet_factors(
     """
     piece = piece_around(scene, name, reach)
     section, radius = _reference(piece)
-    steps: list[Step] = []
-    factors: dict[str, Factor] = {}
-    for order in orders:
-        try:
-            with np.errstate(invalid="ignore"):  # of cells that fold; their matrix is refused
-                body = harmonic(
-                    piece, order=order, layers=LAYERS, edge_layers=0, refinement=refinement
-                )
-            profiles = _profiles(piece, body, section, radius)
-        except FactorError:
-            raise SolidgearError(
-                f'fillet "{name}": cells of the mesh around it fold, of order {order}; make it, or '
-                "what lies beside it, smaller"
-            ) from None
-        before, factors = factors, {}
-        for load, profile in profiles.items():
-            factors[load] = _factor(profile, load, before.get(load))
-        values = {load: factor.value for load, factor in factors.items()}
-        steps.append(Step(order, sum(b.size for b in body.blocks if b.mirror is None), values))
-        if all(factors[load].bar <= tolerance * factors[load].value for load in UNIT_LOADS[:3]):
-            break
     corner = next(c for c in scene.corners if c.name == name)
-    return FilletFactors(name, corner, section, radius, factors, profiles, tuple(steps))
+    found: FilletFactors | None = None
+    for order in orders:
+        unknowns, profiles = _solved(piece, section, radius, order, refinement)
+        before = found.factors if found else {}
+        factors = {k: _factor(one, k, before.get(k)) for k, one in profiles.items()}
+        values = {load: factor.value for load, factor in factors.items()}
+        steps = (*(found.steps if found else ()), Step(order, unknowns, values))
+        found = FilletFactors(name, corner, section, radius, factors, profiles, steps)
+        if found.widest <= tolerance:
+            break
+    assert found is not None, "no order was asked for"
+    return found
+
+
+def _solved(
+    piece: Piece, section: CrossSection, radius: float, order: int, refinement: float
+) -> tuple[int, dict[str, ArcStress]]:
+    """Unknowns of a mesh and what it finds; the mesh itself, which may be large, ends here."""
+    try:
+        with np.errstate(invalid="ignore"):  # of cells that fold; their matrix is refused
+            body = harmonic(piece, order=order, layers=LAYERS, edge_layers=0, refinement=refinement)
+        profiles = _profiles(piece, body, section, radius)
+    except FactorError:
+        raise SolidgearError(
+            f'fillet "{piece.corner.name}": cells of the mesh around it fold, of order {order}; make '
+            "it, or what lies beside it, smaller"
+        ) from None
+    return sum(block.size for block in body.blocks if block.mirror is None), profiles
 
 
 def _reference(piece: Piece) -> tuple[CrossSection, float]:

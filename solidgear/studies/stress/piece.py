@@ -117,24 +117,17 @@ def _cut(shaft: Scene, y: float, way: int) -> float:
         k for k, s in enumerate(shaft.segments) if y < s.y1 or k + 1 == len(shaft.segments)
     )
     segment = shaft.segments[index]
-    low, high = (
+    rooms = (
         ROOM * max((c.axial for c in shaft.corners if abs(c.y - end) <= TOUCH), default=TOUCH)
         for end in (segment.y0, segment.y1)
     )
-    near, far = (
-        (segment.y1 - high, segment.y0 + low)
-        if way < 0
-        else (
-            segment.y0 + low,
-            segment.y1 - high,
-        )
-    )
-    y = way * max(
-        way * y, way * near
-    )  # not so near to the joint passed that its fillets have no room
-    if way * y < way * far:
-        return y
-    return segment.y0 if way < 0 else segment.y1
+    first, last = segment.y0 + next(rooms), segment.y1 - next(rooms)
+    # not so near to the joint passed that its fillets have no room
+    if way < 0:
+        y = min(y, last)
+        return y if y > first else segment.y0
+    y = max(y, first)
+    return y if y < last else segment.y1
 
 
 def _part(segment: Segment, start: float, end: float) -> Segment:

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Annotated
 
-from solidgear.errors import SolidgearError
+from pydantic import Field
+
+from solidgear.scene.typed import Model
+from solidgear.scene.units import PositiveLength
 from solidgear.studies.stress import din743
 from solidgear.studies.stress.din743 import LOADS, Load
 
@@ -21,12 +24,59 @@ if TYPE_CHECKING:
     from solidgear.studies.stress.nominal import NominalStress
     from solidgear.studies.stress.notch import FilletFactors
 
+#: m, Rz of no shaft is larger; a factor of strength by size or surface, a share of a mean
+ROUGHEST = 1e-3
+StrengthFactor = Annotated[float, Field(gt=0, le=10)]
+Share = Annotated[float, Field(ge=0)]
 ASSUMED = "assumed"
 OWN = "solid of this shaft"
+STILL = "section forces, loads at rest, shaft turning"
+BY_GRADIENT = "DIN 743-2, 4.3: 1 + sqrt(G' mm) 10^-(0.33 + sigma_S/712 MPa)"
+#: lines of a rating by their symbols: name, usual source, SI unit
+LINES: dict[str, tuple[str, str, str]] = {
+    "sigma_B": ("tensile strength", "material", "Pa"),
+    "sigma_S": ("yield point", "material", "Pa"),
+    "K_1 (sigma_B)": ("size, of strength", "", ""),
+    "K_1 (sigma_S)": ("size, of yielding", "", ""),
+    "alpha": ("form factor Kt", OWN, ""),
+    "alpha (norm)": ("the same by formula", "DIN 743-2, table 2; not used", ""),
+    "G'": ("relative stress gradient", OWN, "1/m"),
+    "G' (norm)": ("the same by formula", "DIN 743-2, table 3; not used", "1/m"),
+    "n": ("support number", BY_GRADIENT, ""),
+    "beta": ("fatigue notch factor Kf", "DIN 743-2, 4.3: alpha / n, at least 1", ""),
+    "beta (norm)": ("the same by formulas", "DIN 743-2; not used", ""),
+    "K_2": ("size, of the gradient", "DIN 743-2, eq. 15 and 16", ""),
+    "K_F": ("surface roughness", "", ""),
+    "K_V": ("hardened surface", "", ""),
+    "K_sigma, K_tau": ("total influence", "DIN 743-1: (beta/K_2 + 1/K_F - 1)/K_V", ""),
+    "sigma_W": ("limit of a polished bar", "DIN 743-3: 0.4, 0.5, 0.3 sigma_B", "Pa"),
+    "sigma_WK": ("limit of the part", "DIN 743-1: K_1 sigma_W / K_sigma", "Pa"),
+    "K_2F": ("static support", "DIN 743-1, table 3", ""),
+    "gamma_F": ("rise of yielding", "DIN 743-1, table 2", ""),
+    "sigma_FK": ("yield limit of the part", "DIN 743-1: K_1 K_2F gamma_F sigma_S", "Pa"),
+    "sigma_a": ("nominal amplitude", STILL, "Pa"),
+    "sigma_m": ("nominal mean", STILL, "Pa"),
+    "sigma_mv": ("equivalent mean", "DIN 743-1, of von Mises", "Pa"),
+    "psi_sigmaK": (
+        "influence of mean stress",
+        "DIN 743-1: sigma_WK/(2 K_1 sigma_B - sigma_WK)",
+        "",
+    ),
+    "sigma_ADK": ("amplitude borne", "", "Pa"),
+}
+#: those that are attributes of a :class:`FatigueFactor`
+FACTORS = {
+    "alpha": "form",
+    "alpha (norm)": "norm_form",
+    "G'": "gradient",
+    "G' (norm)": "norm_gradient",
+    "n": "support",
+    "beta": "notch",
+    "beta (norm)": "norm_notch",
+}
 
 
-@dataclass(frozen=True)
-class Conditions:
+class Conditions(Model):
     """What a rating by DIN 743 needs beyond the shaft, its loads and its strength.
 
     Attributes
@@ -45,27 +95,22 @@ class Conditions:
 
     Raises
     ------
-    SolidgearError
+    SceneError
         For a factor that is not positive, or a share below zero.
+
+    Examples
+    --------
+    >>> Conditions(roughness="6.3 um", torque_share=0.2).roughness
+    6.3e-06
     """
 
-    roughness: float | None = None
-    ultimate_at_size: float | None = None
-    yield_at_size: float | None = None
-    hardening: float | None = None
-    force_share: float | None = None
-    torque_share: float | None = None
+    roughness: Annotated[PositiveLength, Field(le=ROUGHEST)] | None = None
+    ultimate_at_size: StrengthFactor | None = None
+    yield_at_size: StrengthFactor | None = None
+    hardening: StrengthFactor | None = None
+    force_share: Share | None = None
+    torque_share: Share | None = None
     constant_mean: bool = False
-
-    def __post_init__(self) -> None:
-        for name in ("roughness", "ultimate_at_size", "yield_at_size", "hardening"):
-            value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise SolidgearError(f"{name} = {value}: it must be greater than zero")
-        for name in ("force_share", "torque_share"):
-            value = getattr(self, name)
-            if value is not None and not value >= 0:
-                raise SolidgearError(f"{name} = {value}: it must not be negative")
 
 
 @dataclass(frozen=True)
@@ -189,157 +234,122 @@ def rated(
     -------
     Rating
     """
-    usual, worst = (
-        _Sheet(found, nominal, strength, conditions, large, bars) for bars in (0.0, 1.0)
-    )
-    entries = tuple(usual.entries)
-    assumed = tuple(entry.symbol for entry in entries if ASSUMED in entry.source)
-    lost = usual.fatigue - worst.fatigue if math.isfinite(usual.fatigue) else 0.0
-    return Rating(entries, usual.fatigue, usual.yielding, lost, assumed)
+    sheet = _Sheet()
+    fatigue, yielding = _safeties(sheet, found, nominal, strength, conditions, large)
+    worst, _ = _safeties(_Sheet(), found, nominal, strength, conditions, large, bars=1.0)
+    assumed = tuple(entry.symbol for entry in sheet.entries if ASSUMED in entry.source)
+    lost = fatigue - worst if math.isfinite(fatigue) else 0.0
+    return Rating(tuple(sheet.entries), fatigue, yielding, lost, assumed)
 
 
+@dataclass(frozen=True)
 class _Sheet:
-    """The calculation, line by line in the order of the norm."""
+    """Lines of a calculation, in the order in which they are written."""
 
-    def __init__(self, found, nominal, strength, conditions, large, bars):
-        self.entries: list[Entry] = []
-        section, given = found.section, conditions
-        ultimate, yields = strength.ultimate, strength.yield_point
-        self._line("sigma_B", "tensile strength", (ultimate,) * 3, "material", "Pa")
-        self._line("sigma_S", "yield point", (yields,) * 3, "material", "Pa")
-        k1 = self._factor("K_1 (sigma_B)", "size, of strength", given.ultimate_at_size)
-        k1_yield = self._factor("K_1 (sigma_S)", "size, of yielding", given.yield_at_size)
-        ultimate, yields = k1 * ultimate, k1_yield * yields
-        notches = fatigue_factors(found, yields, large, bars)
-        self._notches(notches)
-        size = {load: din743.size_factor(load, 2 * section.outer) for load in LOADS}
-        self._line("K_2", "size, of the gradient", size, "DIN 743-2, eq. 15 and 16")
-        surface = self._surface(given.roughness, ultimate)
-        hardening = self._factor("K_V", "hardened surface", given.hardening)
-        total = {
-            load: din743.total_factor(notches[load].notch, size[load], surface[load], hardening)
-            for load in LOADS
-        }
-        self._line(
-            "K_sigma, K_tau", "total influence", total, "DIN 743-1: (beta/K_2 + 1/K_F - 1)/K_V"
-        )
-        smooth = {load: din743.ALTERNATING[load] * strength.ultimate for load in LOADS}
-        self._line(
-            "sigma_W", "limit of a polished bar", smooth, "DIN 743-3: 0.4, 0.5, 0.3 sigma_B", "Pa"
-        )
-        limit = {load: k1 * smooth[load] / total[load] for load in LOADS}
-        self._line("sigma_WK", "limit of the part", limit, "DIN 743-1: K_1 sigma_W / K_sigma", "Pa")
-        static = self._yielding(notches, yields, hollow=section.inner > 0)
-        amplitude, mean = self._stress(nominal, given)
-        together = math.sqrt(mean["tension"] ** 2 + 3 * mean["torsion"] ** 2)
-        equivalent = {load: together for load in LOADS} | {"torsion": together / math.sqrt(3)}
-        self._line("sigma_mv", "equivalent mean", equivalent, "DIN 743-1, of von Mises", "Pa")
-        psi = {load: din743.mean_sensitivity(limit[load], ultimate) for load in LOADS}
-        self._line(
-            "psi_sigmaK",
-            "influence of mean stress",
-            psi,
-            "DIN 743-1: sigma_WK/(2 K_1 sigma_B - sigma_WK)",
-        )
-        bears = {
-            load: din743.amplitude_limit(
-                limit[load],
-                psi[load],
-                static[load],
-                equivalent[load],
-                amplitude[load],
-                given.constant_mean,
-            )
-            for load in LOADS
-            if amplitude[load] > 0
-        }
-        case = "case 1: mean stays" if given.constant_mean else "case 2: mean grows with loads"
-        self._line("sigma_ADK", "amplitude borne", bears, f"DIN 743-1, {case}", "Pa")
-        self.fatigue = _safety({load: amplitude[load] / at for load, at in bears.items() if at > 0})
-        if any(at <= 0 for at in bears.values()):
-            self.fatigue = 0.0
-        peak = {load: abs(mean[load]) + amplitude[load] for load in LOADS}
-        self.yielding = _safety({load: peak[load] / static[load] for load in LOADS})
+    entries: list[Entry] = field(default_factory=list)
 
-    def _line(self, symbol, what, values, source, unit=""):
-        if isinstance(values, Mapping):
-            values = tuple(values.get(load) for load in LOADS)
-        self.entries.append(Entry(symbol, what, values, unit, source))
+    def write(
+        self, symbol: str, values: Mapping[Load, float] | float, source: str = ""
+    ) -> Mapping[Load, float]:
+        """A line, with the values of every load that it gives back."""
+        of = values if isinstance(values, Mapping) else dict.fromkeys(LOADS, values)
+        what, usual, unit = LINES[symbol]
+        row = tuple(of.get(load) for load in LOADS)
+        self.entries.append(Entry(symbol, what, row, unit, source or usual))
+        return of
 
-    def _factor(self, symbol: str, what: str, given: float | None) -> float:
-        """A factor that is given, or one."""
-        value = 1.0 if given is None else given
-        self._line(symbol, what, (value,) * 3, ASSUMED if given is None else "given")
-        return value
+    def given(self, symbol: str, value: float | None) -> float:
+        """A factor that a user gives, or one."""
+        self.write(symbol, 1.0 if value is None else value, ASSUMED if value is None else "given")
+        return 1.0 if value is None else value
 
-    def _notches(self, notches: Mapping[Load, FatigueFactor]) -> None:
-        def of(name: str) -> dict[Load, float]:
-            return {load: getattr(notches[load], name) for load in LOADS}
 
-        self._line("alpha", "form factor Kt", of("form"), OWN)
-        self._line(
-            "alpha (norm)", "the same by formula", of("norm_form"), "DIN 743-2, table 2; not used"
-        )
-        self._line("G'", "relative stress gradient", of("gradient"), OWN, "1/m")
-        self._line(
-            "G' (norm)",
-            "the same by formula",
-            of("norm_gradient"),
-            "DIN 743-2, table 3; not used",
-            "1/m",
-        )
-        self._line(
-            "n",
-            "support number",
-            of("support"),
-            "DIN 743-2, 4.3: 1 + sqrt(G' mm) 10^-(0.33 + sigma_S/712 MPa)",
-        )
-        self._line(
-            "beta", "fatigue notch factor Kf", of("notch"), "DIN 743-2, 4.3: alpha / n, at least 1"
-        )
-        self._line("beta (norm)", "the same by formulas", of("norm_notch"), "DIN 743-2; not used")
+def _safeties(
+    sheet: _Sheet,
+    found: FilletFactors,
+    nominal: NominalStress,
+    strength: Strength,
+    given: Conditions,
+    large: float,
+    bars: float = 0.0,
+) -> tuple[float, float]:
+    """Safeties against fatigue and yielding, line by line in the order of the norm."""
+    write, section = sheet.write, found.section
+    write("sigma_B", strength.ultimate)
+    write("sigma_S", strength.yield_point)
+    k1 = sheet.given("K_1 (sigma_B)", given.ultimate_at_size)
+    ultimate = k1 * strength.ultimate
+    yields = sheet.given("K_1 (sigma_S)", given.yield_at_size) * strength.yield_point
+    notch = _notches(sheet, fatigue_factors(found, yields, large, bars))
+    size = write("K_2", {load: din743.size_factor(load, 2 * section.outer) for load in LOADS})
+    surface = _surface(sheet, given.roughness, ultimate)
+    hard = sheet.given("K_V", given.hardening)
+    total = {k: din743.total_factor(notch[k], size[k], surface[k], hard) for k in LOADS}
+    write("K_sigma, K_tau", total)
+    smooth = {load: din743.ALTERNATING[load] * strength.ultimate for load in LOADS}
+    write("sigma_W", smooth)
+    limit = write("sigma_WK", {load: k1 * smooth[load] / total[load] for load in LOADS})
+    static = _yielding(sheet, notch, yields, hollow=section.inner > 0)
+    amplitude, mean = _stress(sheet, nominal, given)
+    together = math.hypot(mean["tension"], math.sqrt(3) * mean["torsion"])
+    equivalent = dict.fromkeys(LOADS, together) | {"torsion": together / math.sqrt(3)}
+    write("sigma_mv", equivalent)
+    psi = write("psi_sigmaK", {k: din743.mean_sensitivity(limit[k], ultimate) for k in LOADS})
+    borne = {}
+    for load in LOADS:
+        if amplitude[load] > 0:
+            own = limit[load], psi[load], static[load], equivalent[load], amplitude[load]
+            borne[load] = din743.amplitude_limit(*own, given.constant_mean)
+    case = "case 1: mean stays" if given.constant_mean else "case 2: mean grows with loads"
+    write("sigma_ADK", borne, f"DIN 743-1, {case}")
+    used = {load: amplitude[load] / at if at > 0 else math.inf for load, at in borne.items()}
+    most = {load: (abs(mean[load]) + amplitude[load]) / static[load] for load in LOADS}
+    return _safety(used), _safety(most)
 
-    def _surface(self, roughness: float | None, ultimate: float) -> dict[Load, float]:
-        factors = dict.fromkeys(LOADS, 1.0)
-        source = f"{ASSUMED}: no roughness given"
-        if roughness is not None:
-            factors = {load: din743.surface_factor(load, roughness, ultimate) for load in LOADS}
-            source = f"DIN 743-2, eq. 18 and 19, Rz {1e6 * roughness:g} um"
-        self._line("K_F", "surface roughness", factors, source)
-        return factors
 
-    def _yielding(self, notches, yields: float, hollow: bool) -> dict[Load, float]:
-        """Yield limits of the part."""
-        support = {load: din743.STATIC_SUPPORT[load][hollow] for load in LOADS}
-        self._line("K_2F", "static support", support, "DIN 743-1, table 3")
-        rise = {load: din743.yield_rise(load, notches[load].notch) for load in LOADS}
-        self._line("gamma_F", "rise of yielding", rise, "DIN 743-1, table 2")
-        point = dict.fromkeys(LOADS, yields) | {"torsion": yields / math.sqrt(3)}
-        out = {load: support[load] * rise[load] * point[load] for load in LOADS}
-        self._line(
-            "sigma_FK", "yield limit of the part", out, "DIN 743-1: K_1 K_2F gamma_F sigma_S", "Pa"
-        )
-        return out
+def _notches(sheet: _Sheet, notches: Mapping[Load, FatigueFactor]) -> Mapping[Load, float]:
+    """Notch factors, with what they are made of."""
+    for symbol, name in FACTORS.items():
+        sheet.write(symbol, {load: getattr(one, name) for load, one in notches.items()})
+    return {load: one.notch for load, one in notches.items()}
 
-    def _stress(self, nominal, given) -> tuple[dict[Load, float], dict[Load, float]]:
-        """Nominal amplitudes and means by load."""
-        shares: dict[Load, float]
-        shares = {"tension": given.force_share or 0.0, "torsion": given.torque_share or 0.0}
-        mean: dict[Load, float]
-        mean = {"tension": nominal.tension, "bending": 0.0, "torsion": nominal.torsion}
-        amplitude: dict[Load, float]
-        amplitude = {load: abs(mean[load]) * share for load, share in shares.items()}
-        amplitude["bending"] = nominal.bending
-        told = "section forces, loads at rest, shaft turning"
-        bare = [
-            w
-            for w, v in (("force", given.force_share), ("torque", given.torque_share))
-            if v is None
-        ]
-        steady = f"; {ASSUMED} steady: {' and '.join(bare)}" if bare else ""
-        self._line("sigma_a", "nominal amplitude", amplitude, told + steady, "Pa")
-        self._line("sigma_m", "nominal mean", mean, told, "Pa")
-        return amplitude, mean
+
+def _surface(sheet: _Sheet, roughness: float | None, ultimate: float) -> Mapping[Load, float]:
+    """Factors of surface roughness."""
+    if roughness is None:
+        return sheet.write("K_F", 1.0, f"{ASSUMED}: no roughness given")
+    factors = {load: din743.surface_factor(load, roughness, ultimate) for load in LOADS}
+    return sheet.write("K_F", factors, f"DIN 743-2, eq. 18 and 19, Rz {1e6 * roughness:g} um")
+
+
+def _yielding(
+    sheet: _Sheet, notch: Mapping[Load, float], yields: float, hollow: bool
+) -> Mapping[Load, float]:
+    """Yield limits of the part."""
+    support = {load: din743.STATIC_SUPPORT[load][hollow] for load in LOADS}
+    rise = {load: din743.yield_rise(load, notch[load]) for load in LOADS}
+    point = dict.fromkeys(LOADS, yields) | {"torsion": yields / math.sqrt(3)}
+    sheet.write("K_2F", support)
+    sheet.write("gamma_F", rise)
+    return sheet.write("sigma_FK", {k: support[k] * rise[k] * point[k] for k in LOADS})
+
+
+def _stress(
+    sheet: _Sheet, nominal: NominalStress, given: Conditions
+) -> tuple[Mapping[Load, float], Mapping[Load, float]]:
+    """Nominal amplitudes and means."""
+    mean: dict[Load, float]
+    mean = {"tension": nominal.tension, "bending": 0.0, "torsion": nominal.torsion}
+    amplitude: dict[Load, float] = {
+        "tension": abs(nominal.tension) * (given.force_share or 0.0),
+        "bending": nominal.bending,
+        "torsion": abs(nominal.torsion) * (given.torque_share or 0.0),
+    }
+    shares = {"force": given.force_share, "torque": given.torque_share}
+    bare = " and ".join(word for word, share in shares.items() if share is None)
+    steady = f"; {ASSUMED} steady: {bare}" if bare else ""
+    sheet.write("sigma_a", amplitude, LINES["sigma_a"][1] + steady)
+    return amplitude, sheet.write("sigma_m", mean)
 
 
 def _safety(shares: Mapping[Load, float]) -> float:

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 
 #: components of a section force, in the order of those of loads
 COMPONENTS = ("Q_x", "N", "Q_z", "M_x", "T", "M_z")
+#: how names of loads that are weights begin
+WEIGHT = "weight of "
 #: what loads may leave, of the sum of their sizes; moments count by the length of the shaft
 BALANCED = 1e-6
 #: and what rounding leaves of sums of them
@@ -106,6 +108,15 @@ class SectionForces:
             return np.zeros(6)
         return moved(self.right[k], self.y[k], y)
 
+    @property
+    def told(self) -> tuple[str, ...]:
+        """Names of what acts at each place but for weights."""
+        named = (
+            [name for name in names.split(", ") if not name.startswith(WEIGHT)]
+            for names in self.names
+        )
+        return tuple(map(", ".join, named))
+
     @cached_property
     def largest_moment(self) -> float:
         """Largest bending moment along the shaft, N m."""
@@ -163,6 +174,20 @@ def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
         names.append(", ".join(load.name for load in acting))
     sides = [np.where(np.abs(side) > least, side, 0.0) for side in (left, right)]
     return SectionForces(np.array(places), tuple(names), *sides)
+
+
+def forces_of(
+    scene: Scene, loads: Mapping[str, ArrayLike], gravity: ArrayLike | None = None
+) -> SectionForces:
+    """Section forces of a shaft under loads on its ports, and its weight where there is gravity.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`on_ports` and :func:`section_forces`.
+    """
+    falling = [] if gravity is None else weight(scene, gravity)
+    return section_forces([*on_ports(scene, loads), *falling], scene.length)
 
 
 def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
@@ -225,12 +250,12 @@ def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
         edges = [replace(corner, owner=0) for corner in scene.corners if corner.owner == k]
         found = mass_properties([segment], edges)
         force = np.concatenate([found.mass * g, np.zeros(3)])
-        loads.append(Load(f"weight of {segment.name}", found.centre, force))
+        loads.append(Load(f"{WEIGHT}{segment.name}", found.centre, force))
     seats = {station.name: station.y for station in scene.stations}
     for point in scene.masses:
         force = np.concatenate([point.mass * g, np.zeros(3)])
         centre = shift(point.offset).T @ force
-        loads.append(Load(f"weight of {point.name}", seats[point.station], centre))
+        loads.append(Load(f"{WEIGHT}{point.name}", seats[point.station], centre))
     return loads
 
 

@@ -6,15 +6,16 @@ Sharp corners have no stress: that of an elastic solid grows there without end a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.scene.blends import Corner, radius_of
 from solidgear.scene.rules import TOUCH
+from solidgear.studies.stress.din743 import LOADS
 from solidgear.studies.stress.din743 import Load as LoadKind
 from solidgear.studies.stress.nominal import (
     NominalRow,
@@ -23,6 +24,7 @@ from solidgear.studies.stress.nominal import (
     nominal_stress,
 )
 from solidgear.studies.stress.notch import ENOUGH, FilletFactors, fillet_factors
+from solidgear.studies.stress.published import PUBLISHED
 from solidgear.studies.stress.rating import (
     Conditions,
     FatigueFactor,
@@ -30,20 +32,17 @@ from solidgear.studies.stress.rating import (
     fatigue_factors,
     rated,
 )
-from solidgear.studies.stress.section_forces import (
-    SectionForces,
-    on_ports,
-    section_forces,
-    weight,
-)
+from solidgear.studies.stress.section_forces import SectionForces, forces_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from solidgear.scene import Scene, Segment
 
-#: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress
-NEAR = 1.0
+#: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
+NEAR, TOUCHING = 1.0, 0.01
+#: share of an amplitude by shear that is told
+SHEARED = 0.05
 #: relative bar below which no order leads
 FINEST = 3e-3
 
@@ -89,6 +88,9 @@ class Notch:
         Q_x, N, Q_z, M_x, T, M_z, N and N m.
     nominal : NominalStress
     local : Local
+    published : dict of str to dict of str to float or None
+        Form factors of solid shafts by their source and load, None where it gives none; empty of a
+        fillet in a bore.
     fatigue : dict of str to FatigueFactor
         By load; empty for a material without strength.
     rating : Rating or None
@@ -106,9 +108,28 @@ class Notch:
     forces: np.ndarray
     nominal: NominalStress
     local: Local
+    published: Mapping[str, Mapping[LoadKind, float | None]]
     fatigue: Mapping[LoadKind, FatigueFactor]
     rating: Rating | None
     remark: str
+
+    @property
+    def severity(self) -> tuple[float, float]:
+        """What is least of the worst fillet: its safety, and without any less its stress."""
+        safety = self.rating.fatigue if self.rating else np.inf
+        return safety, -(self.local.amplitude + abs(self.local.mean))
+
+
+class SharpCorner(NamedTuple):
+    """Place, m, where a stress does not exist: it grows without end as a mesh is refined.
+
+    A chamfer at the root of a step leaves two of them, which are obtuse.
+    """
+
+    y: float
+    surface: str
+    between: tuple[str, str]
+    chamfered: bool
 
 
 @dataclass(frozen=True)
@@ -121,26 +142,21 @@ class ShaftStress:
     nominal : tuple of NominalRow
     notches : tuple of Notch
         Along the shaft.
-    sharp : tuple of (float, str)
-        Places (m) where a stress does not exist, and why.
+    sharp : tuple of SharpCorner
     remarks : tuple of str
     """
 
     forces: SectionForces
     nominal: tuple[NominalRow, ...]
     notches: tuple[Notch, ...]
-    sharp: tuple[tuple[float, str], ...]
+    sharp: tuple[SharpCorner, ...]
     remarks: tuple[str, ...]
 
     @property
     def worst(self) -> tuple[Notch, ...]:
         """Fillets, that with the least safety first; without strength, that with the largest stress."""
 
-        def rank(notch: Notch) -> tuple[float, float]:
-            safety = notch.rating.fatigue if notch.rating else np.inf
-            return safety, -(notch.local.amplitude + abs(notch.local.mean))
-
-        return tuple(sorted(self.notches, key=rank))
+        return tuple(sorted(self.notches, key=lambda notch: notch.severity))
 
 
 def shaft_stress(
@@ -150,6 +166,7 @@ def shaft_stress(
     gravity: ArrayLike | None = None,
     tolerance: float = ENOUGH,
     conditions: Conditions | None = None,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> ShaftStress:
     """Stress of a shaft under loads that balance.
 
@@ -166,6 +183,8 @@ def shaft_stress(
         Relative bar of form factors at which to stop.
     conditions : Conditions, optional
         Of the rating by DIN 743.
+    progress : callable, optional
+        Told each fillet.
 
     Returns
     -------
@@ -191,14 +210,8 @@ def shaft_stress(
     >>> notch.name, f'{notch.forces[3]:.1f} N m', f'{notch.found.factors["bending"].value:.1f}'
     ('head fillet', '431.2 N m', '2.2')
     """
-    if not FINEST <= tolerance < 1:
-        raise SolidgearError(
-            f"tolerance = {tolerance}: relative bars of form factors go from {FINEST:g} to 1"
-        )
-    acting = on_ports(scene, loads)
-    if gravity is not None:
-        acting += weight(scene, gravity)
-    forces = section_forces(acting, scene.length)
+    check_tolerance(tolerance)
+    forces = forces_of(scene, loads, gravity)
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
     remarks = [
@@ -208,6 +221,7 @@ def shaft_stress(
     notches = []
     for corner in sorted(scene.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
+            progress(corner.name)
             try:
                 notches.append(_notch(scene, corner, forces, seats, tolerance, conditions))
             except SolidgearError as error:  # the others have their stress all the same
@@ -221,22 +235,28 @@ def shaft_stress(
     )
 
 
-def sharp_corners(scene: Scene) -> Iterator[tuple[float, str]]:
-    """Re-entrant corners of the outline that have no fillet: places, m, and a sentence for each."""
-    rounded = {(c.y, c.surface): c.kind for c in scene.corners if c.root}
+def check_tolerance(tolerance: float) -> None:
+    """Refuse a relative bar that no mesh leads to.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    if not FINEST <= tolerance < 1:
+        raise SolidgearError(
+            f"tolerance = {tolerance}: relative bars of form factors go from {FINEST:g} to 1"
+        )
+
+
+def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
+    """Re-entrant corners of the outline that have no fillet."""
+    blended = [corner for corner in scene.corners if corner.root]
     for low, high in zip(scene.segments, scene.segments[1:]):
-        for surface, word in (("outer", "outside"), ("bore", "in the bore")):
-            kind = next(
-                (k for (y, s), k in rounded.items() if s == surface and abs(y - low.y1) <= TOUCH),
-                "",
-            )
+        for surface in ("outer", "bore"):
+            at = (c.kind for c in blended if c.surface == surface and abs(c.y - low.y1) <= TOUCH)
+            kind = next(at, "")
             if kind != "fillet" and _re_entrant(low, high, surface):
-                what = "two obtuse corners of a chamfer" if kind else "sharp corner"
-                yield (
-                    low.y1,
-                    f'{what} {word} between "{low.name}" and "{high.name}": a stress does not '
-                    "exist there, it grows without end as a mesh is refined; give a fillet",
-                )
+                yield SharpCorner(low.y1, surface, (low.name, high.name), bool(kind))
 
 
 def _re_entrant(low: Segment, high: Segment, surface) -> bool:
@@ -264,13 +284,18 @@ def _notch(
     found = fillet_factors(scene, corner.name, tolerance)
     here = forces.at(found.reference)
     nominal = nominal_stress(found.section, here, found.radius)
-    small, large = _diameters(scene, corner)
+    local, (small, large) = local_stress(found, here), _diameters(scene, corner)
     strength = scene.segments[corner.owner].material.strength
-    rating, fatigue = None, {}
-    if strength is not None and corner.surface == "outer":
-        yields = strength.yield_point * (conditions.yield_at_size or 1.0)
-        fatigue = fatigue_factors(found, yields, large)
-        rating = rated(found, nominal, strength, conditions, large)
+    published, rating, fatigue = {}, None, {}
+    if corner.surface == "outer":
+        published = {
+            source: {load: factor(load, large, small, corner.radial) for load in LOADS}
+            for source, factor in PUBLISHED.items()
+        }
+        if strength is not None:
+            yields = strength.yield_point * (conditions.yield_at_size or 1.0)
+            fatigue = fatigue_factors(found, yields, large)
+            rating = rated(found, nominal, strength, conditions, large)
     return Notch(
         corner.name,
         found.reference,
@@ -280,10 +305,11 @@ def _notch(
         found,
         here,
         nominal,
-        _local(found, here),
+        local,
+        published,
         fatigue,
         rating,
-        _remark(corner, seats, found, tolerance),
+        _remark(corner, seats, found, tolerance, _by_shear(found, nominal, local)),
     )
 
 
@@ -293,8 +319,8 @@ def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     return 2 * corner.r, 2 * radius_of(beside, corner.surface, "1" if corner.side > 0 else "0")
 
 
-def _local(found: FilletFactors, forces: np.ndarray) -> Local:
-    """Stress on the arc under section forces, where its normal stress is largest."""
+def local_stress(found: FilletFactors, forces: np.ndarray) -> Local:
+    """Stress on the arc of a fillet under section forces (6,), where its normal stress is largest."""
     section, a = found.section, found.radius
     bend, push = a / section.second_moment, 1 / section.area
     profiles, factors = found.profiles, found.factors
@@ -321,8 +347,20 @@ def _local(found: FilletFactors, forces: np.ndarray) -> Local:
     )
 
 
+def _by_shear(found: FilletFactors, nominal: NominalStress, local: Local) -> float:
+    """By how much the amplitude on a fillet is more than form factor times nominal stress, relative;
+    shear is what makes the difference.
+    """
+    bent = found.factors["bending"].value * nominal.bending
+    return local.amplitude / bent - 1 if bent > 0 else np.inf * local.amplitude
+
+
 def _remark(
-    corner: Corner, seats: Sequence[tuple[float, float]], found: FilletFactors, tolerance: float
+    corner: Corner,
+    seats: Sequence[tuple[float, float]],
+    found: FilletFactors,
+    tolerance: float,
+    by_shear: float,
 ) -> str:
     """What a user must know about the numbers of a fillet."""
     told = []
@@ -330,13 +368,16 @@ def _remark(
     gaps = [max(first - hi, lo - last, 0.0) for lo, hi in seats]
     nearest = min(gaps, default=np.inf) / (2 * found.section.outer)
     if nearest < NEAR:
+        away = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
+        told.append(f"a load enters {away}: its own disturbance is not in the factors")
+    if found.widest > tolerance:
+        told.append(f"bar {100 * found.widest:.2g} %, above the {100 * tolerance:.2g} % asked for")
+    if by_shear > SHEARED:
+        share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"
         told.append(
-            f"a load enters {nearest:.2g} diameters away; its own disturbance is not in the factors"
+            f"its amplitude is {share} Kt times nominal bending, by the shear force, which a rating "
+            "by DIN 743 leaves out"
         )
-    loads = ("tension", "bending", "torsion")
-    widest = max(found.factors[k].bar / found.factors[k].value for k in loads)
-    if widest > tolerance:
-        told.append(f"bar {100 * widest:.2g} %, above the {100 * tolerance:.2g} % asked for")
     if corner.surface == "bore":
         told.append("DIN 743 has no formula for a step in a bore")
     return "; ".join(told)

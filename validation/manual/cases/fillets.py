@@ -7,9 +7,10 @@ from collections.abc import Callable
 from solidgear.scene import Fillet, Port, Scene, Segment
 from solidgear.studies.stress.din743 import LOADS, Load, form_factor
 from solidgear.studies.stress.notch import fillet_factors
+from solidgear.studies.stress.published import peterson
 from validation.common import markdown
 from validation.manual.case import Answer, Case, Model, Reference
-from validation.manual.exact_fillets import finite_elements, peterson
+from validation.manual.exact_fillets import finite_elements
 
 DIAMETER = 0.05
 #: D/d and r/d
@@ -61,14 +62,12 @@ def _solid(tolerance: float) -> Answer:
     return Answer(values, unknowns)
 
 
-def _norm(load: Load, ratio: float, radius: float) -> float:
-    """Form factor by DIN 743-2."""
-    return form_factor(load, ratio, 1.0, radius)
-
-
 def _short(published: Callable[..., float | None], load: Load) -> int:
     """Per cent by which published factors fall short at most."""
-    factors = [(published(load, *shape), finite_elements(load, *shape)) for shape in SHAPES]
+    factors = [
+        (published(load, ratio, 1.0, radius), finite_elements(load, ratio, radius))
+        for ratio, radius in SHAPES
+    ]
     return round(max(100 * (1 - value / best) for value, best in factors if value is not None))
 
 
@@ -88,8 +87,8 @@ def _charts() -> str:
     for ratio, radius in SHAPES:
         for load in LOADS:
             best = finite_elements(load, ratio, radius)
-            chart = peterson(load, ratio, radius)
-            norm = _norm(load, ratio, radius)
+            chart = peterson(load, ratio, 1.0, radius)
+            norm = form_factor(load, ratio, 1.0, radius)
             cells = [f"{ratio:g}", f"{radius:g}", load, f"{best:.3f}"]
             for value in (chart, norm):
                 cells.append("no fit" if value is None else f"{value:.3f}")
@@ -135,8 +134,8 @@ SHOULDERS = Case(
     remarks="Peterson's charts (as fitted by Pilkey) and the formulas of DIN 743-2 beside the fits "
     f"to finite elements:\n\n{_charts()}\n\n"
     f"Where their fit is given Peterson's charts lie up to {_short(peterson, 'tension')} % too low in "
-    f"tension and {_short(peterson, 'bending')} % in bending, the norm {_short(_norm, 'tension')} and "
-    f"{_short(_norm, 'bending')} %. Peterson's charts were taken over from grooves and flat bars, as "
+    f"tension and {_short(peterson, 'bending')} % in bending, the norm {_short(form_factor, 'tension')} and "
+    f"{_short(form_factor, 'bending')} %. Peterson's charts were taken over from grooves and flat bars, as "
     "Tipton, Sorem and Rolovic (1996) found. So the 3 to 5 % to which charts are read say nothing of how "
     "near they are; in torsion they are as near as that.",
 )

@@ -1,0 +1,117 @@
+"""Options on what acts on a train or a shaft at rest, and what they make of its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from solidgear.cli.app import Group
+from solidgear.errors import SceneError, SolidgearError, show
+
+if TYPE_CHECKING:
+    from solidgear.report.units import Units
+    from solidgear.scene import Scene
+    from solidgear.scene.operation import OperatingPoint
+    from solidgear.scene.train import Train
+
+AtRestFile = Annotated[
+    Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
+]
+
+
+@dataclass(frozen=True)
+class Acting(Group):
+    """An operating point of a train, or a load of a shaft."""
+
+    torque: Annotated[
+        str | None,
+        typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
+    ] = None
+    of: Annotated[str, typer.Option("--of", help="Shaft of --torque: pinion or gear.")] = "pinion"
+    point: Annotated[
+        str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
+    ] = None
+    weight: Annotated[
+        str | None,
+        typer.Option(help="With --torque: direction of weight in the pinion's scene, such as -z."),
+    ] = None
+    load: Annotated[
+        str | None,
+        typer.Option(
+            "--load",
+            help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
+        ),
+    ] = None
+
+    def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
+        """A shaft under its load, or a train and its operating point.
+
+        Raises
+        ------
+        SolidgearError
+            For options of the one on a file of the other, and a train without operating point.
+        """
+        from solidgear.cli.bearing import loaded_by
+        from solidgear.scene.file import load
+        from solidgear.scene.toml_file import is_train
+
+        if is_train(file):
+            refuse({"--load": self.load}, "a shaft", file, "a train takes --torque")
+            return self._at_point(file)
+        of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
+        refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
+        scene = load(file)
+        return scene if self.load is None else loaded_by(scene, self.load)
+
+    def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
+        from solidgear.scene.operation import OperatingPoint
+        from solidgear.studies.loading import load_train
+        from solidgear.studies.train.operation import named_point
+
+        if self.torque is None:
+            instead = "write weight into its [operation]"
+            refuse({"--weight": self.weight}, "a --torque", file, instead)
+            train = load_train(file)
+            if not train.operation:
+                raise SolidgearError(
+                    f'{file}: no torque is given; write [operation] with torque = "115 N*m", or '
+                    "give --torque"
+                )
+            named = self.point is not None
+            return train, named_point(train, self.point) if named else train.operation[0]
+        if self.point is not None:
+            raise SolidgearError("give either --torque or --point, not both")
+        given: dict[str, Any] = {"torque": self.torque, "of": self.of}
+        try:
+            own = OperatingPoint(**given | ({"weight": self.weight} if self.weight else {}))
+        except SceneError as error:
+            raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
+        return load_train(file, own), own
+
+
+def refuse(options: dict[str, str | None], what: str, file: Path, instead: str) -> None:
+    """Refuse options that are for something else.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    for option, given in options.items():
+        if given is not None:
+            raise SolidgearError(f"{option} is for {what}, and {file} is none: {instead}")
+
+
+def load_in_words(scene: Scene, units: Units) -> str:
+    """The load of a scene, such as ``z 2000 N at pinion``."""
+    from solidgear.report.deflection_tables import DOFS, LOAD_OF
+
+    six = scene.load.six if scene.load else [0.0] * 6
+    parts = [
+        f"{name} {units.text(float(value), si, 4)}"
+        for name, value, si in zip(DOFS, six, LOAD_OF)
+        if value
+    ]
+    return f"{', '.join(parts) or 'no force'} at {scene.port.name}"

@@ -1,0 +1,145 @@
+"""The command stress: section forces of shafts, and the stress on their fillets."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solidgear.cli.acting import Acting, AtRestFile, load_in_words, refuse
+from solidgear.cli.app import NOT_REACHED, Group, caution, command, say
+from solidgear.cli.shared import BY_MODEL, FIDELITY, Choice, Shown, share
+from solidgear.errors import SceneError, SolidgearError, show
+
+if TYPE_CHECKING:
+    from solidgear.studies.stress.rating import Conditions
+
+
+@dataclass(frozen=True)
+class Rated(Group):
+    """What a rating by DIN 743 needs beyond the file; where it is not given, it is assumed."""
+
+    roughness: Annotated[
+        str | None, typer.Option(help='Rz of the fillets, such as "6.3 um"; else K_F is 1.')
+    ] = None
+    ultimate_at_size: Annotated[
+        float | None,
+        typer.Option(help="K_1 of the tensile strength, by the size of the part; else 1."),
+    ] = None
+    yield_at_size: Annotated[
+        float | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
+    ] = None
+    hardening: Annotated[
+        float | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
+    ] = None
+    force_share: Annotated[
+        float | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
+    ] = None
+    torque_share: Annotated[
+        float | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
+    ] = None
+    constant_mean: Annotated[
+        bool,
+        typer.Option(
+            "--constant-mean",
+            help="Mean stress stays as loads grow (case 1 of the norm); else it grows (case 2).",
+        ),
+    ] = False
+
+    def conditions(self) -> Conditions:
+        """The same as read.
+
+        Raises
+        ------
+        SolidgearError
+            For a value that is none, with its option.
+        """
+        from solidgear.studies.stress.rating import Conditions
+
+        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        try:
+            return Conditions(**{name: v for name, v in given.items() if v is not None})
+        except SceneError as error:
+            first = error.problems[0]
+            option = f"--{str(first.path[0]).replace('_', '-')}"
+            raise SolidgearError(f"{option} {first.value}: {first.reason}") from None
+
+
+@command
+def stress(
+    file: AtRestFile,
+    *,
+    acting: Acting,
+    drive: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='Of a shaft: torque that enters at a bearing, mass or point, such as "B=115 N*m", '
+            "and leaves at the port; repeatable."
+        ),
+    ] = None,
+    fidelity: Annotated[
+        Choice, typer.Option(*BY_MODEL, help="Model on which shafts and bearings settle.")
+    ] = FIDELITY,
+    tol: Annotated[
+        float,
+        typer.Option("--tol", parser=share, metavar="FLOAT", help="Bar allowed of a form factor."),
+    ] = 0.01,
+    rated: Rated,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for a page, section forces and their charts."),
+    ] = None,
+    run: Shown,
+) -> None:
+    """Stress of shafts at rest: section forces, nominal stress, fillets by the solid, DIN 743."""
+    from solidgear.report.folder import held
+    from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
+    from solidgear.report.units import in_ascii, units_named
+    from solidgear.studies.loading import explained
+    from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
+
+    asked, given, shown = Asked(tol, rated.conditions()), acting.read(file), units_named(run.units)
+    torques = dict(map(_torque, drive or ()))
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        if isinstance(given, tuple):
+            told = {"--drive": drive[0] if drive else None}
+            refuse(told, "a shaft", file, "springs of engine and load bring its torques")
+            found = stress_of_train(*given, str(fidelity), asked, progress)
+            force = shown.text(found.under["mesh_force"], "N", 5)
+            lead = f"At {given[1].label}: mesh force {force} along the line of action"
+        else:
+            with explained(file):
+                found = stress_of_scene(given, str(fidelity), torques, asked, progress)
+            lead = f"Under {load_in_words(given, shown)}"
+            for name, torque in torques.items():
+                lead += f", and {shown.text(torque, 'N m', 4)} from {name} to {given.port.name}"
+        lead += f"; bearing reactions by {found.model}."
+        files = write_stress(out, found, lead, shown) if out else []
+    if run.as_json:
+        print(json.dumps(found.as_dict(), allow_nan=False))
+    else:
+        say(f"{found.title}: stress", lead, soft_wrap=False)
+        for shaft in found.shafts:
+            say(*shaft_tables(found, shaft, shown, every=False), soft_wrap=False)
+        say(*filter(None, [in_ascii(headline(found, shown))]), soft_wrap=False)
+        say(*sentences(found, shown), *map(caution, found.cautions), soft_wrap=False)
+        say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
+    if not found.reached:
+        raise typer.Exit(NOT_REACHED)
+
+
+def _torque(text: str) -> tuple[str, float]:
+    """Name and torque, N m, from ``B=115 N*m``."""
+    from solidgear.scene.units import quantity
+
+    name, sep, value = (part.strip() for part in text.partition("="))
+    if not sep or not name:
+        raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')
+    try:
+        return name, quantity(value, "torque")
+    except SceneError as error:
+        raise SolidgearError(f"--drive {show(text)}: {error}") from None

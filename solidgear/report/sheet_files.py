@@ -1,0 +1,66 @@
+"""The files of one question: numbers, charts as PNG and SVG, and a page to read them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from solidgear.machine.whole_file import whole
+from solidgear.report.plot import WIDE, Make
+from solidgear.report.table import Table
+from solidgear.report.train_sheet import write_sheet
+
+
+def write_files(
+    folder: Path,
+    name: str,
+    title: str,
+    lead: str,
+    tables: Sequence[Table],
+    data: Mapping[str, Any],
+    *,
+    lines: Mapping[str, Table],
+    charts: Mapping[str, Make],
+    notes: Sequence[str] = (),
+    cautions: Sequence[str] = (),
+) -> list[Path]:
+    """Write a page, the data it shows, tables for other programs, and charts.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        Of page and data.
+    title, lead, tables, notes, cautions
+        Of the page.
+    data : mapping
+        In SI.
+    lines : mapping of str to Table
+        By the names of their files.
+    charts : mapping of str to callable
+        By their names, which the page has words for.
+
+    Returns
+    -------
+    list of Path
+        The page, the tables, the data, the charts.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]
+    files.append(folder / f"{name}.json")
+    with whole(files[-1]) as half:
+        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    for stem, make in charts.items():
+        files += write_charts(folder / stem, make)
+    path = folder / f"{name}.html"
+    write_sheet(path, title, lead, tables, charts=charts, notes=notes, cautions=cautions)
+    return [path, *files]
+
+
+def write_charts(stem: Path, make: Make) -> list[Path]:
+    """A chart as PNG and SVG beside each other."""
+    chart = make(WIDE)
+    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
+    return [chart.write(file) for file in files] if chart else []

@@ -1,0 +1,356 @@
+"""Stress of the shafts of a scene or of a train at rest, under the loads of their equilibrium.
+
+A shaft of a train is free but for what acts on its ports: teeth, springs, bearings, the weight of a
+wheel on it. A shaft of a scene has its load at the port and the reactions of its bearings. Both are
+settled as plain bodies of revolution: what is cut into them moves reactions by next to nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from solidgear.bearings.solved import AS_TOLD, Choice
+from solidgear.display import plain
+from solidgear.errors import SolidgearError
+from solidgear.ladder.registry import LADDER
+from solidgear.scene import Scene
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.bearing_life import left_open
+from solidgear.studies.deflection import ShaftAtRest, load_of
+from solidgear.studies.stress.notch import ENOUGH
+from solidgear.studies.stress.rating import Conditions
+from solidgear.studies.stress.section_forces import COMPONENTS, SectionForces, forces_of
+from solidgear.studies.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.operation import Operating, OperatingState
+
+#: model on which shafts and bearings settle, unless told otherwise
+MODEL = LADDER.judges[0]
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Acting:
+    """Everything that acts on a shaft.
+
+    Attributes
+    ----------
+    loads : dict of str to (6,) ndarray
+        By port, N and N m.
+    gravity : (3,) ndarray or None
+        m/s^2, in the axes of its scene.
+    """
+
+    loads: dict[str, np.ndarray]
+    gravity: np.ndarray | None = None
+
+    def add(self, port: str, load: np.ndarray) -> None:
+        """One more load (6,) on a port."""
+        self.loads[port] = self.loads.get(port, np.zeros(6)) + load
+
+
+@dataclass(frozen=True)
+class StressedShaft:
+    """Stress of one shaft of a scene or a train.
+
+    Attributes
+    ----------
+    name : str
+    scene : Scene
+    acting : Acting
+    found : ShaftStress
+    open_moment : (float, float) or None
+        Least and largest of the largest bending moment, N m, by what the data of bearings leave
+        open; None where that is nothing.
+    open : dict of str to (float, float)
+        The same of the amplitude on each fillet, Pa.
+    """
+
+    name: str
+    scene: Scene = field(repr=False)
+    acting: Acting
+    found: ShaftStress
+    open_moment: tuple[float, float] | None
+    open: Mapping[str, tuple[float, float]]
+
+    @property
+    def weak(self) -> tuple[str, ...]:
+        """Segments with a fillet whose material has no strength."""
+        segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
+        return tuple(dict.fromkeys(s.name for s in segments if s.material.strength is None))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of fillets.
+
+    Attributes
+    ----------
+    tolerance : float
+        Relative bar of form factors at which their meshes stop.
+    conditions : Conditions
+        Of the rating by DIN 743.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance beyond all meshes.
+    """
+
+    tolerance: float = ENOUGH
+    conditions: Conditions = Conditions()
+
+    def __post_init__(self) -> None:
+        check_tolerance(self.tolerance)
+
+
+@dataclass(frozen=True)
+class StressAtRest:
+    """Stress of a shaft under its load, or of both shafts of a train at an operating point.
+
+    Attributes
+    ----------
+    title : str
+    model : str
+        On which shafts and bearings settled.
+    under : dict
+        Load of a scene, or operating point and mesh force of a train, as plain data in SI.
+    asked : Asked
+    shafts : tuple of StressedShaft
+    open_by : str
+        What the data of bearings leave open, in words; empty for nothing.
+    cautions : tuple of str
+        Beside the remarks of each shaft.
+    """
+
+    title: str
+    model: str
+    under: Mapping[str, Any]
+    asked: Asked
+    shafts: tuple[StressedShaft, ...]
+    open_by: str
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def reached(self) -> bool:
+        """True where the bars of all form factors are within the tolerance."""
+        notches = [notch for shaft in self.shafts for notch in shaft.found.notches]
+        return all(notch.found.widest <= self.asked.tolerance for notch in notches)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data in SI that JSON can hold."""
+        data = plain(self) | {"components": list(COMPONENTS), "shafts": {}}
+        data["asked"]["conditions"] = self.asked.conditions.model_dump(mode="json")
+        for shaft in self.shafts:
+            worst = [notch.name for notch in shaft.found.worst]
+            data["shafts"][shaft.name] = plain(shaft) | {"worst": worst[0] if worst else None}
+        return data
+
+
+def stress_of_scene(
+    scene: Scene,
+    model: str = MODEL,
+    drive: Mapping[str, float] | None = None,
+    asked: Asked = Asked(),
+    progress: Progress = lambda text: None,
+) -> StressAtRest:
+    """Stress of a shaft under the [load] of its scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bearings of catalogue data need no stiffness yet.
+    model : str
+        On which shaft and bearings settle.
+    drive : mapping of str to float, optional
+        Torques about the axis that enter at bearings, masses or further points, N m; the gear at
+        the port takes them out.
+    asked : Asked
+    progress : callable, optional
+        Told what is solved.
+
+    Raises
+    ------
+    SolidgearError
+        For a scene without load, or one that nothing holds against it; a torque at what the shaft
+        has not, or at the port.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_filleted.toml").with_changes(load={"z": 1e4})
+    >>> (shaft,) = stress_of_scene(scene, "timoshenko", {"2": 300.0}).shafts
+    >>> (notch,) = shaft.found.notches
+    >>> [f"{abs(moment):.1f}" for moment in notch.forces[3:]]
+    ['431.2', '300.0', '0.0']
+    """
+    load, port, drive = load_of(scene), scene.port.name, drive or {}
+    if port in drive:
+        raise SolidgearError(
+            f'the torque at "{port}" enters where the gear takes it out: name the bearing, mass or '
+            "point where a coupling or spline brings it"
+        )
+    progress(model)
+    at_rest = ShaftAtRest(scene.plain, model)
+
+    def acting(choice: Choice) -> dict[str, Acting]:
+        own = Acting({port: load})
+        for bearing in at_rest.settled(choice).bearings:
+            own.add(bearing.name, -bearing.load)
+        for name, torque in drive.items():
+            own.add(name, np.array([0, 0, 0, 0, torque, 0.0]))
+            own.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
+        return {scene.name: own}
+
+    under = {"port": port, "load": load, "drive": drive}
+    shafts, told = _shafts({scene.name: scene}, acting, asked, progress)
+    cautions = tuple(_not_acting(scene, drive))
+    return StressAtRest(scene.title or scene.name, model, under, asked, shafts, told, cautions)
+
+
+def _not_acting(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
+    """Sentences on what does not act on a shaft, and perhaps should."""
+    if not drive:
+        yield (
+            "no torque runs along the shaft: a [load] has forces and tilting moments; --drive says "
+            "where a torque enters"
+        )
+    for point in scene.further_ports:
+        if point.name not in drive:
+            yield f'nothing acts at the point "{point.name}": [load] is that of "{scene.port.name}"'
+
+
+def stress_of_train(
+    train: Train,
+    point: OperatingPoint,
+    model: str = MODEL,
+    asked: Asked = Asked(),
+    progress: Progress = lambda text: None,
+) -> StressAtRest:
+    """Stress of both shafts of a train at an operating point.
+
+    Parameters
+    ----------
+    train : Train
+    point : OperatingPoint
+    model : str
+        On which shafts and bearings settle; no lumped one, which has no places of its own.
+    asked : Asked
+    progress : callable, optional
+        Told what is solved.
+
+    Raises
+    ------
+    SolidgearError
+        For a shaft that nothing holds.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/gearbox_train.toml")
+    >>> found = stress_of_train(train, train.operation[0], "timoshenko")
+    >>> [(one.name, round(float(abs(one.found.forces.at(0.1)[4])), 2)) for one in found.shafts]
+    [('pinion', 115.0), ('gear', 327.75)]
+    """
+    progress(model)
+    shop = Workshop(_plain(train))
+    usual = Operating(shop, model, model).at(point)
+
+    def acting(choice: Choice) -> dict[str, Acting]:
+        own = choice == AS_TOLD
+        return _on_shafts(shop, usual if own else Operating(shop, model, model, choice).at(point))
+
+    under = {"point": point.model_dump(mode="json"), "mesh_force": usual.mesh_force}
+    shafts, told = _shafts({side: train.shaft(side) for side in SIDES}, acting, asked, progress)
+    cautions = (*usual.notes, *shop.contact.cautions, *_without_torque(train))
+    return StressAtRest(train.title or train.name, model, under, asked, shafts, told, cautions)
+
+
+def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, Acting]:
+    """Everything that acts on both shafts of a train at rest."""
+    out = {}
+    for side in SIDES:
+        port, head = shop.scenes[side].port.name, shop.train.member(side).head
+        turned = state.system.port(f"{side}.{port}").axes.T
+        gravity = turned @ np.array(state.point.gravity)
+        out[side] = Acting({}, gravity if state.point.weight else None)
+        if head is not None:
+            out[side].add(port, head.mass * np.r_[gravity, np.zeros(3)])
+    for end, six in state.forces().items():
+        side, _, port = end.partition(".")
+        if side in out:  # an engine and a load only turn
+            out[side].add(port, six)
+    return out
+
+
+def _without_torque(train: Train) -> Iterator[str]:
+    """Sentences on shafts whose torque enters where the teeth take it out."""
+    for side in SIDES:
+        port, (rotor, _) = train.spring_port(side), train.rotor(side)
+        if port == train.member(side).scene.port.name:
+            yield (
+                f"no torque runs along the {side}: {rotor}.spring is at the teeth "
+                f'(at = "{port}"); put it where the torque enters'
+            )
+
+
+def _plain(train: Train) -> Train:
+    """A train of shafts without features, whose teeth act at their ports."""
+    members = {
+        side: train.member(side).with_changes(scene=train.member(side).scene.plain)
+        for side in SIDES
+    }
+    return train.with_changes(mesh=train.mesh.with_changes(local_harmonics=()), **members)
+
+
+def _shafts(
+    scenes: Mapping[str, Scene],
+    acting: Callable[[Choice], dict[str, Acting]],
+    asked: Asked,
+    progress: Progress,
+) -> tuple[tuple[StressedShaft, ...], str]:
+    """Stress of every shaft, and what the data of bearings leave open, in words."""
+    usual = acting(AS_TOLD)
+    told, choices = left_open(scenes.values())
+    if choices:
+        progress("what the data of bearings leave open")
+    others = [acting(choice) for choice in choices]
+    shafts = []
+    for name, scene in scenes.items():
+        own = usual[name]
+        found = shaft_stress(
+            scene,
+            own.loads,
+            gravity=own.gravity,
+            tolerance=asked.tolerance,
+            conditions=asked.conditions,
+            progress=progress,
+        )
+        along = [forces_of(scene, one[name].loads, one[name].gravity) for one in others]
+        shafts.append(StressedShaft(name, scene, own, found, *_ranges(found, along)))
+    return tuple(shafts), told
+
+
+def _ranges(
+    found: ShaftStress, others: Sequence[SectionForces]
+) -> tuple[tuple[float, float] | None, dict[str, tuple[float, float]]]:
+    """Ranges of the largest bending moment, N m, and of the amplitude on each fillet, Pa, over the
+    section forces that were solved and others.
+    """
+    if not others:
+        return None, {}
+    moments = [forces.largest_moment for forces in (found.forces, *others)]
+    amplitudes = {
+        notch.name: [
+            notch.local.amplitude,
+            *(local_stress(notch.found, forces.at(notch.y)).amplitude for forces in others),
+        ]
+        for notch in found.notches
+    }
+    return (min(moments), max(moments)), {k: (min(v), max(v)) for k, v in amplitudes.items()}
