@@ -50,11 +50,11 @@ else:
     AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
 
 
-def share(text: str) -> float:
-    """A relative error from the command line, as a share or in per cent."""
-    number = text.strip().removesuffix("%")
+def share(text: str | float) -> float:
+    """A relative error from the command line, as a share or in per cent; defaults are numbers."""
+    number = str(text).strip()
     try:
-        return float(number) / (100 if number != text.strip() else 1)
+        return float(number.removesuffix("%")) / (100 if number.endswith("%") else 1)
     except ValueError:
         raise typer.BadParameter(
             f'"{text}" is no number; a tolerance is a share such as 0.01, or 1%'

@@ -113,10 +113,7 @@ def quantity(value: Any, dimension: str) -> float:
         A plain number is SI already; a text is a number and a unit, such as ``"90 mm"`` or ``"8.6e9
         N/m"``.
     dimension : str
-        One of `DIMENSIONS`: length (m), angle (rad), pressure (Pa), density (kg/m3),
-        force_per_length (N/m), force (N or N/rad), moment (N m or N m/rad), mass (kg), inertia
-        (kg m2), frequency (Hz), load (N), torque (N m), speed (rad/s), viscosity (m2/s),
-        temperature (K, a difference), dimensionless.
+        One of `DIMENSIONS`, which has the SI unit of each.
 
     Returns
     -------
