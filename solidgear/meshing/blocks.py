@@ -17,7 +17,7 @@ from solidgear.meshing.bands import first_of_run
 from solidgear.meshing.corners import corner_layers
 from solidgear.meshing.grading import Grading
 from solidgear.scene.blends import Corner
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 
 #: how deep into the material the block at a root reaches, in sizes of the fillet
 DEPTH = 1.0
@@ -120,7 +120,7 @@ def joints_of(scene, grading: Grading, marks: Sequence[float]) -> list[Joint]:
     marks : sequence of float
         Further places that must be lines of the mesh, m.
     """
-    corners = getattr(scene, "corners", ())
+    corners = scene.outline.corners
     ends = [0.0, *(s.y1 for s in scene.segments)]
     by_place = defaultdict(list)
     for corner in corners:

@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.scene.rules import TOUCH
-
 if TYPE_CHECKING:
-    from solidgear.scene import Corner, Segment
+    from solidgear.scene import Segment
     from solidgear.scene.shaft import Shaft
 
 # Exponent of a right-angled shoulder, against which layers are counted.
@@ -123,37 +121,8 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
     >>> round(float(np.degrees(angle))), round(exponent, 4)
     (270, 0.5445)
     """
-    pairs = zip(scene.segments, scene.segments[1:])
-    worst = max((corner_angle(a, b, filled_at(scene, b.y0)) for a, b in pairs), default=np.pi)
-    worst = max([worst, *map(_ends_of_chamfer, getattr(scene, "corners", ()))])
+    worst = max((edge.angle for edge in scene.outline.edges), default=np.pi)
     return worst, corner_exponent(worst)
-
-
-def filled_at(scene: Shaft, y: float) -> tuple[str, ...]:
-    """Surfaces whose root at a joint has a fillet or a chamfer.
-
-    Parameters
-    ----------
-    scene : Scene
-    y : float
-        Of the joint, m.
-
-    Returns
-    -------
-    tuple of {'outer', 'bore'}
-    """
-    corners = getattr(scene, "corners", ())
-    return tuple(c.surface for c in corners if c.root and abs(c.y - y) <= TOUCH)
-
-
-def _ends_of_chamfer(corner: Corner) -> float:
-    """Larger material angle at the ends of a chamfer at a root, rad; pi of all that is convex or
-    round.
-    """
-    if corner.kind != "chamfer" or not corner.root:
-        return float(np.pi)
-    slope = np.arctan2(corner.radial, corner.axial)
-    return float(np.pi + max(slope, np.pi / 2 - slope))
 
 
 def corner_layers(a: Segment, b: Segment, layers: int, smooth: tuple[str, ...] = ()) -> int:

@@ -2,6 +2,8 @@
 
 from math import pi
 
+from solidgear.scene.outline import Outline
+
 PER_BLEND = 0.8  # edge at a fillet or chamfer, of its size
 _GROWTH = 0.5  # element size gained per distance from a lateral surface
 
@@ -10,7 +12,7 @@ _GROWTH = 0.5  # element size gained per distance from a lateral surface
 PER_CUBE = 4.0
 
 
-def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine=()) -> float:
+def rough_cells(outline: Outline, circles=(), *, size, graded_size=None, fine=()) -> float:
     """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse what
     is absurd.
 
@@ -19,7 +21,7 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
 
     Parameters
     ----------
-    segments, circles, size, graded_size, blends
+    outline, circles, size, graded_size
         As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`, m.
     fine : sequence of (length, size, growth)
         Further edges with the element size at them, m, and its growth by the distance.
@@ -27,11 +29,12 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
     Examples
     --------
     >>> from solidgear import Segment
-    >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
-    >>> round(rough_cells([rod], size=0.005) / rough_cells([rod], size=0.01), 6)
+    >>> from solidgear.scene.outline import Outline
+    >>> rod = Outline([Segment.cylinder("rod", length=0.3, diameter=0.06)])
+    >>> round(rough_cells(rod, size=0.005) / rough_cells(rod, size=0.01), 6)
     8.0
     """
-    total = 0.0
+    total, segments = 0.0, outline.segments
     for s in segments:
         a, b = pi * (s.outer0**2 - s.inner0**2), pi * (s.outer1**2 - s.inner1**2)
         bulk = min(size, max(s.outer0, s.outer1))
@@ -40,7 +43,7 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
     steps = [(s.y0, max(s.outer0, s.outer1)) for s in segments]
     rims = steps + [(y, r) for y in circles for r in [max(r for _, r in steps)]]
     edges = [(2 * pi * r, graded, (size - graded) / r) for _, r in rims if graded < size]
-    edges += [(2 * pi * b.r, PER_BLEND * min(b.axial, b.radial), _GROWTH) for b in blends]
+    edges += [(2 * pi * b.r, PER_BLEND * min(b.axial, b.radial), _GROWTH) for b in outline.corners]
     for length, least, growth in (*edges, *fine):
         # the integral of size^-3 around an edge, of which a quarter lies in the material
         slope = min(growth, _GROWTH)  # elements grow no faster, whatever is asked for
@@ -48,15 +51,15 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
     return PER_CUBE * total
 
 
-def size_formulas(segments, corners, size, graded_size, reach, around, blends=()):
+def size_formulas(outline: Outline, corners, size, graded_size, reach, around):
     """Formulas of the element edge; the least one counts.
 
     Parameters
     ----------
-    segments : sequence of Frustum
+    outline : Outline
     corners : list of (float, float)
         (y, radius) to grade towards, m.
-    size, graded_size, reach, around, blends
+    size, graded_size, reach, around
         As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
 
     Returns
@@ -72,7 +75,7 @@ def size_formulas(segments, corners, size, graded_size, reach, around, blends=()
         formulas.append(
             f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
         )
-    for blend in blends:
+    for blend in outline.corners:
         # an edge of an element along either half of the outline, or the size at a corner
         r, y = blend.middle
         across = min(blend.axial, blend.radial)
@@ -81,7 +84,7 @@ def size_formulas(segments, corners, size, graded_size, reach, around, blends=()
             f"{_num(least)}+{_num(_GROWTH)}*Max(0,Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
             f"-{_num(across / 2)})"
         )
-    for s in segments:
+    for s in outline.segments:
         for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):
             if max(r0, r1) == 0.0:
                 continue

@@ -9,7 +9,7 @@ from math import ceil, log
 
 import numpy as np
 
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
 REACH = 0.25

@@ -51,11 +51,11 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     >>> from solidgear import Scene, Segment
     >>> from solidgear.meshing.grading import Grading
     >>> from solidgear.meshing.layout import layout
-    >>> from solidgear.meshing.closed_form import volume_of
+    >>> from solidgear.scene.closed_form import volume_of
     >>> from solidgear.meshing.quality import check_mesh
     >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
     >>> mesh, segment = hexahedra(scene, layout(scene, Grading(layers=0, core=True)))
-    >>> quality = check_mesh(mesh, volume=volume_of(scene.segments))
+    >>> quality = check_mesh(mesh, volume=volume_of(scene.outline))
     >>> quality.n_elements == len(segment)
     True
     """

@@ -24,7 +24,7 @@ from solidgear.meshing.blocks import (
 )
 from solidgear.meshing.grading import Grading, corner_length, distinct, graded, joint_length
 from solidgear.meshing.rings import fractions_of
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,15 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.machine.isolated import IsolatedError, isolated
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
+from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
 from solidgear.meshing.step import look
 from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Frustum, Outline
 from solidgear.scene.recognised import Recognised
 
 #: seconds after which a file is given up
@@ -77,7 +78,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     points = points - [[0.0], [start], [0.0]]
     shares, kinds = _shared_out(found_in, found.walls)
     walls = tuple(
-        Wall(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
+        Frustum(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
         for w in (share.wall for share in shares)
     )
     body = BodyFile(
@@ -90,7 +91,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         foot=(x, y, z),
         volume=found_in.volume,
         round_share=found.share,
-        round_volume=volume_of(walls) / found_in.volume,  # type: ignore[arg-type]
+        round_volume=volume_of(Outline(walls)) / found_in.volume,
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else found.facets / found_in.volume,
         groups=found_in.groups,

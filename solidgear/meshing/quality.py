@@ -76,7 +76,7 @@ def check_mesh(
         Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are
         left-handed.
     volume : float, optional
-        Volume the mesh should have [m^3], see :func:`solidgear.meshing.closed_form.volume_of`; None
+        Volume the mesh should have [m^3], see :func:`solidgear.scene.closed_form.volume_of`; None
         skips the comparison.
     rtol : float
         Relative mismatch of volume that is still accepted.

@@ -24,12 +24,14 @@ from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.holes import Hole, hole_of, hole_places, hole_size
-from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
+from solidgear.meshing.revolved import graded_corners
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import filled
+from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
+from solidgear.scene.outline import Outline
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
@@ -136,24 +138,23 @@ def sector_mesh(
     if reason:
         raise MeshError(reason)
     gmsh = import_gmsh()
-    shapes = [Frustum.of(s) for s in segments]
-    tolerance = tolerance_of(shapes)
+    outline = Outline(segments)
     toothed = {f.segment: f for f in features if f.toothed}
     plane = mirror_angle(features, count)
     half = plane is not None
     first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, half)
+        own = draw_sector(gmsh, segments, toothed, planes, circles, count, half)
         holes = [f for f in features if not f.toothed]
         own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
         gmsh.model.occ.synchronize()
         drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
         if not half:
-            pair_faces(gmsh, count, tolerance)
-        corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
-        formulas = size_formulas(shapes, corners, size, graded_size, None, around)
+            pair_faces(gmsh, count)
+        corners = graded_corners(outline, planes, circles)
+        formulas = size_formulas(outline, corners, size, graded_size, None, around)
         formulas += tooth_sizes(segments, features, refinement)
         for f, here, hole in hole_sizes(segments, features, refinement):
             # those in the sector, and on either side of it
@@ -226,10 +227,8 @@ def volume_of_sector(segments, features, count: int) -> float:
     total = 0.0
     for s in segments:
         area = section_area(toothed[s.name]) if s.name in toothed else pi
-        outer, inner = (
-            (a * a + a * b + b * b) / 3 for a, b in ((s.outer0, s.outer1), (s.inner0, s.inner1))
-        )
-        total += (area * outer - pi * inner) * (s.y1 - s.y0)
+        total += area * integrals_along(s.length, s.outer0, s.outer1)[0]
+        total -= pi * integrals_along(s.length, s.inner0, s.inner1)[0]
     for f in features:
         if not f.toothed:
             lo, hi = f.reach(next(s for s in segments if s.name == f.segment))

@@ -9,6 +9,7 @@ import numpy as np
 
 from solidgear.meshing.cuts import ACROSS, GROWTH
 from solidgear.meshing.element_size import _num
+from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.toothed import arc
 
 
@@ -140,12 +141,10 @@ def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
     mass, polar : float
         kg, kg m^2; below zero where the cone has more.
     """
-    a, b = segment.outer0, segment.outer1
-    bulk = segment.material.density * (segment.y1 - segment.y0)
-    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5
+    square, _, _, fourth = integrals_along(segment.length, segment.outer0, segment.outer1)
     return (
-        bulk * (section_area(teeth) - pi) * (a * a + a * b + b * b) / 3,
-        bulk * (section_polar(teeth) - pi / 2) * fourth,
+        segment.material.density * (section_area(teeth) - pi) * square,
+        segment.material.density * (section_polar(teeth) - pi / 2) * fourth,
     )
 
 

@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import BeforeValidator
 
 from solidgear.errors import SceneError
+from solidgear.scene.outline import TOUCH, Surface, radii_of
 from solidgear.scene.parts import Segment
 from solidgear.scene.places import Placed, Places
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Position, PositiveLength, quantity
 
-Surface = Literal["outer", "bore"]
 Edge = Literal["root", "rim"]
 
 
@@ -65,6 +64,11 @@ class Corner:
     out: int
     axial: float
     radial: float
+
+    @property
+    def joint(self) -> int:
+        """Segment that begins at the edge, or would behind the last one."""
+        return self.owner if self.side > 0 else self.owner + 1
 
     @property
     def on_face(self) -> tuple[float, float]:
@@ -160,9 +164,8 @@ class _Blend(Placed):
         """
         outer = self.surface == "outer"
         i, low, high = self._place(segments)
-        before, after = (
-            radius_of(s, self.surface, end) if s else None for s, end in ((low, "1"), (high, "0"))
-        )
+        before = radii_of(low, self.surface)[1] if low else None
+        after = radii_of(high, self.surface)[0] if high else None
         edge = self.edge
         if before is None or after is None:
             if edge == "root":
@@ -185,10 +188,11 @@ class _Blend(Placed):
             deeper_first = (before < after) == outer
             owner = i - 1 if deeper_first == (edge == "root") else i
         here = segments[owner]
-        radius = radius_of(here, self.surface, "0" if owner == i else "1")
+        start, end = radii_of(here, self.surface)
+        radius = start if owner == i else end
         if not radius:
             raise SceneError(f'"{here.name}" has no bore there', path=("surface",))
-        if radius_of(here, self.surface, "0") != radius_of(here, self.surface, "1"):
+        if start != end:
             raise SceneError(
                 f'"{here.name}" is a cone there; a {self.what} runs into a cylinder',
                 path=("y",),
@@ -317,13 +321,3 @@ class Chamfer(_Blend):
 #: either of them
 Blend: TypeAlias = Fillet | Chamfer
 BLENDS: dict[str, type[_Blend]] = {"fillet": Fillet, "chamfer": Chamfer}
-
-
-def corners_of_blends(segments: Sequence[Segment], blends: Sequence[Blend]) -> tuple[Corner, ...]:
-    """Edges with their fillets and chamfers; see :meth:`Fillet.corner`."""
-    return tuple(blend.corner(segments) for blend in blends)
-
-
-def radius_of(segment: Segment, surface: Surface, end: str) -> float:
-    """Radius of a surface of a segment at its end "0" or "1", m."""
-    return getattr(segment, ("outer" if surface == "outer" else "inner") + end)

@@ -299,7 +299,7 @@ def rough_sector(scene, wanted, *, refinement: float, count: int | None = None, 
     fine = [fine_lines(hole) for *_, hole in hole_sizes(scene.segments, features, refinement)]
     around = count or max(1, sectors_of(features))
     own = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.segments, fine=fine, **own) / (2 * around)
+    return rough_cells(scene.outline, fine=fine, **own) / (2 * around)
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:

@@ -28,9 +28,8 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
     """
     assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
     return featured_mesh(
-        scene.segments,
+        scene.outline,
         resolved(scene),
-        blends=scene.corners,
         **plan,
         refinement=refinement,
         half=half,

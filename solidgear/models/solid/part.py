@@ -14,9 +14,9 @@ from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
 from solidgear.meshing.mesh_file import mesh_from
-from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
+from solidgear.meshing.revolved import graded_corners
 from solidgear.models.solid.own_mesh import solid_body
 from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
@@ -134,17 +134,14 @@ def step_plan(scene, wanted: Sequence, *, size, graded_size, refinement, around)
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
     assemblable(tetrahedra_of(scene, plan, refinement), 10)
-    shapes = [Frustum.of(s) for s in scene.segments]
-    tolerance = tolerance_of(shapes)
-    slabs = slabs_between(shapes, plan["planes"], tolerance)
-    corners = corners_of(slabs, plan["circles"], tolerance)
+    corners = graded_corners(scene.outline, plan["planes"], plan["circles"])
     graded = plan["graded_size"] or plan["size"]
     largest = max(max(s.outer0, s.outer1) for s in scene.segments)
     return {
         "circles": [(y, r) for y in plan["circles"] for r in _radii(scene, y)],
         "planes": [(y, BEYOND * largest) for y in plan["planes"]],
         "formulas": size_formulas(
-            shapes, corners, plan["size"], plan["graded_size"], None, plan["around"]
+            scene.outline, corners, plan["size"], plan["graded_size"], None, plan["around"]
         ),
         "size": plan["size"],
         "graded": graded,

@@ -58,7 +58,7 @@ def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) 
     cuts = [f for f in resolved(scene) if f.sort == CUTS]
     fine = [fine_lines(f, radii[f.segment], refinement, edges) for f in cuts]
     sizes = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.segments, blends=scene.corners, fine=fine, **sizes)
+    return rough_cells(scene.outline, fine=fine, **sizes)
 
 
 def usual_size(scene) -> float:

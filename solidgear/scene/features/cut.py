@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST, OnSegment
+from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
 from solidgear.scene.places import Along, Places
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Position, PositiveLength
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.scene.blends import Corner, radius_of
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.blends import Corner
+from solidgear.scene.outline import radii_of
 from solidgear.studies.stress.din743 import Load as LoadKind
 from solidgear.studies.stress.nominal import (
     NominalRow,
@@ -40,12 +40,14 @@ from solidgear.studies.stress.section_forces import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from solidgear.scene import Scene, Segment
+    from solidgear.scene import Scene
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress
 NEAR = 1.0
 #: relative bar below which no order leads
 FINEST = 3e-3
+#: rad; a surface that turns by less is straight, but for rounding
+SMOOTH = 1e-9
 
 
 @dataclass(frozen=True)
@@ -223,34 +225,16 @@ def shaft_stress(
 
 def sharp_corners(scene: Scene) -> Iterator[tuple[float, str]]:
     """Re-entrant corners of the outline that have no fillet: places, m, and a sentence for each."""
-    rounded = {(c.y, c.surface): c.kind for c in scene.corners if c.root}
-    for low, high in zip(scene.segments, scene.segments[1:]):
-        for surface, word in (("outer", "outside"), ("bore", "in the bore")):
-            kind = next(
-                (k for (y, s), k in rounded.items() if s == surface and abs(y - low.y1) <= TOUCH),
-                "",
+    for edge in scene.outline.edges:
+        if edge.angle > np.pi + SMOOTH:
+            low, high = scene.segments[edge.joint - 1 : edge.joint + 1]
+            what = "two obtuse corners of a chamfer" if edge.root else "sharp corner"
+            where = "outside" if edge.surface == "outer" else "in the bore"
+            yield (
+                edge.y,
+                f'{what} {where} between "{low.name}" and "{high.name}": a stress does not '
+                "exist there, it grows without end as a mesh is refined; give a fillet",
             )
-            if kind != "fillet" and _re_entrant(low, high, surface):
-                what = "two obtuse corners of a chamfer" if kind else "sharp corner"
-                yield (
-                    low.y1,
-                    f'{what} {word} between "{low.name}" and "{high.name}": a stress does not '
-                    "exist there, it grows without end as a mesh is refined; give a fillet",
-                )
-
-
-def _re_entrant(low: Segment, high: Segment, surface) -> bool:
-    """True where the outline of two segments has a corner that opens into the material."""
-    before, after = radius_of(low, surface, "1"), radius_of(high, surface, "0")
-    if surface == "bore" and not (before and after):
-        return bool(before) != bool(after)
-    if abs(before - after) > TOUCH:
-        return True
-    slopes = [
-        (radius_of(s, surface, "1") - radius_of(s, surface, "0")) / s.length for s in (low, high)
-    ]
-    bend = slopes[1] - slopes[0]
-    return bend > 1e-9 if surface == "outer" else bend < -1e-9
 
 
 def _notch(
@@ -290,7 +274,8 @@ def _notch(
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     """Diameters of the surface on both sides of a step, that of the fillet's cylinder first, m."""
     beside = scene.segments[corner.owner - corner.side]
-    return 2 * corner.r, 2 * radius_of(beside, corner.surface, "1" if corner.side > 0 else "0")
+    start, end = radii_of(beside, corner.surface)
+    return 2 * corner.r, 2 * (end if corner.side > 0 else start)
 
 
 def _local(found: FilletFactors, forces: np.ndarray) -> Local:
