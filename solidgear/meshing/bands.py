@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from solidgear.scene.outline import Outline
+
+#: lowest band and end of every segment
+Bands = tuple[tuple[int, int], ...]
 #: two surfaces that face each other share a boundary unless it were steeper than this, radius over
 #: length
 STEEPEST = 1.5
@@ -253,7 +257,9 @@ def _above(segments, lengths, bottoms, tops) -> tuple[list[int], list[int]]:
     return bottoms, tops
 
 
-def radial_bands(segments, raised=None):
+def radial_bands(
+    outline: Outline,
+) -> tuple[Bands, tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
     """Radial bands of every segment such that neighbours share mesh lines.
 
     Where the outer radius jumps, the larger side gets at least one band more than
@@ -261,10 +267,7 @@ def radial_bands(segments, raised=None):
 
     Parameters
     ----------
-    segments : sequence of Segment
-    raised : dict of (segment, end, boundary) to float, optional
-        Where the surface of a smaller neighbour meets the end ('left' or 'right') of a segment at
-        another radius, by so much, m; the boundary is 'high' outside and 'low' in the bore.
+    outline : Outline
 
     Returns
     -------
@@ -278,11 +281,11 @@ def radial_bands(segments, raised=None):
     >>> from solidgear import Segment
     >>> thin = Segment.cylinder("thin", length=0.1, diameter=0.04)
     >>> thick = Segment.cylinder("thick", length=0.1, diameter=0.06, y0=0.1)
-    >>> bands, left, right = radial_bands([thin, thick])
+    >>> bands, left, right = radial_bands(Outline([thin, thick]))
     >>> bands, left[1]
     (((0, 1), (0, 2)), array([0.  , 0.02, 0.03]))
     """
-    n, raised = len(segments), raised or {}
+    segments, n = outline.segments, len(outline.segments)
     tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
 
     lengths = [s.y1 - s.y0 for s in segments]
@@ -304,14 +307,7 @@ def radial_bands(segments, raised=None):
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = _common(bands, i)
-        common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
-        here, there = (
-            {
-                low: common[low] + raised.get((k, end, "low"), 0.0),
-                high: common[high] + raised.get((k, end, "high"), 0.0),
-            }
-            for k, end in ((i, "right"), (i + 1, "left"))
-        )
+        here, there = (dict(zip((low, high), outline.shared_face(i + 1, k))) for k in (i, i + 1))
         right[i] = spread(*bands[i], {**here, bottoms[i]: a.inner1, tops[i]: a.outer1})
         left[i + 1] = spread(
             *bands[i + 1], {**there, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}

@@ -71,6 +71,16 @@ class Corner:
         return self.owner if self.side > 0 else self.owner + 1
 
     @property
+    def face_side(self) -> int:
+        """Side of the joint on which the segment lies whose plane face the outline leaves."""
+        return -self.side if self.root else self.side
+
+    @property
+    def face_owner(self) -> int:
+        """That segment."""
+        return self.joint if self.face_side > 0 else self.joint - 1
+
+    @property
     def on_face(self) -> tuple[float, float]:
         """(r, y) where the outline leaves the plane face, m."""
         return self.r + self.out * self.radial, self.y

@@ -158,6 +158,21 @@ class Outline(Generic[S]):
         """The one at the rim of a segment, where it begins (side 1) or ends (-1)."""
         return self._at.get((segment + (side < 0), surface, False, side))
 
+    def shared_face(self, joint: int, segment: int) -> tuple[float, float]:
+        """Radii in the bore and outside up to which the end of a segment at a joint is covered by the
+        other one, or by what fills the corner there, m.
+        """
+        low, high = self.segments[joint - 1], self.segments[joint]
+        radii = {
+            "bore": max(low.inner1, high.inner0),
+            "outer": min(low.outer1, high.outer0),
+        }
+        for surface in SURFACES:
+            root = self.root(joint, surface)
+            if root and root.face_owner == segment:
+                radii[surface] = root.on_face[0]
+        return radii["bore"], radii["outer"]
+
     @property
     def steps(self) -> tuple[float, ...]:
         """Places where the outer radius jumps, m, end faces left out."""
@@ -194,6 +209,10 @@ class Outline(Generic[S]):
     def edges(self) -> tuple[Edge, ...]:
         """Both surfaces at every joint of two segments, along y."""
         return tuple(self._edges())
+
+    def edges_at(self, joint: int) -> tuple[Edge, ...]:
+        """Those where a segment begins."""
+        return self.edges[2 * joint - 2 : 2 * joint]
 
     def _edges(self) -> Iterator[Edge]:
         for k, (low, high) in enumerate(zip(self.segments, self.segments[1:]), start=1):

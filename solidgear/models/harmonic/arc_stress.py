@@ -19,7 +19,7 @@ import numpy as np
 from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.cell_shapes import Kind
-from solidgear.meshing.blended import HIGH, LOW, OUT
+from solidgear.meshing.cells import HIGH, LOW, OUT
 from solidgear.models.harmonic.blocks import _Work, strains
 from solidgear.models.harmonic.body import HarmonicMesh
 from solidgear.scene.blends import Corner
