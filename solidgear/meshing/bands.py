@@ -18,20 +18,9 @@ STRAIGHT = 0.2
 LEAST_SHARE = 0.15
 
 
-def first_of_run(bands, band: int, segment: int) -> int:
-    """First of the neighbours of a segment that have a band without a gap between them.
-
-    Parameters
-    ----------
-    bands : sequence of (int, int)
-        Lowest band and end of every segment, from :func:`radial_bands`.
-    band : int
-    segment : int
-        One that has the band.
-
-    Returns
-    -------
-    int
+def first_of_run(bands: Bands, band: int, segment: int) -> int:
+    """First of the neighbours of a segment that have a band, as it does, without a gap between
+    them.
     """
     while segment > 0 and bands[segment - 1][0] <= band < bands[segment - 1][1]:
         segment -= 1
@@ -45,20 +34,12 @@ def _surfaces(bands, i: int) -> set[int]:
 
 
 def _straighten(segments, bands, left, right, kept) -> None:
-    """Move boundaries that would cross a segment too steeply.
+    """Move boundaries that would cross a segment too steeply, other than those, by segment and
+    boundary, that are a surface behind it.
 
-    Boundaries that are no surface were spread evenly.  In a thin disc that may take one from the
+    Boundaries that are no surface were spread evenly. In a thin disc that may take one from the
     surface of a neighbour on one side far up or down to the other, through cells so skewed that
     each further order takes away no more than half of the error.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    bands : tuple of (int, int)
-    left, right : dict of int to ndarray
-        Radii, which are changed.
-    kept : set of (int, int)
-        Boundaries that are a surface behind a segment, by segment and boundary.
     """
     fixed = set(kept)
     # what is steepest first: a boundary that was moved stays where it is
@@ -124,25 +105,12 @@ def _move(radii, held, i: int, wanted: float, far=None) -> None:
 
 
 def _levels(surface, lengths, tol: float) -> list[int]:
-    """Boundary that the surface of every segment is.
+    """Boundary that the surface of every segment is, from 0, by its radii at both ends (negative in
+    bores) and lengths, m: the least that will do.
 
-    Of two neighbours the smaller one has the lower boundary, and the same where they meet.  Where
+    Of two neighbours the smaller one has the lower boundary, and the same where they meet. Where
     two surfaces face each other across larger segments between them, one boundary runs from the one
     to the other; in a thin disc that would be too steep, and each has a boundary of its own.
-
-    Parameters
-    ----------
-    surface : sequence of (float, float)
-        Radius of every segment at its two ends, m; negative in bores.
-    lengths : sequence of float
-        m.
-    tol : float
-        Radii that differ by less meet, m.
-
-    Returns
-    -------
-    list of int
-        From 0, the least that will do.
     """
     level, _ = _raised(surface, tol, [])
     apart: list[tuple[int, int]] = []
@@ -215,21 +183,9 @@ def _facing(segments, lengths, bottoms, tops) -> list[tuple[int, int]]:
 
 
 def _above(segments, lengths, bottoms, tops) -> tuple[list[int], list[int]]:
-    """Boundaries of bores and surfaces such that a bore that faces a smaller surface is the higher
-    boundary of the two; elsewhere every surface is higher than every bore.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    lengths : sequence of float
-        m.
-    bottoms, tops : list of int
-        Boundaries of bores, 0 at most, and of surfaces, 1 at least.
-
-    Returns
-    -------
-    bottoms, tops : list of int
-        As given where nothing faces so.
+    """Boundaries of bores (0 at most) and surfaces (1 at least) such that a bore that faces a
+    smaller surface is the higher boundary of the two; elsewhere every surface is higher than every
+    bore, as they were given.
     """
     facing = _facing(segments, lengths, bottoms, tops)
     if not facing:

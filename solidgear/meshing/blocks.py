@@ -146,19 +146,9 @@ def rounded_layers(
     reach: float,
     ratio: float,
 ) -> int:
-    """Geometric layers towards the edges of some surfaces at a joint with fillets or chamfers.
-
-    Parameters
-    ----------
-    outline : Outline
-    joint : int
-    surfaces : sequence of {'outer', 'bore'}
-    layers : int
-        What a right-angled shoulder gets.
-    reach : float
-        Where layers begin, m.
-    ratio : float
-        Of each to the one before.
+    """Geometric layers towards the edges of some surfaces at a joint with fillets or chamfers,
+    where a right-angled shoulder gets so many; they begin at `reach`, m, and have a ratio to the
+    one before.
     """
     edges = [edge for edge in outline.edges_at(joint) if edge.surface in surfaces]
     roots = [edge.root for edge in edges if edge.root]

@@ -68,16 +68,8 @@ def _root(angle: float, sign: float, low: float, high: float) -> float:
 
 
 def sharpest_corner(scene: Shaft) -> tuple[float, float]:
-    """Largest material angle at a shoulder of a scene, and its exponent.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    angle, exponent : float
-        rad, and by :func:`corner_exponent`; (pi, 1) when there is no shoulder.
+    """Largest material angle at a shoulder of a scene, rad, and its exponent by
+    :func:`corner_exponent`; (pi, 1) when there is no shoulder.
 
     Examples
     --------
@@ -93,25 +85,12 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
 def corner_layers(
     outline: Outline, joint: int, layers: int, edges: Sequence[Edge] | None = None
 ) -> int:
-    """Geometric layers that the corners of two segments need, were they sharp.
+    """Geometric layers that the corners of two segments need, were they sharp, where a right-angled
+    shoulder needs so many: those of both surfaces, unless edges are given.
 
     Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to
-    shrink grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material
+    shrink grows with ``1 - exponent``, which is zero on a smooth outline. A change of material
     counts as a shoulder.
-
-    Parameters
-    ----------
-    outline : Outline
-    joint : int
-        Segment that begins there.
-    layers : int
-        What a right-angled shoulder needs.
-    edges : sequence of Edge, optional
-        Those that count; by default both of the joint, outside and in the bore.
-
-    Returns
-    -------
-    int
     """
     if outline.segments[joint - 1].material != outline.segments[joint].material:
         return layers

@@ -1,6 +1,8 @@
 """The size of tetrahedra, a closed formula in radius and y, and roughly how many it makes of them."""
 
+from collections.abc import Sequence
 from math import pi
+from typing import Any
 
 from solidgear.scene.outline import Outline
 
@@ -12,19 +14,20 @@ _GROWTH = 0.5  # element size gained per distance from a lateral surface
 PER_CUBE = 4.0
 
 
-def rough_cells(outline: Outline, circles=(), *, size, graded_size=None, fine=()) -> float:
-    """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse what
-    is absurd.
+def rough_cells(
+    outline: Outline,
+    circles: Sequence[float] = (),
+    *,
+    size: float,
+    graded_size: float | None = None,
+    fine: Sequence[tuple[float, float, float]] = (),
+) -> float:
+    """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse
+    what is absurd.
 
-    Volume is filled at the size in the bulk, and edges that are graded towards at a size that
-    grows from them.
-
-    Parameters
-    ----------
-    outline, circles, size, graded_size
-        As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`, m.
-    fine : sequence of (length, size, growth)
-        Further edges with the element size at them, m, and its growth by the distance.
+    Volume is filled at the size in the bulk, and edges that are graded towards at a size that grows
+    from them. `fine` are further edges: their length and the element size at them, m, and its
+    growth by the distance.
 
     Examples
     --------
@@ -51,30 +54,28 @@ def rough_cells(outline: Outline, circles=(), *, size, graded_size=None, fine=()
     return PER_CUBE * total
 
 
-def size_formulas(outline: Outline, corners, size, graded_size, reach, around):
-    """Formulas of the element edge; the least one counts.
+def size_formulas(
+    outline: Outline,
+    corners: Sequence[tuple[float, float]],
+    size: float,
+    graded_size: float | None,
+    reach: float | None,
+    around: int,
+) -> list[str]:
+    """Formulas of the element edge in x, y, z, m, as gmsh's parser reads them; the least one
+    counts.
 
-    Parameters
-    ----------
-    outline : Outline
-    corners : list of (float, float)
-        (y, radius) to grade towards, m.
-    size, graded_size, reach, around
-        As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
-
-    Returns
-    -------
-    list of str
-        In x, y, z, m, as gmsh's parser reads them.
+    `corners` are those (y, radius) to grade towards; sizes as for
+    :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
     """
     radius = "Sqrt(x^2+z^2)"
     formulas = []
-    is_graded = graded_size is not None and graded_size < size
-    for y, r in sorted(set(corners)) if is_graded else ():
-        slope = (size - graded_size) / (reach or r)
-        formulas.append(
-            f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
-        )
+    if graded_size is not None and graded_size < size:
+        for y, r in sorted(set(corners)):
+            slope = (size - graded_size) / (reach or r)
+            formulas.append(
+                f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+            )
     for blend in outline.corners:
         # an edge of an element along either half of the outline, or the size at a corner
         r, y = blend.middle
@@ -115,17 +116,9 @@ def _num(value):
     return f"({float(value)!r})"
 
 
-def set_size(gmsh, formulas, size):
-    """Make the least of some formulas the element size of a gmsh model.
-
-    Parameters
-    ----------
-    gmsh : module
-        With a model in it.
-    formulas : list of str
-        From :func:`size_formulas`.
-    size : float
-        Largest edge, m.
+def set_size(gmsh: Any, formulas: list[str], size: float) -> None:
+    """Make the least of some formulas the element size of a gmsh model, and `size` the largest
+    edge, m.
     """
     field = gmsh.model.mesh.field
     tags = []

@@ -181,17 +181,7 @@ def _cut(gmsh, features, radii) -> list[int]:
 
 
 def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
-    """The elements of a curved mesh that are kept, with the nodes in the middle of their edges.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-    keep : (ne,) ndarray of bool
-
-    Returns
-    -------
-    skfem.MeshTet2
-    """
+    """The elements of a curved mesh that are kept, with the nodes in the middle of their edges."""
     corners = mesh.t[:, keep]
     used, small = np.unique(corners, return_inverse=True)
     straight = MeshTet1(

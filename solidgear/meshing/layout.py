@@ -57,36 +57,14 @@ class Layout:
     joints: tuple[Joint, ...] = ()
 
     def radii(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all band boundaries of a segment at one place.
-
-        Parameters
-        ----------
-        segment : int
-        span : (float, float)
-            Its y0 and y1, m.
-        y : float
-            m.
-
-        Returns
-        -------
-        (b + 1,) ndarray
-            From the inside, m.
+        """Radii of all band boundaries of a segment at one place of its span y0 to y1, from the
+        inside, m.
         """
         t = (y - span[0]) / (span[1] - span[0])
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
     def divided(self, segment: int) -> list[np.ndarray]:
-        """Subdivision of every band of a segment, from the inside.
-
-        Parameters
-        ----------
-        segment : int
-
-        Returns
-        -------
-        list of (m + 1,) ndarray
-            Each from 0 to 1.
-        """
+        """Subdivision of every band of a segment from the inside, each from 0 to 1."""
         lowest, end = self.bands[segment]
         return [
             self.fractions[band, first_of_run(self.bands, band, segment)]
@@ -119,16 +97,8 @@ class Layout:
         return sum(len(self.ring_numbers(k)) - 1 for k in self.segment)
 
     def ring_numbers(self, segment: int) -> np.ndarray:
-        """Numbers of a segment's ring lines, the same as its neighbours' where they share a band.
-
-        Parameters
-        ----------
-        segment : int
-
-        Returns
-        -------
-        (r,) ndarray of int
-            From the inside.
+        """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they
+        share a band.
         """
         lowest = self.bands[segment][0]
         parts = [
@@ -138,20 +108,8 @@ class Layout:
         return np.concatenate([*parts, [self._offsets[self.bands[segment][1]]]])
 
     def rings(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all ring lines of a segment at one place.
-
-        Parameters
-        ----------
-        segment : int
-        span : (float, float)
-            Its y0 and y1, m.
-        y : float
-            m.
-
-        Returns
-        -------
-        (r,) ndarray
-            From its bore (or the axis) outwards, m.
+        """Radii of all ring lines of a segment at one place of its span y0 to y1, from its bore or
+        the axis outwards, m.
         """
         b = self.radii(segment, span, y)
         parts = [

@@ -59,16 +59,7 @@ class Meridian:
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:
-    """Mesh the meridian of a scene along a layout.
-
-    Parameters
-    ----------
-    scene : Scene
-    plan : Layout
-
-    Returns
-    -------
-    Meridian
+    """Mesh of the meridian of a scene along a layout.
 
     Examples
     --------
@@ -107,22 +98,8 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
 
 
 def drawn_across(flat: Meridian, across: Sequence[tuple[float, float]]) -> Meridian:
-    """A mesh with further lines, from side to opposite side through all cells in their way.
-
-    Parameters
-    ----------
-    flat : Meridian
-    across : sequence of (float, float)
-        y and r of a point on a side that each line passes, m.
-
-    Returns
-    -------
-    Meridian
-
-    Raises
-    ------
-    SolidgearError
-        If no side is there.
+    """A mesh with further lines, from side to opposite side through all cells in their way, each by
+    y and r of a point on a side that it passes, m; SolidgearError if no side is there.
     """
     through = [np.array([r, y]) for y, r in across]
     return _pieced(flat, cut_towards(flat.cells.T, flat.points.T, {}, CUT_RATIO, through))

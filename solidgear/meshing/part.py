@@ -37,23 +37,9 @@ LARGEST = 500_000_000
 
 
 def recognise(table: BodyTable, folder: Path) -> Recognised:
-    """Read a part and recognise the body of revolution inside it.
-
-    Parameters
-    ----------
-    table : BodyTable
-    folder : Path
-        That the name of the file is relative to.
-
-    Returns
-    -------
-    Recognised
-
-    Raises
-    ------
-    SceneError
-        A file that is no part, another unit or size than the table says, or a part that is not
-        round about the axis.
+    """A part and the body of revolution inside it, from a file in a folder; SceneError for a file
+    that is no part, another unit or size than the table says, or a part that is not round about the
+    axis.
     """
     path = (folder / table.file).resolve()
     try:
@@ -333,20 +319,8 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
 def seat_share(
     points: np.ndarray, triangles: np.ndarray, radius: float, lo: float, hi: float
 ) -> float:
-    """Area of a surface on a cylinder between two places, over that of the cylinder.
-
-    Parameters
-    ----------
-    points : (3, n) ndarray
-        m.
-    triangles : (3, t) ndarray of int
-    radius, lo, hi : float
-        m.
-
-    Returns
-    -------
-    float
-        A whole turn of chords is a little less than 1.
+    """Area of a surface of (3, t) triangles on a cylinder between two places, over that of the
+    cylinder: a whole turn of chords is a little less than 1.
     """
     r = np.hypot(points[0], points[2])[triangles]
     on = (np.abs(r - radius) <= 10 * ON_LINE * radius).all(axis=0)

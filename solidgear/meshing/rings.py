@@ -77,19 +77,7 @@ def ring_lines(
     segments: Sequence[Segment], grading: Grading, run: Run, needs: Needs, thickness: float
 ) -> np.ndarray:
     """Subdivision of a band, 0 to 1 outwards, graded towards the surfaces that carry singular
-    points.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-        All of the shaft.
-    grading : Grading
-    run : Run
-        Of the band.
-    needs : dict
-        From :func:`needs_of`.
-    thickness : float
-        m.
+    points; its thickness is in m, and segments are all of the shaft.
     """
     inside, outside = (
         reduce(

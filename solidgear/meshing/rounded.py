@@ -42,21 +42,8 @@ SIDES: tuple[Surface, Surface] = ("bore", "outer")
 def rounded_layout(
     scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None, marks: Sequence[Mark]
 ) -> tuple:
-    """What :class:`solidgear.meshing.layout.Layout` holds, of a shaft with fillets or chamfers.
-
-    Parameters
-    ----------
-    scene : Shaft
-    grading : Grading
-    attachments : tuple of str or None
-        As for :func:`solidgear.meshing.layout.layout`.
-    marks : sequence of Mark
-        Of the shaft without them.
-
-    Raises
-    ------
-    SolidgearError
-        If a seat ends among the cells of a block.
+    """What :class:`solidgear.meshing.layout.Layout` holds, of a shaft with fillets or chamfers, by
+    the marks of the shaft without them; SolidgearError if a seat ends among the cells of a block.
     """
     segments, outline = scene.segments, scene.outline
     joints = joints_of(scene, grading, marks)

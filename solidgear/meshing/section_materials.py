@@ -37,23 +37,11 @@ class Share(NamedTuple):
 def shared_out(
     points: np.ndarray, triangles: np.ndarray, sides: np.ndarray, walls: Sequence[Frustum]
 ) -> list[Share]:
-    """Frusta cut where groups meet in a plane across the axis, and what each is made of.
+    """Frusta of a part, cut where groups meet in a plane across the axis, and what each is made of:
+    of one group only if no other comes into it anywhere.
 
-    Parameters
-    ----------
-    points : (3, n) ndarray
-        m; y is the axis.
-    triangles : (3, t) ndarray of int
-        The surface of the part, and what lies between groups.
-    sides : (2, t) ndarray of int
-        Group on each side of a triangle, -1 outside.
-    walls : sequence of Frustum
-        Of the whole part.
-
-    Returns
-    -------
-    list of Share
-        A frustum is of one group only if no other comes into it anywhere.
+    `triangles` (3, t) are the surface of the part and what lies between groups, `sides` (2, t) the
+    groups on both sides of each, -1 outside; y is the axis, m.
     """
     y = points[1][triangles]
     low, high = y.min(axis=0), y.max(axis=0)

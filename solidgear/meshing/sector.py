@@ -10,7 +10,7 @@ each other's image and volumes what they were.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import cos, gcd, pi, sin
 from typing import Any
@@ -32,6 +32,7 @@ from solidgear.meshing.tetrahedra import filled
 from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
 from solidgear.scene.outline import Outline
+from solidgear.scene.parts import Segment
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
@@ -76,16 +77,8 @@ class SectorMesh:
 
 
 def sectors_of(features: Iterable[Any]) -> int:
-    """Number of equal sectors of a shaft with cyclic features.
-
-    Parameters
-    ----------
-    features : iterable of Teeth, Spline or BoltCircle
-
-    Returns
-    -------
-    int
-        The greatest common divisor of their counts; 0 without any.
+    """Number of equal sectors of a shaft with cyclic features, the greatest common divisor of their
+    counts; 0 without any.
 
     Examples
     --------
@@ -173,56 +166,25 @@ def sector_mesh(
     return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn, first)
 
 
-def tooth_sizes(segments, features, refinement: float) -> list[str]:
-    """Formulas of element size at teeth, as gmsh reads them.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    refinement : float
-
-    Returns
-    -------
-    list of str
-    """
+def tooth_sizes(
+    segments: Iterable[Segment], features: Iterable[Any], refinement: float
+) -> list[str]:
+    """Formulas of element size at teeth, as gmsh reads them."""
     of = {s.name: s for s in segments}
     return [tooth_size(f, of[f.segment], refinement) for f in features if f.toothed]
 
 
-def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Any, Hole]]:
-    """Holes with their element sizes, and the segments that they are in.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    refinement : float
-
-    Returns
-    -------
-    list of (BoltCircle, Segment, Hole)
-    """
+def hole_sizes(
+    segments: Iterable[Segment], features: Iterable[Any], refinement: float
+) -> list[tuple[Any, Any, Hole]]:
+    """Bolt circles, the segments that they are in, and their holes with element sizes."""
     of = {s.name: s for s in segments}
     found = [(f, of[f.segment]) for f in features if not f.toothed]
     return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
-def volume_of_sector(segments, features, count: int) -> float:
-    """Closed form of the volume of a sector.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    float
-        m^3.
-    """
+def volume_of_sector(segments: Sequence[Segment], features: Iterable[Any], count: int) -> float:
+    """Closed form of the volume of one of so many sectors, m^3."""
     toothed = {f.segment: f for f in features if f.toothed}
     total = 0.0
     for s in segments:
@@ -244,26 +206,8 @@ def _turned(mesh: MeshTet2, by) -> MeshTet2:
 
 
 def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Nodes on one cut face that a turn takes to those of the other.
-
-    Parameters
-    ----------
-    nodes : (3, n) ndarray
-        m.
-    count : int
-        Sectors around.
-    low, high : (k,) ndarray of int
-        Nodes on both cut faces.
-
-    Returns
-    -------
-    (k,) ndarray of int
-        The one of ``low`` for every one of ``high``.
-
-    Raises
-    ------
-    MeshError
-        If one of them has no partner.
+    """Nodes on one cut face that a turn takes to those of the other, one for every one of `high`;
+    MeshError if one of them has no partner.
     """
     turned = rotation(1, 2 * pi / count)[:3, :3] @ nodes[:, low]
     gap, at = cKDTree(turned.T).query(nodes[:, high].T)
@@ -279,16 +223,7 @@ def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) ->
 
 
 def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices of the two cut faces, without those on the axis, and these.
-
-    Parameters
-    ----------
-    made : SectorMesh
-
-    Returns
-    -------
-    low, high, axis : ndarray of int
-    """
+    """Vertices of the lower and of the higher cut face, without those on the axis, and these."""
     used = np.unique(made.mesh.t)
     x, _, z = made.straight[:, used]
     near = np.hypot(x, z) < MATCH * np.ptp(made.straight[1])
@@ -300,16 +235,8 @@ def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
-    """The mesh of the whole shaft, sector by sector around the axis.
-
-    Parameters
-    ----------
-    made : SectorMesh
-
-    Returns
-    -------
-    mesh : skfem.MeshTet2
-    segment : (ne,) ndarray of int
+    """The mesh of the whole shaft, sector by sector around the axis, and the segment of each
+    element.
     """
     mesh, count = made.mesh, made.count
     corners = np.unique(mesh.t)
@@ -328,16 +255,8 @@ def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
 
 
 def mirrored(made: SectorMesh) -> SectorMesh:
-    """The whole sector from its half: the elements, and their images in the middle plane.
-
-    Parameters
-    ----------
-    made : SectorMesh
-        A half; a whole sector is given back as it is.
-
-    Returns
-    -------
-    SectorMesh
+    """The whole sector from its half, the elements and their images in the middle plane; a whole
+    one as it is.
     """
     if not made.half:
         return made
@@ -354,23 +273,11 @@ def mirrored(made: SectorMesh) -> SectorMesh:
     return SectorMesh(turned, segment, made.count, whole.p, quality, 2 * made.drawn, made.turn)
 
 
-def joined(mesh: MeshTet2, maps, number: np.ndarray, total: int) -> MeshTet2:
-    """One mesh of turned or mirrored copies of a mesh.
+def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total: int) -> MeshTet2:
+    """One mesh of copies of a mesh, turned or mirrored by orthogonal maps.
 
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-    maps : sequence of (3, 3) ndarray
-        Orthogonal, one a copy.
-    number : (copies, nv) ndarray of int
-        What the vertices of every copy are called; those that copies share come to lie on each
-        other.
-    total : int
-        Vertices of all copies.
-
-    Returns
-    -------
-    skfem.MeshTet2
+    `number` (copies, nv) says what the vertices of every copy are called, of a total of all copies;
+    those that copies share come to lie on each other.
     """
     points, cells, ends, middles = np.zeros((3, total)), [], [], []
     at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
