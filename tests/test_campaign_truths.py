@@ -10,7 +10,6 @@ import pytest
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.judge.quantities import measure, size
-from solidgear.meshing.cuts import volume
 from solidgear.meshing.teeth import section_area, section_polar
 from solidgear.scene import STEEL, Bearing, BoltCircle, Flat, Keyway, Port, Scene, Segment, Teeth
 from solidgear.scene.closed_form import mass_properties
@@ -237,8 +236,8 @@ def test_points_are_counted_as_closed_forms_say():
     flat = Flat(name="f", segment="rod", y=0.2, length=0.05, depth=0.004)
     bolts = BoltCircle(name="b", segment="rod", count=5, diameter=0.008, circle=0.03)
     for feature, taken in (
-        (key, volume(key, 0.03, 0.0)),
-        (flat, volume(flat, 0.03, 0.0)),
+        (key, key.volume(0.03, 0.0)),
+        (flat, flat.volume(0.03, 0.0)),
         (bolts, 5 * math.pi * 0.004**2 * 0.3),
     ):
         mass = removed_mass(sg.Scene.from_parts([rod], features=(feature,)))

@@ -179,21 +179,20 @@ class _Blocks:
         middle = np.array(corner.middle)
         diagonal = [tensor[0][0]] + [self.new(q + (middle - q) * i / k) for i in range(1, k)]
         diagonal.append(self.new(middle))
-        outline = _Outline(corner)
         # on the plane face: rows as before, rings up to the outline
         on_face = self._grid(k)
         for i in range(k + 1):
             on_face[i][0], on_face[i][k] = diagonal[i], tensor[i][k]
         for j in range(1, k):
             on_face[0][j] = tensor[0][j]
-            on_face[k][j] = self.new(outline.at(0.5 * (1 - j / k)))
+            on_face[k][j] = self.new(corner.at(0.5 * (1 - j / k)))
         # on the cylinder: what were rows end at the outline
         on_cylinder = self._grid(k)
         for i in range(k + 1):
             on_cylinder[0][i], on_cylinder[k][i] = diagonal[i], tensor[k][i]
             on_cylinder[i][0] = tensor[i][0]
         for i in range(1, k):
-            on_cylinder[i][k] = self.new(outline.at(0.5 + 0.5 * i / k))
+            on_cylinder[i][k] = self.new(corner.at(0.5 + 0.5 * i / k))
         # the edge itself has split in two: the cylinder keeps its number, the face has a new one
         face = self.new(corner.on_face)
         on_face[k][k] = face
@@ -207,10 +206,10 @@ class _Blocks:
                     ids[i][j] = self.new((0.0, 0.0))
             self._place_all(ids)
         low_high = (HIGH if frame.up > 0 else LOW), (LOW if frame.up > 0 else HIGH)
-        self._fill(frame, on_face, outline, arc=(k - 1, None, low_high[0]))
+        self._fill(frame, on_face, corner, arc=(k - 1, None, low_high[0]))
         flip = low_high[1] if frame.up != frame.out else None
         side = OUT if frame.out > 0 else IN
-        self._fill(frame, on_cylinder, outline, arc=(None, k - 1, side), flip=(0, None, flip))
+        self._fill(frame, on_cylinder, corner, arc=(None, k - 1, side), flip=(0, None, flip))
 
     def rim(self, joint: Joint, corner: Corner) -> None:
         """Leave out the outermost quarter of the block at a rim and join its neighbours."""
@@ -218,7 +217,6 @@ class _Blocks:
         frame = self._frame(joint, corner, 2 * k)
         tensor = [[self.id(line, ring) for ring in frame.rings] for line in frame.lines]
         self._take(frame, range(k, 2 * k), range(k, 2 * k))
-        outline = _Outline(corner)
         ids = [list(row) for row in tensor]
         for m in range(k + 1):
             ids[k][k + m] = tensor[k + m][k]
@@ -230,8 +228,8 @@ class _Blocks:
         inner = (a + b + middle) / 3
         self.places[tensor[k][k]] = tuple(inner)
         for m in range(1, k):
-            self.places[ids[2 * k][m]] = outline.at(0.5 * m / k)
-            self.places[ids[m][2 * k]] = outline.at(1 - 0.5 * m / k)
+            self.places[ids[2 * k][m]] = corner.at(0.5 * m / k)
+            self.places[ids[m][2 * k]] = corner.at(1 - 0.5 * m / k)
             self.places[ids[k + m][k]] = tuple(inner + (middle - inner) * m / k)
             self.places[ids[k][m]] = tuple(a + (inner - a) * m / k)
             self.places[ids[m][k]] = tuple(b + (inner - b) * m / k)
@@ -270,14 +268,14 @@ class _Blocks:
             if at == row:
                 cell.ids = tuple(new if one == old else one for one in cell.ids)
 
-    def _fill(self, frame, ids, outline, arc, flip=(None, None, None)) -> None:
+    def _fill(self, frame, ids, corner, arc, flip=(None, None, None)) -> None:
         """Cells of a block that is not one of lines and rings."""
         k = len(ids) - 1
         for i in range(k):
             for j in range(k):
                 cell = Cell(frame.corners(ids, i, j), frame.segment)
-                if outline.centre and (i == arc[0] or j == arc[1]):
-                    cell.arc = (arc[2], *outline.centre)
+                if corner.centre and (i == arc[0] or j == arc[1]):
+                    cell.arc = (arc[2], *corner.centre)
                 if i == flip[0]:
                     cell.flip = flip[2]
                 self.fresh += 1
@@ -306,20 +304,3 @@ class _Frame:
             at = i + (b if self.up > 0 else 1 - b), j + (a if self.out > 0 else 1 - a)
             found.append(ids[at[0]][at[1]])
         return tuple(found)
-
-
-class _Outline:
-    """The outline from the face (0) to the cylinder (1)."""
-
-    def __init__(self, corner: Corner):
-        self.corner, self.centre = corner, corner.centre
-
-    def at(self, t: float) -> tuple[float, float]:
-        """(r, y) at a share of its length."""
-        c = self.corner
-        if c.centre is None:
-            a, b = np.array(c.on_face), np.array(c.on_cylinder)
-            return tuple(a + t * (b - a))
-        turn = np.pi / 2 * t
-        r = c.centre[0] - c.out * c.radial * np.sin(turn)
-        return r, c.centre[1] - c.side * c.radial * np.cos(turn)

@@ -36,32 +36,6 @@ def tool(occ: Any, feature: Cut, radius: float) -> int:
     return made
 
 
-def volume(feature: Cut, outer: float, inner: float) -> float | None:
-    """Volume that a feature takes from its segment, where a closed form is known.
-
-    Parameters
-    ----------
-    feature : Keyway, Flat or CrossHole
-    outer, inner : float
-        Radii of the segment, m.
-
-    Returns
-    -------
-    float or None
-        m^3; None for a cross hole through a wall, or a cut down to a bore.
-
-    Examples
-    --------
-    A flat down to nearly the axis is nearly half of the cylinder:
-
-    >>> from solidgear.scene import Flat
-    >>> deep = Flat(name="flat", segment="rod", y=0.0, length=1.0, depth=0.1 - 1e-9)
-    >>> round(volume(deep, 0.1, 0.0) / (pi * 0.1**2), 6)
-    0.5
-    """
-    return feature.volume(outer, inner)
-
-
 def feature_size(
     feature: Cut, radius: float, refinement: float, finer: float = 1.0
 ) -> tuple[str, float]:

@@ -21,7 +21,7 @@ from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import draw_revolved, graded_corners
-from solidgear.meshing.tetrahedra import filled
+from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import Segment
@@ -110,7 +110,7 @@ def featured_mesh(
     radii = {s.name: float(s.outer0) for s in outline.segments}
     share = turn / (2 * pi)
     whole = share * volume_of(outline)
-    arcs = max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+    arcs = lost_by_arcs(around)
 
     def made(finer: float, at_steps: float) -> tuple[MeshTet2, np.ndarray, float]:
         """The mesh, its elements in features, and their volume as OCC says."""
@@ -151,8 +151,7 @@ def featured_mesh(
             f"the solid cut out of the mesh has, more than {OF_CUT:.0%}: raise refinement"
         )
     quality = check_mesh(mesh, volume=whole, rtol=arcs)
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in outline.segments[:-1]], y)
+    segment = segment_of_elements(mesh, outline.segments)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
 
 

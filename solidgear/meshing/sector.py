@@ -28,7 +28,7 @@ from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import graded_corners
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
-from solidgear.meshing.tetrahedra import filled
+from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
 from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
 from solidgear.scene.outline import Outline
@@ -156,9 +156,8 @@ def sector_mesh(
         set_size(gmsh, formulas, size)
         mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     exact = volume_of_sector(segments, features, count) / (2 if half else 1)
-    quality = check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    quality = check_mesh(mesh, volume=exact, rtol=lost_by_arcs(around))
+    segment = segment_of_elements(mesh, segments)
     if half:
         return SectorMesh(mesh, segment, count, mesh.p, quality, drawn, first, True)
     # turned to where the features look

@@ -5,6 +5,7 @@ the true surface the loss is a^4/30, where an edge spans the angle 2a: 5e-5 with
 So they are moved beyond it (:mod:`solidgear.meshing.curving`), and some 2e-6 is left.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -19,7 +20,7 @@ from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import draw_revolved, graded_corners, tolerance_of
 from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
+from solidgear.scene.outline import Outline, Shape
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 
@@ -107,15 +108,24 @@ def tetrahedra(
         )
 
     report(0.9, "checking the mesh")
-    # four times what the arcs lose by themselves: a lost part is far larger
-    quality = check_mesh(
-        mesh, volume=volume_of(outline), rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
-    )
-    # interfaces are planes of element faces, so the mean of the corners decides
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    quality = check_mesh(mesh, volume=volume_of(outline), rtol=lost_by_arcs(around))
     report(1.0, f"{quality.n_elements} elements")
-    return TetMesh(mesh, segment, quality)
+    return TetMesh(mesh, segment_of_elements(mesh, segments), quality)
+
+
+def lost_by_arcs(around: int) -> float:
+    """Share of its volume that a mesh may lack with so many elements around, four times what the arcs
+    lose by themselves: a lost part is far larger.
+    """
+    return max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+
+
+def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray:
+    """Segment that each element lies in: interfaces are planes of element faces, so the mean of its
+    corners decides.
+    """
+    y = mesh.p[1][mesh.t].mean(axis=0)
+    return np.searchsorted([s.y1 for s in segments[:-1]], y)
 
 
 def filled(gmsh, refusal: str, report=lambda fraction, message: None):

@@ -110,15 +110,22 @@ class Corner:
         ends = (self.y, self.on_cylinder[1])
         return min(ends), max(ends)
 
+    def at(self, share: float) -> tuple[float, float]:
+        """(r, y) at a share of its length from the face to the cylinder, m."""
+        if self.centre is None:
+            (a, b), (c, d) = self.on_face, self.on_cylinder
+            return a + share * (c - a), b + share * (d - b)
+        # from the face (straight along the axis from the centre) to the cylinder (straight across)
+        turn = math.pi / 2 * share
+        (r, y), f = self.centre, self.radial
+        return r - self.out * f * math.sin(turn), y - self.side * f * math.cos(turn)
+
     def points(self, count: int = 9) -> list[tuple[float, float]]:
         """(r, y) along the outline from the face to the cylinder, m."""
         if self.centre is None:
             return [self.on_face, self.on_cylinder]
-        # from the face (straight along the axis from the centre) to the cylinder (straight across)
-        turns = [math.pi / 2 * k / (count - 1) for k in range(count)]
-        (r, y), f = self.centre, self.radial
-        found = [(r - self.out * f * math.sin(t), y - self.side * f * math.cos(t)) for t in turns]
-        return [self.on_face, *found[1:-1], self.on_cylinder]
+        between = [self.at(k / (count - 1)) for k in range(1, count - 1)]
+        return [self.on_face, *between, self.on_cylinder]
 
 
 class _At(Model):
