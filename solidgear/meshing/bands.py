@@ -242,7 +242,7 @@ def radial_bands(
     (((0, 1), (0, 2)), array([0.  , 0.02, 0.03]))
     """
     segments, n = outline.segments, len(outline.segments)
-    tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
+    tol = 1e-9 * outline.largest_radius
 
     lengths = [s.y1 - s.y0 for s in segments]
     outer = [(s.outer0, s.outer1) for s in segments]

@@ -66,7 +66,7 @@ def countable(model: str, scene: Shaft, size: float, refinement: float) -> float
         Of cells where nothing asks for smaller ones, m.
     refinement : float
     """
-    extent = max(scene.length, *(max(s.outer0, s.outer1) for s in scene.segments))
+    extent = max(scene.length, scene.outline.largest_radius)
     lines = extent / size * refinement
     if lines > MOST_LINES:
         raise SolidgearError(

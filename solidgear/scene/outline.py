@@ -174,6 +174,16 @@ class Outline(Generic[S]):
         return radii["bore"], radii["outer"]
 
     @property
+    def least_radius(self) -> float:
+        """Least outer radius, m."""
+        return min(min(s.outer0, s.outer1) for s in self.segments)
+
+    @property
+    def largest_radius(self) -> float:
+        """Largest outer radius, m."""
+        return max(max(s.outer0, s.outer1) for s in self.segments)
+
+    @property
     def steps(self) -> tuple[float, ...]:
         """Places where the outer radius jumps, m, end faces left out."""
         return tuple(e.y for e in self.edges if e.surface == "outer" and e.steps)

@@ -136,7 +136,7 @@ def step_plan(scene, wanted: Sequence, *, size, graded_size, refinement, around)
     assemblable(tetrahedra_of(scene, plan, refinement), 10)
     corners = graded_corners(scene.outline, plan["planes"], plan["circles"])
     graded = plan["graded_size"] or plan["size"]
-    largest = max(max(s.outer0, s.outer1) for s in scene.segments)
+    largest = scene.outline.largest_radius
     return {
         "circles": [(y, r) for y in plan["circles"] for r in _radii(scene, y)],
         "planes": [(y, BEYOND * largest) for y in plan["planes"]],
