@@ -84,17 +84,7 @@ class Arc:
         self._cells = cells
 
     def stress(self, block: Block, u: np.ndarray) -> ArcStress:
-        """Stress under displacements of a block.
-
-        Parameters
-        ----------
-        block : Block
-        u : (n,) ndarray
-
-        Returns
-        -------
-        ArcStress
-        """
+        """Stress under (n,) displacements of a block."""
         waves = {"torsion": -1, "axial": 0}.get(block.name, 1)
         count = {-1: 1, 0: 2}.get(waves, 3)
         every = np.zeros(self._work.n * count)

@@ -29,7 +29,7 @@ BEYOND = 1.1
 
 
 def part_body(
-    scene,
+    scene: Any,
     wanted: Sequence,
     *,
     size: float | None,
@@ -37,26 +37,11 @@ def part_body(
     refinement: float,
     around: int,
 ) -> Body:
-    """Free body of the part of a scene.
+    """Free body, in one block, of the part of a scene with a ``body``; sizes as for
+    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is.
 
-    Parameters
-    ----------
-    scene : Scene
-        With a ``body``.
-    wanted : sequence of (station, attachment)
-    size, graded_size, refinement, around
-        As for :func:`solidgear.models.solid.body.solid`; a mesh file is the mesh that it is.
-
-    Returns
-    -------
-    Body
-        One block.
-
-    Raises
-    ------
-    SolidgearError
-        Where the file has changed since the scene was read, or no face lies on a seat; MeshError
-        where it cannot be meshed.
+    SolidgearError where the file has changed since the scene was read, or no face lies on a seat;
+    MeshError where it cannot be meshed.
     """
     file = scene.body
     try:
@@ -115,20 +100,9 @@ def _apart(file, function, *arguments) -> Any:
         raise MeshError(f"{file.name} {error}") from None
 
 
-def step_plan(scene, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
-    """Cuts and sizes of the mesh of a STEP part, those of the round part inside it.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    size, graded_size, refinement, around
-        As for :func:`solidgear.models.solid.body.solid`.
-
-    Returns
-    -------
-    dict
-        For :func:`solidgear.meshing.step.mesh`.
+def step_plan(scene: Any, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
+    """Cuts and sizes of the mesh of a STEP part for :func:`solidgear.meshing.step.mesh`, those of
+    the round part inside it; sizes as for :func:`solidgear.models.solid.body.solid`.
     """
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
