@@ -67,7 +67,7 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
         if what:
             a, b = scene.segments[edge.joint - 1 : edge.joint + 1]
             found.append(Place(what, edge.y, edge.r, min(corner_length(a), corner_length(b))))
-    for corner in (c for c in scene.corners if c.root):
+    for corner in (c for c in scene.outline.corners if c.root):
         r, y = corner.middle
         found.append(Place(f"{corner.kind} {corner.name}", y, r, corner.axial + corner.radial))
     for a, b in zip(scene.segments, scene.segments[1:]):

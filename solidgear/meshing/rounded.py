@@ -36,7 +36,7 @@ class Strip(NamedTuple):
 #: strips by band, first segment of a run, and the side of the band
 Strips = dict[tuple[int, int, Surface], Strip]
 #: sides of a band, from the inside
-SIDES: tuple[Surface, Surface] = ("bore", "outer")
+SIDES: tuple[Surface, Surface] = (SURFACES[1], SURFACES[0])
 
 
 def rounded_layout(

@@ -292,7 +292,7 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     due = mass_properties(Outline(scene.segments)) if beam else exact
     # of what is cut there is no closed form; of a part there is what its file says
     closed = [("mass", matrix[0, 0], due.mass), ("polar inertia", matrix[4, 4], due.iyy)]
-    bare = " without fillets and chamfers" * bool(beam and scene.corners)
+    bare = " without fillets and chamfers" * bool(beam and scene.outline.corners)
     where, off = f"closed form{bare}", f"the closed form{bare}"
     if not body.mesh.get("round", True):
         whole = scene.body
@@ -313,7 +313,9 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     )
     for name, got, want in closed:
         error = got / want - 1
-        limit = max(LADDER[body.fidelity].mass_tolerance, FOLLOWED if scene.corners else 0.0)
+        limit = max(
+            LADDER[body.fidelity].mass_tolerance, FOLLOWED if scene.outline.corners else 0.0
+        )
         yield Notice("fact", own, f"{name} of the mesh against {where}: {error:+.1e}")
         if abs(error) > limit:
             yield Notice(

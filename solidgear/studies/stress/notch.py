@@ -190,7 +190,7 @@ def fillet_factors(
         steps.append(Step(order, sum(b.size for b in body.blocks if b.mirror is None), values))
         if all(factors[load].bar <= tolerance * factors[load].value for load in UNIT_LOADS[:3]):
             break
-    corner = next(c for c in scene.corners if c.name == name)
+    corner = next(c for c in scene.outline.corners if c.name == name)
     return FilletFactors(name, corner, section, radius, factors, profiles, tuple(steps))
 
 

@@ -80,7 +80,7 @@ def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
     [('head', 0.0582), ('head.backcone', 0.01), ('shaft', 0.184)]
     """
     whole = coned(scene.plain)
-    corner = next(c for c in whole.corners if c.name == name)
+    corner = next(c for c in whole.outline.corners if c.name == name)
     low, high = whole.segments[corner.joint - 1 : corner.joint + 1]
     first, last = corner.span
     start = _cut(whole, first - reach * low.outer1, -1)
@@ -90,7 +90,7 @@ def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
     segments = tuple(_part(s, start, end) for s in kept)
     corners = {
         c.name: replace(c, y=c.y - start, owner=c.owner - before)
-        for c in whole.corners
+        for c in whole.outline.corners
         if start + TOUCH < c.y < end - TOUCH and _counts(c, corner)
     }
     return Piece(segments, Outline(segments, corners.values()), corners[name], start)
@@ -116,7 +116,7 @@ def _cut(shaft: Scene, y: float, way: int) -> float:
     )
     segment = shaft.segments[index]
     low, high = (
-        ROOM * max((c.axial for c in shaft.corners if c.joint == joint), default=TOUCH)
+        ROOM * max((c.axial for c in shaft.outline.corners if c.joint == joint), default=TOUCH)
         for joint in (index, index + 1)
     )
     near, far = (

@@ -222,7 +222,7 @@ def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
     g = np.asarray(gravity, float)
     loads = []
     for k, segment in enumerate(scene.segments):
-        edges = [replace(corner, owner=0) for corner in scene.corners if corner.owner == k]
+        edges = [replace(corner, owner=0) for corner in scene.outline.corners if corner.owner == k]
         found = mass_properties(Outline([segment], edges))
         force = np.concatenate([found.mass * g, np.zeros(3)])
         loads.append(Load(f"weight of {segment.name}", found.centre, force))

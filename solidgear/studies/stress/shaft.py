@@ -208,7 +208,7 @@ def shaft_stress(
         for feature in scene.features
     ]
     notches = []
-    for corner in sorted(scene.corners, key=lambda c: c.y):
+    for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             try:
                 notches.append(_notch(scene, corner, forces, seats, tolerance, conditions))
