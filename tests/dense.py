@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.meshing.closed_form import mass_properties
+from solidgear.scene.closed_form import mass_properties
 
 
 def whole(body, without=()):
@@ -36,7 +36,7 @@ def relative(a, b):
 
 def mass_matrix(scene):
     """(6, 6) about the origin, by the closed form that tests/test_mesh_quality.py holds to quadrature."""
-    p = mass_properties(scene.segments, scene.corners)
+    p = mass_properties(scene.outline)
     tilt, first = p.ixx + p.mass * p.centre**2, p.mass * p.centre
     out = np.diag([p.mass, p.mass, p.mass, tilt, p.iyy, tilt])
     out[2, 3] = out[3, 2] = first

@@ -9,8 +9,8 @@ import solidgear as sg
 from solidgear import Port, Scene, SceneError, Segment
 from solidgear.bounds.harmonic import richer_space
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.scene import Chamfer, Fillet
+from solidgear.scene.closed_form import mass_properties, volume_of
 from solidgear.scene.coned import coned
 from solidgear.studies.guards import Probe, elements
 from solidgear.studies.guards.edges import fillets
@@ -76,7 +76,7 @@ def inertias(body):
 
 
 def exact(scene):
-    e = mass_properties(scene.segments, scene.corners)
+    e = mass_properties(scene.outline)
     return np.array([e.mass, e.iyy, e.ixx])
 
 
@@ -111,7 +111,7 @@ def test_closed_forms_against_quadrature_along_the_outline():
         Chamfer(name="end", y="276 mm", length=0.003),
     )
     volume, polar = quadrature(scene)
-    assert volume_of(scene.segments, scene.corners) == pytest.approx(volume, rel=1e-12)
+    assert volume_of(scene.outline) == pytest.approx(volume, rel=1e-12)
     assert exact(scene)[1] == pytest.approx(7850 * polar, rel=1e-12)
 
 

@@ -10,10 +10,10 @@ import pytest
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.judge.quantities import measure, size
-from solidgear.meshing.closed_form import mass_properties
-from solidgear.meshing.cuts import volume
 from solidgear.meshing.teeth import section_area, section_polar
 from solidgear.scene import STEEL, Bearing, BoltCircle, Flat, Keyway, Port, Scene, Segment, Teeth
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.outline import Outline
 from validation.campaign.truths import reference as spectral_levels
 from validation.campaign.truths.corner_mesh import corner_mesh, singular_points
 from validation.campaign.truths.reference import SURE, settle, spectral_reference
@@ -95,7 +95,7 @@ def test_spectral_elements_agree_with_the_product(tie):
     mine = spectral(scene, corner_mesh(scene, 5, 2.0, 0.2), 4)
     options = {"order": 4, "layers": 3, "edge_layers": 3, "ratio": 0.2, "size": 0.04}
     theirs = sg.build(scene, "harmonic", refinement=1.0, **options)
-    exact = mass_properties(scene.segments)
+    exact = mass_properties(Outline(scene.segments))
     assert mine.mass_matrix()[0, 0] == pytest.approx(exact.mass, rel=1e-12)
     assert mine.mass_matrix()[4, 4] == pytest.approx(exact.iyy, rel=1e-12)
     assert mine.rigid_residual() < 1e-13
@@ -236,8 +236,8 @@ def test_points_are_counted_as_closed_forms_say():
     flat = Flat(name="f", segment="rod", y=0.2, length=0.05, depth=0.004)
     bolts = BoltCircle(name="b", segment="rod", count=5, diameter=0.008, circle=0.03)
     for feature, taken in (
-        (key, volume(key, 0.03, 0.0)),
-        (flat, volume(flat, 0.03, 0.0)),
+        (key, key.volume(0.03, 0.0)),
+        (flat, flat.volume(0.03, 0.0)),
         (bolts, 5 * math.pi * 0.004**2 * 0.3),
     ):
         mass = removed_mass(sg.Scene.from_parts([rod], features=(feature,)))

@@ -8,13 +8,13 @@ import pytest
 from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.curving import volume_preserved
 from solidgear.meshing.quality import element_volumes
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.sector.body import cyclic_features, meshed_sector
 from solidgear.models.solid.plan import tetrahedra_plan
+from solidgear.scene.closed_form import volume_of
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 
@@ -32,8 +32,8 @@ def test_the_volume_of_parts_is_theirs():
     rod = sg.load(GEOMETRY / "pinion_filleted.toml")
     ports = [(s, s.attachment) for s in rod.stations]
     plan = tetrahedra_plan(rod, ports, size=None, graded_size=None, refinement=0.7, around=16)
-    mesh = tetrahedra(rod.segments, blends=rod.corners, **plan)
-    assert mesh.quality.volume == pytest.approx(volume_of(rod.segments, rod.corners), rel=1e-6)
+    mesh = tetrahedra(rod.outline, **plan)
+    assert mesh.quality.volume == pytest.approx(volume_of(rod.outline), rel=1e-6)
 
 
 def test_straightened_edges_take_no_volume(tmp_path):

@@ -6,13 +6,14 @@ from test_features import FLAT, KEY, mesh_of, shaft
 
 import solidgear as sg
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import edge_size, feature_size
 from solidgear.meshing.featured import without
 from solidgear.models.corrected_mesh import meshed_cuts, sizes
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.scene import CrossHole
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline
 from solidgear.studies.guards import Probe, elements
 
 SMALL = CrossHole(name="small", segment="rod", y=0.12, diameter=0.002)
@@ -132,5 +133,5 @@ def test_a_small_step_is_meshed_with_smaller_elements():
     )
     plan = tetrahedra_plan(scene, [], refinement=0.25, around=12, **sizes(scene))
     made = meshed(scene, plan, 0.25, True, edges=True)
-    true = volume_of(scene.segments) / 2
+    true = volume_of(Outline(scene.segments)) / 2
     assert made.quality.volume == pytest.approx(true, rel=3.2e-3)

@@ -10,6 +10,7 @@ from solidgear.meshing.decks import read
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.meshing.quality import MeshError
+from solidgear.scene.outline import Outline
 from validation.fuzz.decks import DECK_CHANGES, DECKS
 from validation.mesh_files import rod, write_mesh
 
@@ -218,7 +219,9 @@ def test_a_list_of_elements_that_ends_early_is_told(tmp_path):
     """
     from solidgear.meshing.tetrahedra import tetrahedra
 
-    mesh = tetrahedra([sg.Segment.cylinder("rod", length=0.04, diameter=0.02)], size=0.006).mesh
+    mesh = tetrahedra(
+        Outline([sg.Segment.cylinder("rod", length=0.04, diameter=0.02)]), size=0.006
+    ).mesh
     used, corners = np.unique(mesh.t, return_inverse=True)
     cells = np.random.default_rng(1).permutation(corners.reshape(4, -1).T)
     left = cells[: len(cells) * 95 // 100]
@@ -254,7 +257,7 @@ def test_sound_parts_have_no_pits():
     plan = tetrahedra_plan(keyed, [], size=None, graded_size=None, refinement=0.4, around=12)
     made = meshed(keyed, plan, 0.4, True)
     plan = tetrahedra_plan(hollow, [], size=None, graded_size=None, refinement=0.4, around=12)
-    for mesh in (without(made.mesh, ~made.cut), tetrahedra(hollow.segments, **plan).mesh):
+    for mesh in (without(made.mesh, ~made.cut), tetrahedra(hollow.outline, **plan).mesh):
         assert lost_elements(mesh).shape[1] == 0
         outside = mesh.f2t[0, mesh.boundary_facets()]
         seen = [

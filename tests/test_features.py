@@ -12,7 +12,6 @@ from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
 from solidgear.judge.record import ModelRecord, ModeRecord
-from solidgear.meshing.cuts import volume
 from solidgear.meshing.featured import FeaturedMesh, without
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.models.solid.block import free_block
@@ -62,7 +61,7 @@ def test_volume_against_closed_form(feature):
     """OCC's own volume to 1e-6, the mesh to what its curved elements leave of an arc."""
     scene = shaft(feature)
     wanted, made = mesh_of(scene)
-    exact = volume(feature, 0.03, 0.0)
+    exact = feature.volume(0.03, 0.0)
     assert made.removed == pytest.approx(exact, rel=2e-6)
     body = featured_body(scene, wanted, made, 0.6)
     whole = math.pi * 0.03**2 * 0.2
@@ -302,7 +301,7 @@ def test_ends_of_a_keyway_are_round_on_coarse_meshes_too():
     plan = tetrahedra_plan(scene, [], size=None, graded_size=None, refinement=0.25, around=12)
     made = meshed(scene, plan, 0.25, True)
     cut = 2 * check_mesh(without(made.mesh, made.cut)).volume
-    assert cut == pytest.approx(volume(key, 0.0475, 0.0), rel=4e-3)
+    assert cut == pytest.approx(key.volume(0.0475, 0.0), rel=4e-3)
 
 
 @pytest.mark.parametrize("refinement", [0.25, 0.5])

@@ -221,7 +221,7 @@ def test_rims_on_other_faces_are_left_sharp():
     own = Fillet(name="own", y=scene.segments[0].y1, edge="rim", radius=0.002)
     far = Fillet(name="far", y=0, edge="rim", radius=0.002)
     scene = scene.with_changes(blends=(*scene.blends, own, far))
-    assert [corner.name for corner in piece_around(scene, "fillet", 12.0).corners] == [
+    assert [corner.name for corner in piece_around(scene, "fillet", 12.0).outline.corners] == [
         "fillet",
         "own",
     ]

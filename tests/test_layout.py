@@ -17,6 +17,7 @@ from solidgear.meshing.grading import Grading, graded, joint_length
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import Bearing, Port
+from solidgear.scene.outline import Outline
 from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -405,7 +406,7 @@ def test_lines_inside_a_thin_disc_are_not_drawn_across_it():
 
 def steepest(scene):
     """Largest rise over length of a mesh line inside, beyond what surfaces rise."""
-    _, left, right = radial_bands(scene.segments)
+    _, left, right = radial_bands(scene.outline)
     return max(
         (abs(a - b).max() - max(abs(s.outer1 - s.outer0), abs(s.inner1 - s.inner0))) / (s.y1 - s.y0)
         for s, a, b in zip(scene.segments, left, right)
@@ -429,7 +430,8 @@ def test_a_joint_that_is_no_step_leaves_lines_straight():
     # a flange in two pieces drew the shoulder's line from 56 to 60 mm, and the umbrella mode was
     # 3.7e-3 off with a bar of 1.0e-3
     thick, thin = (0.09, 0.09, 0, 0), (0.056, 0.056, 0, 0)
-    _, left, right = radial_bands(shaft((0.002, *thick), (0.0043, *thick), (0.023, *thin)).segments)
+    scene = shaft((0.002, *thick), (0.0043, *thick), (0.023, *thin))
+    _, left, right = radial_bands(scene.outline)
     assert [left[0][1], right[0][1], left[1][1], right[1][1]] == pytest.approx(4 * [0.056])
 
 
@@ -444,7 +446,7 @@ def test_few_lines_are_steep_whatever_the_shaft_looks_like():
             length = round(10 ** rng.uniform(-3, -1), 6)
             parts.append((length, start, start if rng.random() < 0.75 else end, 0, 0))
         scene = shaft(*parts)
-        _, left, right = radial_bands(scene.segments)
+        _, left, right = radial_bands(scene.outline)
         assert all((np.diff(radii) > 0).all() for radii in (*left, *right))
         found.append(steepest(scene))
     assert np.quantile(found, 0.9) < 2 * STEEPEST  # 12 where every level was the least
@@ -459,11 +461,11 @@ def test_no_line_runs_from_a_shaft_to_the_bore_of_a_drum_across_a_thin_disc():
             *((s.length, s.outer1, s.outer0, s.inner1, s.inner0) for s in reversed(scene.segments))
         ),
     ):
-        _, left, right = radial_bands(one.segments)
+        _, left, right = radial_bands(one.outline)
         assert left[1] == pytest.approx([0.0, 0.015, 0.098, 0.1])
         assert right[1] == pytest.approx(left[1])
     # where there is room for a slope, one boundary more would only cost cells
-    assert len(radial_bands(bell(disc=0.06).segments)[1][1]) == 4
+    assert len(radial_bands(bell(disc=0.06).outline)[1][1]) == 4
 
 
 def test_bands_hold_together_whatever_bores_face():
@@ -478,7 +480,7 @@ def test_bands_hold_together_whatever_bores_face():
                 length = round(10 ** rng.uniform(-3, -1), 6)
                 parts.append((length, outer, outer, bore, bore))
         segments = shaft(*parts).segments
-        bands, left, right = radial_bands(segments)
+        bands, left, right = radial_bands(Outline(segments))
         facing += any(low > 0 for low, _ in bands)
         for radii in (*left, *right):
             assert (np.diff(radii) > 0).all()

@@ -9,8 +9,9 @@ from scipy.integrate import quad
 from skfem import MeshHex, MeshHex2, MeshQuad, MeshTet, MeshTet2
 
 from solidgear.errors import SolidgearError
-from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
+from solidgear.scene.closed_form import mass_properties, volume_of
+from solidgear.scene.outline import Outline
 
 
 def box(kind, n=3):
@@ -226,10 +227,10 @@ def test_volume_and_inertia_against_quadrature():
     def ring(r):
         return np.pi * r**2
 
-    exact = mass_properties(shaft)
+    exact = mass_properties(Outline(shaft))
     # polynomials on both sides: rounding only
     tight = dict(rel=1e-12)
-    assert volume_of(shaft) == pytest.approx(
+    assert volume_of(Outline(shaft)) == pytest.approx(
         integral(lambda y, a, b, d: ring(a) - ring(b)), **tight
     )
     assert exact.mass == pytest.approx(
@@ -252,7 +253,7 @@ def test_volume_and_inertia_against_quadrature():
 
 
 def test_a_cylinder_is_the_textbooks():
-    exact = mass_properties([piece(1.0, 1.4, 0.05, 0.05)])
+    exact = mass_properties(Outline([piece(1.0, 1.4, 0.05, 0.05)]))
     mass = 7850.0 * np.pi * 0.05**2 * 0.4
     assert (exact.mass, exact.centre) == pytest.approx((mass, 1.2), rel=1e-13)
     assert exact.iyy == pytest.approx(mass * 0.05**2 / 2, rel=1e-13)

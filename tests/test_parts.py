@@ -14,12 +14,13 @@ import solidgear as sg
 from solidgear.elements import ELEMENTS
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.isolated import isolated
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.models.solid.own_mesh import solid_body
 from solidgear.report.export import node_order
 from solidgear.scene import Keyway
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline
 from solidgear.studies import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
 
@@ -71,11 +72,10 @@ def test_the_round_part_is_what_was_drawn():
         found = [getattr(s, name) for s in scene.segments]
         true = [getattr(s, name) for s in segments]
         assert found == pytest.approx(true, abs=1e-6 * 0.02), name
-    from solidgear.meshing.cuts import volume
 
     # the kernel integrates to 1e-6
     assert scene.body.volume == pytest.approx(
-        volume_of(segments) - volume(key, 0.02, 0.0), rel=2e-6
+        volume_of(Outline(segments)) - key.volume(0.02, 0.0), rel=2e-6
     )
     assert not scene.body.round
     (told,) = [
@@ -86,7 +86,9 @@ def test_the_round_part_is_what_was_drawn():
     plain = scene.model_copy(update={"body": round_body})
     assert not list(check._beyond_the_segments(plain))
     assert "segments is that of the part" in next(round_part.described(plain)).sentence
-    assert scene.body.round_volume == pytest.approx(volume_of(segments) / scene.body.volume)
+    assert scene.body.round_volume == pytest.approx(
+        volume_of(Outline(segments)) / scene.body.volume
+    )
 
 
 PINION = sg.load(ROOT / "geometry" / "pinion_keyed.toml")
@@ -265,7 +267,7 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
 
     cuts = sorted({y for s in scene.stations for y in (s.lo, s.hi)})
     sizes = {"size": 0.012, "graded_size": 0.006}
-    cut, uncut = (tetrahedra(scene.segments, (), c, **sizes).mesh for c in (cuts, ()))
+    cut, uncut = (tetrahedra(scene.outline, (), c, **sizes).mesh for c in (cuts, ()))
 
     def compliance(mesh, clipped):
         body = solid_body(mesh, scene, element="tet10", clipped=clipped)
@@ -285,7 +287,7 @@ def test_the_area_of_a_clipped_seat(tmp_path):
     from solidgear.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
-    mesh = _isoparametric(tetrahedra([rod], size=0.02).mesh, "tet10", np.zeros(0))
+    mesh = _isoparametric(tetrahedra(Outline([rod]), size=0.02).mesh, "tet10", np.zeros(0))
     for lo, hi in ((0.0, 0.2), (0.031, 0.0777), (0.1, 0.105)):
         scene = sg.Scene.from_parts([rod], port=sg.Port(y=0.1, lo=lo, hi=hi))
         facets = Seats(mesh, [rod], True)(scene.port, "average")

@@ -18,12 +18,13 @@ from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.closed_form import volume_of
 from solidgear.report import render, write
 from solidgear.report.export import write_vtu
 from solidgear.report.folder import OWN, clear
 from solidgear.report.outputs import OUTPUTS, Output
 from solidgear.report.render import PACKAGES, Drawing, RenderJob, render_modes
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline
 from solidgear.solve.modes import Mode
 
 ROOT = Path(__file__).parents[1]
@@ -103,7 +104,7 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
     volume = np.einsum("ij,ij->", p[three[:, 0]], np.cross(p[three[:, 1]], p[three[:, 2]])) / 6
     # 48 chords around enclose 0.29 % less than a circle; 8 straight elements 10 %
     assert volume == pytest.approx(
-        volume_of(scene.segments), rel=0.11 if options.get("element") == "hex8" else 0.01
+        volume_of(Outline(scene.segments)), rel=0.11 if options.get("element") == "hex8" else 0.01
     )
 
 
@@ -306,7 +307,7 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
     # A wrong order of nodes would turn some of every cell inside out.
     volume, least = volumes(back.points, back.cells[0].data, vtk_name)
     assert least.min() > 0
-    assert volume.sum() == pytest.approx(volume_of(pinion.segments), rel=loss)
+    assert volume.sum() == pytest.approx(volume_of(Outline(pinion.segments)), rel=loss)
     # And VTK reads the same file; it measures curved cells by flat pieces, so up to 16 chords for a
     # circle (2.6 %).
     measured = pv.read(path).compute_cell_sizes(length=False, area=False)["Volume"]

@@ -13,6 +13,7 @@ from solidgear.meshing.mesh_file import _hexes
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.solid.seat_faces import Seats
+from solidgear.scene.outline import Outline
 
 RADIUS, WIDTH = 0.03, 0.06
 ROD = sg.Segment.cylinder("rod", length=0.12, diameter=2 * RADIUS)
@@ -22,7 +23,7 @@ PORT = sg.Port(y=0.06, lo=0.03, hi=0.09)
 @pytest.fixture(scope="module")
 def curved():
     """Tetrahedra of some sixteen to a turn."""
-    return tetrahedra([ROD], size=0.012).mesh
+    return tetrahedra(Outline([ROD]), size=0.012).mesh
 
 
 def bent(mesh, share, part, seed=3):

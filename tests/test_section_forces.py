@@ -5,7 +5,7 @@ import pytest
 from filleted import shoulder
 
 from solidgear import PointMass, SolidgearError
-from solidgear.meshing.closed_form import mass_properties
+from solidgear.scene.closed_form import mass_properties
 from solidgear.studies.stress.nominal import CrossSection, nominal_rows, nominal_stress
 from solidgear.studies.stress.section_forces import (
     Load,
@@ -110,7 +110,7 @@ def test_weight_is_that_of_the_segments_and_masses():
     )
     loads = weight(scene, [0, 0, -9.81])
     total = sum(moved(load.six, load.y, 0.0) for load in loads)
-    mass = mass_properties(scene.segments, scene.corners)
+    mass = mass_properties(scene.outline)
     force, arm = mass.mass + 3.0, mass.mass * mass.centre + 3.0 * (scene.port.y + 0.01)
     assert total[2] == pytest.approx(-9.81 * force, rel=1e-12)
     assert total[3] == pytest.approx(-9.81 * arm, rel=1e-12)

@@ -12,13 +12,14 @@ from scipy.integrate import quad
 
 import solidgear as sg
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import half_outline, outline, section_area, section_polar
 from solidgear.models.sector.body import meshed_sector, sector, whole
 from solidgear.models.sector.cyclic import Sector, basis, doubled
 from solidgear.scene import BoltCircle, Keyway, Spline, Teeth
+from solidgear.scene.closed_form import volume_of
 from solidgear.scene.features.around import no_common_sector
+from solidgear.scene.outline import Outline
 
 ROOT = Path(__file__).parent.parent
 TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"
@@ -373,7 +374,7 @@ def test_a_spline_is_a_cylinder_with_teeth():
     spline = Spline(name="s", segment="rod", count=30, addendum=0.5, dedendum=0.5, model="sector")
     scene = shaft(spline)
     exact = 30 * volume_of_sector(scene.segments, (spline,), 30)
-    assert exact == pytest.approx(volume_of(scene.segments), rel=1e-2)
+    assert exact == pytest.approx(volume_of(Outline(scene.segments)), rel=1e-2)
     body = sg.build(scene, "sector", refinement=COARSE)
     assert body.mesh["volume"] == pytest.approx(exact, rel=1e-4)
 

@@ -70,7 +70,7 @@ def test_rough_numbers_are_good_to_a_factor_of_three(name, least):
 
 
 def test_small_elements_at_edges_make_many():
-    rod = SCENES["cylinder_free"].segments
+    rod = SCENES["cylinder_free"].outline
     plain, graded = (rough_cells(rod, size=0.01, graded_size=h) for h in (None, 1e-6))
     assert graded > 1000 * plain
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.meshing.closed_form import mass_properties, volume_of
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
+from solidgear.scene.closed_form import mass_properties, volume_of
+from solidgear.scene.outline import Outline
 
 
 def piece(y0, y1, outer0, outer1=None, inner0=0.0, inner1=None):
@@ -46,7 +47,7 @@ def inner_radius(s, y):
 
 @pytest.fixture(scope="module")
 def meshed():
-    return tetrahedra(SHAFT, PLANES, CIRCLES, size=0.02, graded_size=0.008, around=16)
+    return tetrahedra(Outline(SHAFT), PLANES, CIRCLES, size=0.02, graded_size=0.008, around=16)
 
 
 def element_volumes(mesh):
@@ -58,7 +59,7 @@ def element_volumes(mesh):
 
 
 def test_curved_volume_is_the_closed_form(meshed):
-    exact = volume_of(SHAFT)
+    exact = volume_of(Outline(SHAFT))
     curved = abs(meshed.quality.volume / exact - 1.0)
     straight = abs(check_mesh(MeshTet1.from_mesh(meshed.mesh)).volume / exact - 1.0)
     # an arc over 1/16 of a circle loses a^4/30 = 5e-5 of its area, a = pi/16; gmsh's edges vary,
@@ -71,7 +72,7 @@ def test_curved_volume_is_the_closed_form(meshed):
 
 def test_curved_inertia_is_the_closed_form(meshed):
     dx, (x, y, z) = element_volumes(meshed.mesh)
-    exact = mass_properties(SHAFT)
+    exact = mass_properties(Outline(SHAFT))
     density = 7850.0
     mass = density * dx.sum()
     centre = density * (y * dx).sum() / mass
@@ -179,7 +180,7 @@ def test_segments_hold_their_own_volume(meshed):
         assert y[mine].min() > s.y0 - 1e-12 and y[mine].max() < s.y1 + 1e-12
         # the same measure as for the whole, per segment; an element counted to its neighbour would
         # be 1e-3
-        assert dx[mine].sum() == pytest.approx(volume_of([s]), rel=1e-4)
+        assert dx[mine].sum() == pytest.approx(volume_of(Outline([s])), rel=1e-4)
 
 
 def test_mid_nodes_lie_on_the_true_surface(meshed):
@@ -197,7 +198,7 @@ def test_mid_nodes_lie_on_the_true_surface(meshed):
 
 
 def test_the_same_call_gives_the_same_mesh(meshed):
-    again = tetrahedra(SHAFT, PLANES, CIRCLES, size=0.02, graded_size=0.008, around=16)
+    again = tetrahedra(Outline(SHAFT), PLANES, CIRCLES, size=0.02, graded_size=0.008, around=16)
     assert np.array_equal(again.mesh.doflocs, meshed.mesh.doflocs)
     assert np.array_equal(again.mesh.t, meshed.mesh.t)
     assert np.array_equal(again.segment, meshed.segment)
@@ -222,21 +223,23 @@ def test_a_callers_gmsh_is_left_alone():
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         gmsh.model.add("mine")
-        made = tetrahedra(SHAFT[:1], size=0.02)
+        made = tetrahedra(Outline(SHAFT[:1]), size=0.02)
         assert gmsh.isInitialized()
         assert gmsh.model.getCurrent() == "mine"
         assert "solidgear0" not in gmsh.model.list()
         assert gmsh.option.getNumber("Mesh.ElementOrder") == 1
     finally:
         gmsh.finalize()
-    alone = tetrahedra(SHAFT[:1], size=0.02)
+    alone = tetrahedra(Outline(SHAFT[:1]), size=0.02)
     assert not gmsh.isInitialized()
     assert np.array_equal(made.mesh.doflocs, alone.mesh.doflocs)
 
 
 def test_nothing_is_printed_and_progress_is_told(capfd):
     told = []
-    tetrahedra(SHAFT[:1], size=0.02, progress=lambda fraction, message: told.append(fraction))
+    tetrahedra(
+        Outline(SHAFT[:1]), size=0.02, progress=lambda fraction, message: told.append(fraction)
+    )
     assert capfd.readouterr() == ("", "")
     assert told == sorted(told) and told[0] == 0.0 and told[-1] == 1.0
 
@@ -255,9 +258,9 @@ def test_nothing_is_printed_and_progress_is_told(capfd):
     ids=["tip", "drilled", "thin wall"],
 )
 def test_awkward_shapes(shaft):
-    made = tetrahedra(shaft, size=0.015)
+    made = tetrahedra(Outline(shaft), size=0.015)
     # straightened tips cost less than what the arcs lose
-    assert made.quality.volume == pytest.approx(volume_of(shaft), rel=1e-4)
+    assert made.quality.volume == pytest.approx(volume_of(Outline(shaft)), rel=1e-4)
     # straightening starts at 0.05, so nothing is left below
     assert made.quality.min_ratio >= 0.05
 
@@ -275,7 +278,7 @@ def test_awkward_shapes(shaft):
 )
 def test_bad_input_is_refused_in_a_sentence(shaft, planes, size, words):
     with pytest.raises(MeshError, match=words):
-        tetrahedra(shaft, planes, size=size)
+        tetrahedra(Outline(shaft), planes, size=size)
 
 
 def test_a_missing_system_library_names_the_apt_line(monkeypatch):
@@ -290,7 +293,7 @@ def test_a_missing_system_library_names_the_apt_line(monkeypatch):
 
     monkeypatch.setattr(builtins, "__import__", without_gmsh)
     with pytest.raises(MeshError, match="libGLU.so.1.*apt-get install libglu1-mesa libgl1"):
-        tetrahedra(SHAFT, size=0.02)
+        tetrahedra(Outline(SHAFT), size=0.02)
 
 
 def test_a_mesh_pulled_inside_out_is_refused(meshed):
@@ -310,7 +313,7 @@ def test_a_shallow_cone_is_no_cylinder(change):
     nodes lay half of the change off, and its seats had no faces.
     """
     cone = SimpleNamespace(y0=0.0, y1=0.038, outer0=0.05, outer1=0.05 + change, inner0=0, inner1=0)
-    made = tetrahedra([cone], circles=[0.012, 0.026], size=0.02)
+    made = tetrahedra(Outline([cone]), circles=[0.012, 0.026], size=0.02)
     mesh = made.mesh
     corners = np.unique(mesh.facets[:, mesh.boundary_facets()])
     y, r = mesh.p[1, corners], np.hypot(*mesh.p[[0, 2]][:, corners])
@@ -318,4 +321,4 @@ def test_a_shallow_cone_is_no_cylinder(change):
     lateral = r > 0.0495
     assert lateral.sum() > 60
     assert np.abs(r - true)[lateral].max() < 1e-9
-    assert made.quality.volume == pytest.approx(volume_of([cone]), rel=1e-5)
+    assert made.quality.volume == pytest.approx(volume_of(Outline([cone])), rel=1e-5)

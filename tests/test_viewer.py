@@ -12,10 +12,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.meshing.closed_form import volume_of
 from solidgear.report import viewer
 from solidgear.report.packing import mesh_of
 from solidgear.report.turning import picks, turned
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline
 from tests.command import command
 
 ROOT = Path(__file__).parents[1]
@@ -77,7 +78,9 @@ def closed_volume(points, triangles):
 def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, solved, pinion):
     points, triangles, _ = drawn(viewer.viewer_fragment([turned(*solved(kind))]))
     # 48 sides for a circle are 0.3 % too little area; outward normals make it positive
-    assert closed_volume(points, triangles) == pytest.approx(volume_of(pinion.segments), rel=0.01)
+    assert closed_volume(points, triangles) == pytest.approx(
+        volume_of(Outline(pinion.segments)), rel=0.01
+    )
     assert len(np.unique(triangles)) == len(points)
 
 

@@ -15,11 +15,11 @@ import numpy as np
 from solidgear.machine.isolated import isolated
 from solidgear.meshing.cuts import tool
 from solidgear.meshing.gmsh_session import Session, import_gmsh
-from solidgear.meshing.outline import Frustum
+from solidgear.meshing.revolved import draw_revolved
 from solidgear.meshing.solids import axis_angle
-from solidgear.meshing.tetrahedra import draw_revolved
 from solidgear.scene import Keyway, Segment
 from solidgear.scene.body_file import UNITS
+from solidgear.scene.outline import Frustum, Outline
 from validation.shipped import GEOMETRY
 
 #: how a STEP file says its unit; the kernel writes millimetres whatever was drawn
@@ -68,7 +68,7 @@ def _write(path, segments, features, unit, turn, shift) -> float:
     shapes = [Frustum(*(scale * v for v in Frustum.of(s))) for s in segments]
     with Session(gmsh):
         occ = gmsh.model.occ
-        draw_revolved(gmsh, shapes, [], [])
+        draw_revolved(gmsh, Outline(shapes), [], [])
         solids = occ.getEntities(3)
         if len(solids) > 1:
             solids, _ = occ.fuse(solids[:1], solids[1:])

@@ -17,8 +17,8 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.bounds.harmonic import richer_space
+from solidgear.bounds.lines import Lines, place_of
 from solidgear.meshing.corners import corner_exponent
-from solidgear.meshing.lines import Lines, place_of
 from solidgear.meshing.meridian import CUT_RATIO
 from solidgear.scene.coned import coned
 

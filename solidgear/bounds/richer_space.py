@@ -12,11 +12,11 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from solidgear.body import Block, Body
+from solidgear.bounds.lines import Lines, place_of
 from solidgear.bounds.singular import singular_vertices
 from solidgear.kernel.lobatto import at_nodes, products
-from solidgear.meshing.blended import ENDS
+from solidgear.meshing.cells import ENDS
 from solidgear.meshing.corner_layers import cut_towards
-from solidgear.meshing.lines import Lines, place_of
 from solidgear.meshing.meridian import CUT_RATIO, Meridian, on_side
 from solidgear.models.harmonic.blocks import _Work
 from solidgear.models.harmonic.families import Family

@@ -100,7 +100,7 @@ def shoulder_cause(
     """
     if not scene.steps:
         return None
-    radius = min(min(s.outer0, s.outer1) for s in scene.segments)
+    radius = scene.outline.least_radius
     try:
         plain = scene.with_changes(
             segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments),

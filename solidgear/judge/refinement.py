@@ -241,7 +241,7 @@ class Loop(ABC):
         Of all admissible displacements the exact ones store the least energy under given motions of
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
-        exact = self.model.bounded and not self.scene.corners
+        exact = self.model.bounded and not self.scene.outline.corners
         if not exact or name.diagonals or name not in self.error_bars:
             return BOTH
         # what the solver leaves, and couplings that were left out, may go either way

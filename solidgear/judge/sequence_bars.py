@@ -63,7 +63,7 @@ def sequence_bars(
         Empty of a single level, of meshes that are not ever finer, and of layered hexahedra beside a
         fillet or a chamfer, where no layers lead to the corners.
     """
-    if len(levels) < 2 or scene.corners and plan.turned is not None:
+    if len(levels) < 2 or scene.outline.corners and plan.turned is not None:
         return {}
     safety = model.safety or (LAYERS if plan.layered else REFINEMENT)
     if plan.layered:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.meshing.corners import filled_at
 from solidgear.meshing.grading import corner_length
 from solidgear.scene.attached import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene, Segment
+    from solidgear.scene.outline import Edge
 
 #: a surface that turns by less than this (rad) from one segment to the next counts as smooth
 SMOOTH = 0.05
@@ -62,9 +62,12 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
     [('shoulder', 120, 25), ('shoulder', 280, 30)]
     """
     found: list[Place] = []
-    for a, b in zip(scene.segments, scene.segments[1:]):
-        found += _corners(a, b, filled_at(scene, b.y0))
-    for corner in (c for c in scene.corners if c.root):
+    for edge in scene.outline.edges:
+        what = _corner(edge)
+        if what:
+            a, b = scene.segments[edge.joint - 1 : edge.joint + 1]
+            found.append(Place(what, edge.y, edge.r, min(corner_length(a), corner_length(b))))
+    for corner in (c for c in scene.outline.corners if c.root):
         r, y = corner.middle
         found.append(Place(f"{corner.kind} {corner.name}", y, r, corner.axial + corner.radial))
     for a, b in zip(scene.segments, scene.segments[1:]):
@@ -75,7 +78,7 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
         ties = [tie for _, tie in attached_stations([station], attachments)]
         if "section" in ties:
             here = _segment(scene, station.y)
-            r = _outer(here, station.y)
+            r = here.radius_at(station.y)[1]
             what = f"section plane of {station.name}"
             found += _around(what, station.y, r, here, here, corner_length(here))
         if {"average", "rigid"} & set(ties):
@@ -85,39 +88,26 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
                 here = _segment(scene, y, inside=station.y)
                 what = f"seat end of {station.name}"
                 reach = min(corner_length(here), station.hi - station.lo)
-                found.append(Place(what, y, _outer(here, y), reach))
+                found.append(Place(what, y, here.radius_at(y)[1], reach))
     return _distinct(found, 1e-9 * scene.length)
 
 
-def _corners(a: Segment, b: Segment, filled: tuple[str, ...]) -> list[Place]:
-    """Re-entrant corners where one segment follows another: steps, and surfaces that turn."""
-    reach = min(corner_length(a), corner_length(b))
-    out = []
-    if "outer" in filled:
-        pass
-    elif abs(a.outer1 - b.outer0) > 1e-9 * a.length:
-        out.append(Place("shoulder", a.y1, min(a.outer1, b.outer0), reach))
-    elif _slope(b, "outer") - _slope(a, "outer") > SMOOTH:
-        out.append(Place("concave kink of the surface", a.y1, b.outer0, reach))
-    if "bore" in filled:
-        pass
-    elif abs(a.inner1 - b.inner0) > 1e-9 * a.length:
-        out.append(Place("step of the bore", a.y1, max(a.inner1, b.inner0), reach))
-    elif max(b.inner0, a.inner1) > 0 and _slope(a, "inner") - _slope(b, "inner") > SMOOTH:
-        out.append(Place("concave kink of the bore", a.y1, b.inner0, reach))
-    return out
-
-
-def _slope(segment: Segment, side: str) -> float:
-    """Angle (rad) of a surface to the axis."""
-    rise = getattr(segment, f"{side}1") - getattr(segment, f"{side}0")
-    return float(np.arctan(rise / segment.length))
+def _corner(edge: Edge) -> str:
+    """A re-entrant corner in words: a step, or a surface that turns; empty where there is none."""
+    outer = edge.surface == "outer"
+    if edge.root:
+        return ""
+    if edge.steps:
+        return "shoulder" if outer else "step of the bore"
+    if edge.r > 0 and edge.bend > SMOOTH:
+        return f"concave kink of the {'surface' if outer else 'bore'}"
+    return ""
 
 
 def _around(what: str, y: float, r: float, a: Segment, b: Segment, reach: float) -> list[Place]:
     """Ends of a line across the wall: on the outer surface, and on the bore where there is one."""
     out = [Place(what, y, r, reach)]
-    bore = max(_inner(a, y), _inner(b, y))
+    bore = max(a.radius_at(y)[0], b.radius_at(y)[0])
     if bore > 0:
         out.append(Place(f"{what} in the bore", y, bore, reach))
     return out
@@ -127,16 +117,6 @@ def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:
     """The segment at a place; of two that meet there, the one towards `inside`."""
     toward = y if inside is None else y + 1e-6 * (inside - y)
     return next((s for s in scene.segments if toward <= s.y1), scene.segments[-1])
-
-
-def _outer(segment: Segment, y: float) -> float:
-    t = (y - segment.y0) / segment.length
-    return (1 - t) * segment.outer0 + t * segment.outer1
-
-
-def _inner(segment: Segment, y: float) -> float:
-    t = (y - segment.y0) / segment.length
-    return (1 - t) * segment.inner0 + t * segment.inner1
 
 
 def _distinct(found: list[Place], tolerance: float) -> tuple[Place, ...]:

@@ -14,7 +14,7 @@ import numpy as np
 from skfem import Element, ElementQuad1
 
 from solidgear.kernel.assembly import Tabulated, Tabulation, reference
-from solidgear.meshing.blended import ENDS, HIGH, LOW, OUT
+from solidgear.meshing.cells import ENDS, HIGH, LOW, OUT
 from solidgear.meshing.meridian import Meridian
 
 _CORNERS = ElementQuad1()

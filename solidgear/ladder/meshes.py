@@ -87,4 +87,4 @@ def levels(quick: tuple, more: tuple, full: bool) -> tuple:
 
 def least_radius(scene: Shaft) -> float:
     """Least outer radius of a shaft, m."""
-    return min(min(s.outer0, s.outer1) for s in scene.segments)
+    return scene.outline.least_radius

@@ -110,7 +110,7 @@ class Solid(Volume):
         """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,
         or from a file: layered hexahedra converge too slowly beside fillets for error bars.
         """
-        special = features_of(scene) or getattr(scene, "corners", ())
+        special = features_of(scene) or scene.outline.corners
         return {**({"element": "tet10"} if special else {}), **options}
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from solidgear.scene.outline import Outline
+
+#: lowest band and end of every segment
+Bands = tuple[tuple[int, int], ...]
 #: two surfaces that face each other share a boundary unless it were steeper than this, radius over
 #: length
 STEEPEST = 1.5
@@ -14,20 +18,9 @@ STRAIGHT = 0.2
 LEAST_SHARE = 0.15
 
 
-def first_of_run(bands, band: int, segment: int) -> int:
-    """First of the neighbours of a segment that have a band without a gap between them.
-
-    Parameters
-    ----------
-    bands : sequence of (int, int)
-        Lowest band and end of every segment, from :func:`radial_bands`.
-    band : int
-    segment : int
-        One that has the band.
-
-    Returns
-    -------
-    int
+def first_of_run(bands: Bands, band: int, segment: int) -> int:
+    """First of the neighbours of a segment that have a band, as it does, without a gap between
+    them.
     """
     while segment > 0 and bands[segment - 1][0] <= band < bands[segment - 1][1]:
         segment -= 1
@@ -41,20 +34,12 @@ def _surfaces(bands, i: int) -> set[int]:
 
 
 def _straighten(segments, bands, left, right, kept) -> None:
-    """Move boundaries that would cross a segment too steeply.
+    """Move boundaries that would cross a segment too steeply, other than those, by segment and
+    boundary, that are a surface behind it.
 
-    Boundaries that are no surface were spread evenly.  In a thin disc that may take one from the
+    Boundaries that are no surface were spread evenly. In a thin disc that may take one from the
     surface of a neighbour on one side far up or down to the other, through cells so skewed that
     each further order takes away no more than half of the error.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    bands : tuple of (int, int)
-    left, right : dict of int to ndarray
-        Radii, which are changed.
-    kept : set of (int, int)
-        Boundaries that are a surface behind a segment, by segment and boundary.
     """
     fixed = set(kept)
     # what is steepest first: a boundary that was moved stays where it is
@@ -120,25 +105,12 @@ def _move(radii, held, i: int, wanted: float, far=None) -> None:
 
 
 def _levels(surface, lengths, tol: float) -> list[int]:
-    """Boundary that the surface of every segment is.
+    """Boundary that the surface of every segment is, from 0, by its radii at both ends (negative in
+    bores) and lengths, m: the least that will do.
 
-    Of two neighbours the smaller one has the lower boundary, and the same where they meet.  Where
+    Of two neighbours the smaller one has the lower boundary, and the same where they meet. Where
     two surfaces face each other across larger segments between them, one boundary runs from the one
     to the other; in a thin disc that would be too steep, and each has a boundary of its own.
-
-    Parameters
-    ----------
-    surface : sequence of (float, float)
-        Radius of every segment at its two ends, m; negative in bores.
-    lengths : sequence of float
-        m.
-    tol : float
-        Radii that differ by less meet, m.
-
-    Returns
-    -------
-    list of int
-        From 0, the least that will do.
     """
     level, _ = _raised(surface, tol, [])
     apart: list[tuple[int, int]] = []
@@ -211,21 +183,9 @@ def _facing(segments, lengths, bottoms, tops) -> list[tuple[int, int]]:
 
 
 def _above(segments, lengths, bottoms, tops) -> tuple[list[int], list[int]]:
-    """Boundaries of bores and surfaces such that a bore that faces a smaller surface is the higher
-    boundary of the two; elsewhere every surface is higher than every bore.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    lengths : sequence of float
-        m.
-    bottoms, tops : list of int
-        Boundaries of bores, 0 at most, and of surfaces, 1 at least.
-
-    Returns
-    -------
-    bottoms, tops : list of int
-        As given where nothing faces so.
+    """Boundaries of bores (0 at most) and surfaces (1 at least) such that a bore that faces a
+    smaller surface is the higher boundary of the two; elsewhere every surface is higher than every
+    bore, as they were given.
     """
     facing = _facing(segments, lengths, bottoms, tops)
     if not facing:
@@ -253,7 +213,9 @@ def _above(segments, lengths, bottoms, tops) -> tuple[list[int], list[int]]:
     return bottoms, tops
 
 
-def radial_bands(segments, raised=None):
+def radial_bands(
+    outline: Outline,
+) -> tuple[Bands, tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
     """Radial bands of every segment such that neighbours share mesh lines.
 
     Where the outer radius jumps, the larger side gets at least one band more than
@@ -261,10 +223,7 @@ def radial_bands(segments, raised=None):
 
     Parameters
     ----------
-    segments : sequence of Segment
-    raised : dict of (segment, end, boundary) to float, optional
-        Where the surface of a smaller neighbour meets the end ('left' or 'right') of a segment at
-        another radius, by so much, m; the boundary is 'high' outside and 'low' in the bore.
+    outline : Outline
 
     Returns
     -------
@@ -278,12 +237,12 @@ def radial_bands(segments, raised=None):
     >>> from solidgear import Segment
     >>> thin = Segment.cylinder("thin", length=0.1, diameter=0.04)
     >>> thick = Segment.cylinder("thick", length=0.1, diameter=0.06, y0=0.1)
-    >>> bands, left, right = radial_bands([thin, thick])
+    >>> bands, left, right = radial_bands(Outline([thin, thick]))
     >>> bands, left[1]
     (((0, 1), (0, 2)), array([0.  , 0.02, 0.03]))
     """
-    n, raised = len(segments), raised or {}
-    tol = 1e-9 * max(max(s.outer0, s.outer1) for s in segments)
+    segments, n = outline.segments, len(outline.segments)
+    tol = 1e-9 * outline.largest_radius
 
     lengths = [s.y1 - s.y0 for s in segments]
     outer = [(s.outer0, s.outer1) for s in segments]
@@ -304,14 +263,7 @@ def radial_bands(segments, raised=None):
     for i in range(n - 1):
         a, b = segments[i], segments[i + 1]
         low, high = _common(bands, i)
-        common = {low: max(a.inner1, b.inner0), high: min(a.outer1, b.outer0)}
-        here, there = (
-            {
-                low: common[low] + raised.get((k, end, "low"), 0.0),
-                high: common[high] + raised.get((k, end, "high"), 0.0),
-            }
-            for k, end in ((i, "right"), (i + 1, "left"))
-        )
+        here, there = (dict(zip((low, high), outline.shared_face(i + 1, k))) for k in (i, i + 1))
         right[i] = spread(*bands[i], {**here, bottoms[i]: a.inner1, tops[i]: a.outer1})
         left[i + 1] = spread(
             *bands[i + 1], {**there, bottoms[i + 1]: b.inner0, tops[i + 1]: b.outer0}

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.meshing.cells import HIGH, IN, LOW, OUT, Cell, Places, ring_cells
 from solidgear.meshing.layout import Layout
 
 if TYPE_CHECKING:
@@ -30,77 +31,39 @@ if TYPE_CHECKING:
     from solidgear.scene.blends import Corner
     from solidgear.scene.shaft import Shaft
 
-#: local edges, in the numbering of the corners of a cell
-LOW, OUT, HIGH, IN = range(4)
-#: ends of the local edges, in the sense of its local coordinate
-ENDS = ((0, 1), (1, 2), (3, 2), (0, 3))
 
-
-@dataclass
-class Cell:
-    """A quadrilateral: inner-low, outer-low, outer-high, inner-high.
-
-    Attributes
-    ----------
-    ids : tuple of int
-        Of its corners; those of ring lines are ``line * ring lines + ring``.
-    segment : int
-    ring : int
-        Its place in its segment from the inside, -1 in a block.
-    count : int
-        Rings of cells of that segment.
-    arc : (int, float, float) or None
-        A local edge that is an arc, and (r, y) of its middle, m.
-    flip : int or None
-        A local edge whose odd functions have the other sign.
-    halfway : (float, float) or None
-        Radii of its inner and outer side in the middle of its row, where that is straight, m.
+def quadrilaterals(scene: Shaft, plan: Layout) -> tuple[list[Cell], Places]:
+    """The cells of a layout, in the order of their lines and rings, those of roots last, and (r, y) of
+    their corners, m.
     """
-
-    ids: tuple[int, int, int, int]
-    segment: int
-    ring: int = -1
-    count: int = 0
-    arc: tuple[int, float, float] | None = None
-    flip: int | None = None
-    halfway: tuple[float, float] | None = None
+    cells, places = ring_cells(scene, plan)
+    if plan.joints:
+        _Blocks(scene, plan, cells, places).exchange()
+    return list(cells.values()), places
 
 
-@dataclass
-class Quadrilaterals:
-    """Cells in the order of their lines and rings, those of roots last; (r, y) of their corners."""
+class _Blocks:
+    """Blocks of a mesh of lines and rings that are being exchanged."""
 
-    cells: list[Cell]
-    places: dict[int, tuple[float, float]]
-
-
-def quadrilaterals(scene: Shaft, plan: Layout) -> Quadrilaterals:
-    """The cells of a layout.
-
-    Parameters
-    ----------
-    scene : Scene
-    plan : Layout
-
-    Returns
-    -------
-    Quadrilaterals
-    """
-    work = _Work(scene, plan)
-    work.ring_lines()
-    for joint in plan.joints:
-        for corner in joint.corners:
-            (work.root if corner.root else work.rim)(joint, corner)
-    return Quadrilaterals(list(work.cells.values()), work.places)
-
-
-class _Work:
-    def __init__(self, scene, plan):
+    def __init__(self, scene, plan, cells, places):
         self.scene, self.plan = scene, plan
-        self.cells: dict = {}
-        self.places: dict[int, tuple[float, float]] = {}
+        self.cells, self.places = cells, places
         self.numbers = {k: plan.ring_numbers(k) for k in range(len(scene.segments))}
         self.fresh = len(plan.y) * plan.ring_lines
+
+    def exchange(self) -> None:
+        """All blocks of all joints."""
+        moved: Places = {}
+        for joint in self.plan.joints:
+            for seg, zone in ((joint.index - 1, joint.low), (joint.index, joint.high)):
+                lines = sorted(joint.line + zone.side * away for away in range(zone.rows + 1))
+                for line in lines if 0 <= seg < len(self.scene.segments) else ():
+                    for ring, r, y in zip(self.numbers[seg], *self.line(joint, seg, line)):
+                        moved.setdefault(self.id(line, ring), (r, y))
+        self.places.update(moved)
+        for joint in self.plan.joints:
+            for corner in joint.corners:
+                (self.root if corner.root else self.rim)(joint, corner)
 
     def id(self, line: int, ring: int) -> int:
         return int(line * self.plan.ring_lines + ring)
@@ -110,49 +73,18 @@ class _Work:
         self.places[self.fresh] = (float(place[0]), float(place[1]))
         return self.fresh
 
-    def ring_lines(self) -> None:
-        """All cells between lines and rings, as if there were no blocks."""
-        for row, seg in enumerate(self.plan.segment):
-            number = self.numbers[seg]
-            ends = [self.line(seg, row + k) for k in (0, 1)]
-            middle = self._halfway(seg, row, ends)
-            for ring in range(len(number) - 1):
-                corners = ((0, 0), (0, 1), (1, 1), (1, 0))
-                a, b, c, d = (self.id(row + k, number[ring + m]) for k, m in corners)
-                ids = (a, b, c, d)
-                for id_, (k, m) in zip(ids, corners):
-                    self.places.setdefault(id_, (ends[k][0][m + ring], ends[k][1][m + ring]))
-                cell = Cell(ids, seg, ring, len(number) - 1)
-                cell.halfway = None if middle is None else (middle[ring], middle[ring + 1])
-                self.cells[row, int(number[ring])] = cell
-
-    def _halfway(self, seg: int, row: int, ends) -> np.ndarray | None:
-        """Radii in the middle of a row between two straight lines; None between others."""
-        low, high = self.plan.y[row : row + 2]
-        if not (np.all(ends[0][1] == low) and np.all(ends[1][1] == high)):
-            return None
+    def line(self, joint: Joint, seg: int, line: int) -> tuple[np.ndarray, np.ndarray]:
+        """r and y of the rings of a segment on a line of the zone beside a joint."""
         segment = self.scene.segments[seg]
-        return self.plan.rings(seg, (segment.y0, segment.y1), (low + high) / 2)
-
-    def line(self, seg: int, line: int) -> tuple[np.ndarray, np.ndarray]:
-        """r and y of the rings of a segment on a line."""
-        segment, nominal = self.scene.segments[seg], float(self.plan.y[line])
         span = (segment.y0, segment.y1)
-        r = self.plan.rings(seg, span, nominal)
-        for joint in self.plan.joints:
-            for zone in (joint.low, joint.high):
-                away = (line - joint.line) * zone.side
-                if not (0 <= away <= zone.rows or (away == 0 and zone.skip)):
-                    continue
-                if seg != (joint.index - 1 if zone.side < 0 else joint.index):
-                    continue
-                y = self._zone_line(joint, zone, seg, away, r)
-                if away:
-                    y_in = np.clip(y, *span)
-                    local = (self._zone_rings(joint, seg, span, at) for at in y_in)
-                    r = np.array([rings[k] for k, rings in enumerate(local)])
-                return r, y
-        return r, np.full(len(r), nominal)
+        zone = joint.low if seg < joint.index else joint.high
+        away = (line - joint.line) * zone.side
+        r = self.plan.rings(seg, span, float(self.plan.y[line]))
+        y = self._zone_line(joint, zone, seg, away, r)
+        if away:
+            local = [self._zone_rings(joint, seg, span, at) for at in np.clip(y, *span)]
+            r = np.array([rings[k] for k, rings in enumerate(local)])
+        return r, y
 
     def _zone_rings(self, joint: Joint, seg: int, span, y: float) -> np.ndarray:
         """Radii of the rings of a segment beside a joint: at the block of a root as on the joint,
@@ -161,7 +93,7 @@ class _Work:
         here = self.plan.rings(seg, span, y)
         kept = set()
         for corner in joint.corners:
-            if corner.root and joint.thick(corner) == seg:
+            if corner.root and corner.face_owner == seg:
                 at, k = self._boundary(corner, seg), joint.cells(corner)
                 kept |= {at, at - k if corner.out > 0 else at + k}
         if not kept:
@@ -187,7 +119,7 @@ class _Work:
         number = self.numbers[seg]
         common = np.ones(len(number), bool)
         for corner in joint.corners:
-            if corner.root and joint.thick(corner) == seg:
+            if corner.root and corner.face_owner == seg:
                 boundary, cells = self._boundary(corner, seg), joint.cells(corner)
                 at = np.arange(len(number))
                 common &= (at <= boundary - cells) if corner.out > 0 else (at >= boundary + cells)
@@ -201,9 +133,9 @@ class _Work:
 
     def _frame(self, joint: Joint, corner: Corner, size: int) -> _Frame:
         """Local lines and rings 0 .. size of a block, the edge being at (size, size)."""
-        seg = joint.thick(corner)
+        seg = corner.face_owner
         boundary = self._boundary(corner, seg)
-        up = -joint.block_side(corner)
+        up = -corner.face_side
         out = 1 if corner.surface == "outer" else -1
         lines = [joint.line - up * (size - i) for i in range(size + 1)]
         at = [boundary - out * (size - j) for j in range(size + 1)]
@@ -236,7 +168,7 @@ class _Work:
         self._take(frame, range(k), range(k))
         tensor = [[self.id(line, ring) for ring in frame.rings] for line in frame.lines]
         # beside the edge the line of the joint belongs to the cylinder
-        r, y = self.line(corner.owner, joint.line)
+        r, y = self.line(joint, corner.owner, joint.line)
         inside = self._boundary(corner, corner.owner)
         strip = self.plan.divided(corner.owner)[-1 if frame.out > 0 else 0]
         for depth in range(1, len(strip)):
@@ -247,21 +179,20 @@ class _Work:
         middle = np.array(corner.middle)
         diagonal = [tensor[0][0]] + [self.new(q + (middle - q) * i / k) for i in range(1, k)]
         diagonal.append(self.new(middle))
-        outline = _Outline(corner)
         # on the plane face: rows as before, rings up to the outline
         on_face = self._grid(k)
         for i in range(k + 1):
             on_face[i][0], on_face[i][k] = diagonal[i], tensor[i][k]
         for j in range(1, k):
             on_face[0][j] = tensor[0][j]
-            on_face[k][j] = self.new(outline.at(0.5 * (1 - j / k)))
+            on_face[k][j] = self.new(corner.at(0.5 * (1 - j / k)))
         # on the cylinder: what were rows end at the outline
         on_cylinder = self._grid(k)
         for i in range(k + 1):
             on_cylinder[0][i], on_cylinder[k][i] = diagonal[i], tensor[k][i]
             on_cylinder[i][0] = tensor[i][0]
         for i in range(1, k):
-            on_cylinder[i][k] = self.new(outline.at(0.5 + 0.5 * i / k))
+            on_cylinder[i][k] = self.new(corner.at(0.5 + 0.5 * i / k))
         # the edge itself has split in two: the cylinder keeps its number, the face has a new one
         face = self.new(corner.on_face)
         on_face[k][k] = face
@@ -275,18 +206,17 @@ class _Work:
                     ids[i][j] = self.new((0.0, 0.0))
             self._place_all(ids)
         low_high = (HIGH if frame.up > 0 else LOW), (LOW if frame.up > 0 else HIGH)
-        self._fill(frame, on_face, outline, arc=(k - 1, None, low_high[0]))
+        self._fill(frame, on_face, corner, arc=(k - 1, None, low_high[0]))
         flip = low_high[1] if frame.up != frame.out else None
         side = OUT if frame.out > 0 else IN
-        self._fill(frame, on_cylinder, outline, arc=(None, k - 1, side), flip=(0, None, flip))
+        self._fill(frame, on_cylinder, corner, arc=(None, k - 1, side), flip=(0, None, flip))
 
     def rim(self, joint: Joint, corner: Corner) -> None:
         """Leave out the outermost quarter of the block at a rim and join its neighbours."""
-        k = joint.zone(joint.block_side(corner)).rows // 2
+        k = joint.zone(corner.face_side).rows // 2
         frame = self._frame(joint, corner, 2 * k)
         tensor = [[self.id(line, ring) for ring in frame.rings] for line in frame.lines]
         self._take(frame, range(k, 2 * k), range(k, 2 * k))
-        outline = _Outline(corner)
         ids = [list(row) for row in tensor]
         for m in range(k + 1):
             ids[k][k + m] = tensor[k + m][k]
@@ -298,8 +228,8 @@ class _Work:
         inner = (a + b + middle) / 3
         self.places[tensor[k][k]] = tuple(inner)
         for m in range(1, k):
-            self.places[ids[2 * k][m]] = outline.at(0.5 * m / k)
-            self.places[ids[m][2 * k]] = outline.at(1 - 0.5 * m / k)
+            self.places[ids[2 * k][m]] = corner.at(0.5 * m / k)
+            self.places[ids[m][2 * k]] = corner.at(1 - 0.5 * m / k)
             self.places[ids[k + m][k]] = tuple(inner + (middle - inner) * m / k)
             self.places[ids[k][m]] = tuple(a + (inner - a) * m / k)
             self.places[ids[m][k]] = tuple(b + (inner - b) * m / k)
@@ -318,7 +248,7 @@ class _Work:
                     continue
                 cell = self.cells[frame.key(i, j)]
                 cell.ring = -1 if cell.ring != 0 or j >= k else cell.ring
-                cell.ids, cell.halfway = frame.corners(ids, i, j), None
+                cell.ids = frame.corners(ids, i, j)
                 if corner.centre:
                     if i == 2 * k - 1:
                         cell.arc = (end, *corner.centre)
@@ -338,14 +268,14 @@ class _Work:
             if at == row:
                 cell.ids = tuple(new if one == old else one for one in cell.ids)
 
-    def _fill(self, frame, ids, outline, arc, flip=(None, None, None)) -> None:
+    def _fill(self, frame, ids, corner, arc, flip=(None, None, None)) -> None:
         """Cells of a block that is not one of lines and rings."""
         k = len(ids) - 1
         for i in range(k):
             for j in range(k):
                 cell = Cell(frame.corners(ids, i, j), frame.segment)
-                if outline.centre and (i == arc[0] or j == arc[1]):
-                    cell.arc = (arc[2], *outline.centre)
+                if corner.centre and (i == arc[0] or j == arc[1]):
+                    cell.arc = (arc[2], *corner.centre)
                 if i == flip[0]:
                     cell.flip = flip[2]
                 self.fresh += 1
@@ -374,20 +304,3 @@ class _Frame:
             at = i + (b if self.up > 0 else 1 - b), j + (a if self.out > 0 else 1 - a)
             found.append(ids[at[0]][at[1]])
         return tuple(found)
-
-
-class _Outline:
-    """The outline from the face (0) to the cylinder (1)."""
-
-    def __init__(self, corner: Corner):
-        self.corner, self.centre = corner, corner.centre
-
-    def at(self, t: float) -> tuple[float, float]:
-        """(r, y) at a share of its length."""
-        c = self.corner
-        if c.centre is None:
-            a, b = np.array(c.on_face), np.array(c.on_cylinder)
-            return tuple(a + t * (b - a))
-        turn = np.pi / 2 * t
-        r = c.centre[0] - c.out * c.radial * np.sin(turn)
-        return r, c.centre[1] - c.side * c.radial * np.cos(turn)

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError
 
@@ -92,21 +93,9 @@ def cut_towards(
     )
 
 
-def side_at(cells, points, point: np.ndarray) -> tuple[int, int, float]:
-    """The side of a mesh that a point lies on, by its ends, and how far along it is.
-
-    Parameters
-    ----------
-    cells : (ne, 4) array_like of int
-    points : (n, 2) array_like
-        m.
-    point : (2,) ndarray
-        m.
-
-    Raises
-    ------
-    SolidgearError
-        If there is none.
+def side_at(cells: ArrayLike, points: ArrayLike, point: np.ndarray) -> tuple[int, int, float]:
+    """The side of a mesh of (ne, 4) cells that a point (m) lies on, by its ends, and how far along
+    it is; SolidgearError if there is none.
     """
     every, places = np.array(cells), np.array(points)
     a, b = every.ravel(), np.roll(every, -1, axis=1).ravel()

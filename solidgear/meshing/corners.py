@@ -6,14 +6,13 @@ layers a mesh needs towards the corner.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.scene.rules import TOUCH
-
 if TYPE_CHECKING:
-    from solidgear.scene import Corner, Segment
+    from solidgear.scene.outline import Edge, Outline
     from solidgear.scene.shaft import Shaft
 
 # Exponent of a right-angled shoulder, against which layers are counted.
@@ -68,53 +67,9 @@ def _root(angle: float, sign: float, low: float, high: float) -> float:
     return float(0.5 * (low + high))
 
 
-def corner_angle(a: Segment, b: Segment, smooth: tuple[str, ...] = ()) -> float:
-    """Largest material angle of the outline where one segment follows another, outside or in the
-    bore.
-
-    Parameters
-    ----------
-    a, b : Segment
-        ``b`` begins where ``a`` ends.
-    smooth : tuple of {'outer', 'bore'}
-        Surfaces whose root there is filled: it is no corner.
-
-    Returns
-    -------
-    float
-        rad, pi at least.
-    """
-    worst = np.pi
-    for surface, side in (("outer", 1.0), ("inner", -1.0)):
-        if ("outer" if surface == "outer" else "bore") in smooth:
-            continue
-        a0, a1 = getattr(a, surface + "0"), getattr(a, surface + "1")
-        b0, b1 = getattr(b, surface + "0"), getattr(b, surface + "1")
-        step = side * (b0 - a1)
-        slope_a = np.arctan(side * ((a1 - a0) / a.length))
-        slope_b = np.arctan(side * ((b1 - b0) / b.length))
-        if abs(step) < 1e-9 * a.length:
-            angle = np.pi + (slope_b - slope_a)
-        elif step < 0:
-            # the face of the larger segment is vertical, the smaller one's surface leaves it
-            angle = 1.5 * np.pi + slope_b
-        else:
-            angle = 1.5 * np.pi - slope_a
-        worst = max(worst, float(angle))
-    return worst
-
-
 def sharpest_corner(scene: Shaft) -> tuple[float, float]:
-    """Largest material angle at a shoulder of a scene, and its exponent.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    angle, exponent : float
-        rad, and by :func:`corner_exponent`; (pi, 1) when there is no shoulder.
+    """Largest material angle at a shoulder of a scene, rad, and its exponent by
+    :func:`corner_exponent`; (pi, 1) when there is no shoulder.
 
     Examples
     --------
@@ -123,60 +78,23 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
     >>> round(float(np.degrees(angle))), round(exponent, 4)
     (270, 0.5445)
     """
-    pairs = zip(scene.segments, scene.segments[1:])
-    worst = max((corner_angle(a, b, filled_at(scene, b.y0)) for a, b in pairs), default=np.pi)
-    worst = max([worst, *map(_ends_of_chamfer, getattr(scene, "corners", ()))])
+    worst = max((edge.angle for edge in scene.outline.edges), default=np.pi)
     return worst, corner_exponent(worst)
 
 
-def filled_at(scene: Shaft, y: float) -> tuple[str, ...]:
-    """Surfaces whose root at a joint has a fillet or a chamfer.
-
-    Parameters
-    ----------
-    scene : Scene
-    y : float
-        Of the joint, m.
-
-    Returns
-    -------
-    tuple of {'outer', 'bore'}
-    """
-    corners = getattr(scene, "corners", ())
-    return tuple(c.surface for c in corners if c.root and abs(c.y - y) <= TOUCH)
-
-
-def _ends_of_chamfer(corner: Corner) -> float:
-    """Larger material angle at the ends of a chamfer at a root, rad; pi of all that is convex or
-    round.
-    """
-    if corner.kind != "chamfer" or not corner.root:
-        return float(np.pi)
-    slope = np.arctan2(corner.radial, corner.axial)
-    return float(np.pi + max(slope, np.pi / 2 - slope))
-
-
-def corner_layers(a: Segment, b: Segment, layers: int, smooth: tuple[str, ...] = ()) -> int:
-    """Geometric layers that the corner between two segments needs.
+def corner_layers(
+    outline: Outline, joint: int, layers: int, edges: Sequence[Edge] | None = None
+) -> int:
+    """Geometric layers that the corners of two segments need, were they sharp, where a right-angled
+    shoulder needs so many: those of both surfaces, unless edges are given.
 
     Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to
-    shrink grows with ``1 - exponent``, which is zero on a smooth outline.  A change of material
+    shrink grows with ``1 - exponent``, which is zero on a smooth outline. A change of material
     counts as a shoulder.
-
-    Parameters
-    ----------
-    a, b : Segment
-        ``b`` begins where ``a`` ends.
-    layers : int
-        What a right-angled shoulder needs.
-    smooth : tuple of str
-        As for :func:`corner_angle`.
-
-    Returns
-    -------
-    int
     """
-    if a.material != b.material:
+    if outline.segments[joint - 1].material != outline.segments[joint].material:
         return layers
-    lacking = (1.0 - corner_exponent(corner_angle(a, b, smooth))) / (1.0 - SHOULDER)
+    edges = outline.edges_at(joint) if edges is None else edges
+    angle = max((edge.sharp_angle for edge in edges), default=np.pi)
+    lacking = (1.0 - corner_exponent(angle)) / (1.0 - SHOULDER)
     return min(layers, int(np.ceil(layers * lacking - 0.05)))

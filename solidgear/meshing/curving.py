@@ -27,17 +27,9 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
     """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as
     far as needed.
 
-    Only the tip of a cone, wedges of few degrees and slivers at a bore fold elements of a sensible size.
-    What chords take from the volume there, the other curved sides give back, each by the share that it
-    has in what all of them can give: some 1e-3 of their sagittas.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-
-    Returns
-    -------
-    skfem.MeshTet2
+    Only the tip of a cone, wedges of few degrees and slivers at a bore fold elements of a sensible
+    size. What chords take from the volume there, the other curved sides give back, each by the
+    share that it has in what all of them can give: some 1e-3 of their sagittas.
     """
     straight = mesh.p[:, mesh.edges].mean(axis=1)
     middles = mesh.dofs.edge_dofs[0]
@@ -98,20 +90,11 @@ def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
 
 
 def volume_preserved(mesh: MeshTet2) -> MeshTet2:
-    """The mesh with middle nodes moved a little beyond the true surface, so that curved sides enclose
-    as much as it does.
+    """The mesh with middle nodes, which lie on the true surface, moved a little beyond it, so that
+    curved sides enclose as much as it does.
 
-    On a circle of sixteen edges they move by 1e-5 of its radius, and what is lost falls from 5e-5 to
-    some 2e-6 of the volume.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-        Middle nodes on the surface.
-
-    Returns
-    -------
-    skfem.MeshTet2
+    On a circle of sixteen edges they move by 1e-5 of its radius, and what is lost falls from 5e-5
+    to some 2e-6 of the volume.
     """
     a, b = mesh.p[:, mesh.edges[0]], mesh.p[:, mesh.edges[1]]
     middles = mesh.dofs.edge_dofs[0]

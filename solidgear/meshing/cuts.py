@@ -27,20 +27,8 @@ BEYOND = 0.2
 
 
 def tool(occ: Any, feature: Cut, radius: float) -> int:
-    """The solid that cuts a feature.
-
-    Parameters
-    ----------
-    occ : module
-        ``gmsh.model.occ``.
-    feature : Keyway, Flat or CrossHole
-    radius : float
-        Outer radius of its segment, m.
-
-    Returns
-    -------
-    int
-        Tag of the volume; it reaches out of the shaft, and is not yet cut with it.
+    """Tag of the solid that cuts a feature into a segment of some outer radius, m; it reaches out
+    of the shaft, and is not yet cut with it.
     """
     made = feature.tool(occ, radius, BEYOND * radius)
     if feature.angle:
@@ -48,53 +36,14 @@ def tool(occ: Any, feature: Cut, radius: float) -> int:
     return made
 
 
-def volume(feature: Cut, outer: float, inner: float) -> float | None:
-    """Volume that a feature takes from its segment, where a closed form is known.
-
-    Parameters
-    ----------
-    feature : Keyway, Flat or CrossHole
-    outer, inner : float
-        Radii of the segment, m.
-
-    Returns
-    -------
-    float or None
-        m^3; None for a cross hole through a wall, or a cut down to a bore.
-
-    Examples
-    --------
-    A flat down to nearly the axis is nearly half of the cylinder:
-
-    >>> from solidgear.scene import Flat
-    >>> deep = Flat(name="flat", segment="rod", y=0.0, length=1.0, depth=0.1 - 1e-9)
-    >>> round(volume(deep, 0.1, 0.0) / (pi * 0.1**2), 6)
-    0.5
-    """
-    return feature.volume(outer, inner)
-
-
 def feature_size(
     feature: Cut, radius: float, refinement: float, finer: float = 1.0
 ) -> tuple[str, float]:
-    """Formula of the element edge around a feature, and its least value.
+    """Formula (in x, y, z, m) of the element edge around a feature of a segment of some radius, m,
+    and its least value, m.
 
-    Parameters
-    ----------
-    feature : Keyway, Flat or CrossHole
-    radius : float
-        Of its segment, m.
-    refinement : float
-        Divides the size.
-    finer : float
-        Divides it too, and the largest that a hole or a round end may have.
-
-    Returns
-    -------
-    formula : str
-        In x, y, z, m.
-    least : float
-        m.
+    `refinement` divides the size; `finer` divides it too, and the largest that a hole or a round
+    end may have.
     """
     straight, curved = feature.edges(radius)
     divided = ACROSS * refinement
@@ -104,24 +53,12 @@ def feature_size(
 
 
 def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, float]:
-    """Formula of the element edge where stresses around a feature are highest: at the re-entrant
-    edges of the floor of a keyway and of the ends of a flat, at the wall of a hole.
+    """Formula of the element edge where stresses around a feature are highest, and its least value,
+    m: at the re-entrant edges of the floor of a keyway and of the ends of a flat, at the wall of a
+    hole.
 
-    Parameters
-    ----------
-    feature : Keyway, Flat or CrossHole
-    radius : float
-        Of its segment, m.
-    refinement : float
-        Divides the size.
-
-    Returns
-    -------
-    formula : str
-        In x, y, z, m.
-    least : float
-        m. That of a hole, which eight edges around are the least of, differs from refinement
-        ``LEAST`` on.
+    The least of a hole, which eight edges around are the least of, differs from refinement
+    ``LEAST`` on.
 
     Examples
     --------
@@ -161,16 +98,8 @@ def _frame(feature: Cut) -> Frame:
 
 
 def mirror_plane(features: tuple[Cut, ...]) -> int | None:
-    """The plane that all features are symmetric about.
-
-    Parameters
-    ----------
-    features : tuple of Keyway, Flat or CrossHole
-
-    Returns
-    -------
-    int or None
-        0 for the plane x = 0, 2 for the plane z = 0; None where there is neither.
+    """The plane that all features are symmetric about: 0 for x = 0, 2 for z = 0; None where there
+    is neither.
 
     Examples
     --------

@@ -6,18 +6,8 @@ import numpy as np
 
 
 def edge_places(known: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Places of edges in a list of edges; ends may stand in either order.
-
-    Parameters
-    ----------
-    known : (2, k) ndarray of int
-        Vertices of the list; of an edge that stands there several times the first counts.
-    wanted : (2, ...) ndarray of int
-
-    Returns
-    -------
-    (...) ndarray of int
-        -1 where the list does not have the edge.
+    """Places of edges (2, ...) in a list of edges (2, k), by the vertices that they lie between, in
+    either order: the first of several, -1 where the list does not have the edge.
 
     Examples
     --------

@@ -1,6 +1,10 @@
 """The size of tetrahedra, a closed formula in radius and y, and roughly how many it makes of them."""
 
+from collections.abc import Sequence
 from math import pi
+from typing import Any
+
+from solidgear.scene.outline import Outline
 
 PER_BLEND = 0.8  # edge at a fillet or chamfer, of its size
 _GROWTH = 0.5  # element size gained per distance from a lateral surface
@@ -10,28 +14,30 @@ _GROWTH = 0.5  # element size gained per distance from a lateral surface
 PER_CUBE = 4.0
 
 
-def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine=()) -> float:
-    """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse what
-    is absurd.
+def rough_cells(
+    outline: Outline,
+    circles: Sequence[float] = (),
+    *,
+    size: float,
+    graded_size: float | None = None,
+    fine: Sequence[tuple[float, float, float]] = (),
+) -> float:
+    """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse
+    what is absurd.
 
-    Volume is filled at the size in the bulk, and edges that are graded towards at a size that
-    grows from them.
-
-    Parameters
-    ----------
-    segments, circles, size, graded_size, blends
-        As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`, m.
-    fine : sequence of (length, size, growth)
-        Further edges with the element size at them, m, and its growth by the distance.
+    Volume is filled at the size in the bulk, and edges that are graded towards at a size that grows
+    from them. `fine` are further edges: their length and the element size at them, m, and its
+    growth by the distance.
 
     Examples
     --------
     >>> from solidgear import Segment
-    >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
-    >>> round(rough_cells([rod], size=0.005) / rough_cells([rod], size=0.01), 6)
+    >>> from solidgear.scene.outline import Outline
+    >>> rod = Outline([Segment.cylinder("rod", length=0.3, diameter=0.06)])
+    >>> round(rough_cells(rod, size=0.005) / rough_cells(rod, size=0.01), 6)
     8.0
     """
-    total = 0.0
+    total, segments = 0.0, outline.segments
     for s in segments:
         a, b = pi * (s.outer0**2 - s.inner0**2), pi * (s.outer1**2 - s.inner1**2)
         bulk = min(size, max(s.outer0, s.outer1))
@@ -40,7 +46,7 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
     steps = [(s.y0, max(s.outer0, s.outer1)) for s in segments]
     rims = steps + [(y, r) for y in circles for r in [max(r for _, r in steps)]]
     edges = [(2 * pi * r, graded, (size - graded) / r) for _, r in rims if graded < size]
-    edges += [(2 * pi * b.r, PER_BLEND * min(b.axial, b.radial), _GROWTH) for b in blends]
+    edges += [(2 * pi * b.r, PER_BLEND * min(b.axial, b.radial), _GROWTH) for b in outline.corners]
     for length, least, growth in (*edges, *fine):
         # the integral of size^-3 around an edge, of which a quarter lies in the material
         slope = min(growth, _GROWTH)  # elements grow no faster, whatever is asked for
@@ -48,31 +54,29 @@ def rough_cells(segments, circles=(), *, size, graded_size=None, blends=(), fine
     return PER_CUBE * total
 
 
-def size_formulas(segments, corners, size, graded_size, reach, around, blends=()):
-    """Formulas of the element edge; the least one counts.
+def size_formulas(
+    outline: Outline,
+    corners: Sequence[tuple[float, float]],
+    size: float,
+    graded_size: float | None,
+    reach: float | None,
+    around: int,
+) -> list[str]:
+    """Formulas of the element edge in x, y, z, m, as gmsh's parser reads them; the least one
+    counts.
 
-    Parameters
-    ----------
-    segments : sequence of Frustum
-    corners : list of (float, float)
-        (y, radius) to grade towards, m.
-    size, graded_size, reach, around, blends
-        As for :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
-
-    Returns
-    -------
-    list of str
-        In x, y, z, m, as gmsh's parser reads them.
+    `corners` are those (y, radius) to grade towards; sizes as for
+    :func:`~solidgear.meshing.tetrahedra.tetrahedra`.
     """
     radius = "Sqrt(x^2+z^2)"
     formulas = []
-    is_graded = graded_size is not None and graded_size < size
-    for y, r in sorted(set(corners)) if is_graded else ():
-        slope = (size - graded_size) / (reach or r)
-        formulas.append(
-            f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
-        )
-    for blend in blends:
+    if graded_size is not None and graded_size < size:
+        for y, r in sorted(set(corners)):
+            slope = (size - graded_size) / (reach or r)
+            formulas.append(
+                f"{_num(graded_size)}+{_num(slope)}*Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
+            )
+    for blend in outline.corners:
         # an edge of an element along either half of the outline, or the size at a corner
         r, y = blend.middle
         across = min(blend.axial, blend.radial)
@@ -81,7 +85,7 @@ def size_formulas(segments, corners, size, graded_size, reach, around, blends=()
             f"{_num(least)}+{_num(_GROWTH)}*Max(0,Sqrt(({radius}-{_num(r)})^2+(y-{_num(y)})^2)"
             f"-{_num(across / 2)})"
         )
-    for s in segments:
+    for s in outline.segments:
         for r0, r1 in ((s.outer0, s.outer1), (s.inner0, s.inner1)):
             if max(r0, r1) == 0.0:
                 continue
@@ -112,17 +116,9 @@ def _num(value):
     return f"({float(value)!r})"
 
 
-def set_size(gmsh, formulas, size):
-    """Make the least of some formulas the element size of a gmsh model.
-
-    Parameters
-    ----------
-    gmsh : module
-        With a model in it.
-    formulas : list of str
-        From :func:`size_formulas`.
-    size : float
-        Largest edge, m.
+def set_size(gmsh: Any, formulas: list[str], size: float) -> None:
+    """Make the least of some formulas the element size of a gmsh model, and `size` the largest
+    edge, m.
     """
     field = gmsh.model.mesh.field
     tags = []

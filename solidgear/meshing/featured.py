@@ -15,14 +15,16 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
-from solidgear.meshing.outline import Frustum
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
-from solidgear.meshing.tetrahedra import draw_revolved, filled
+from solidgear.meshing.revolved import draw_revolved, graded_corners
+from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline
+from solidgear.scene.parts import Segment
 
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
 #: same plane
@@ -66,7 +68,7 @@ class FeaturedMesh:
 
 
 def featured_mesh(
-    segments: tuple[Any, ...],
+    outline: Outline[Segment],
     features: tuple[Any, ...],
     planes: list[float],
     circles: list[float],
@@ -76,14 +78,13 @@ def featured_mesh(
     around: int,
     refinement: float,
     half: bool = True,
-    blends: tuple[Any, ...] = (),
     edges: bool = False,
 ) -> FeaturedMesh:
     """Mesh a shaft with features.
 
     Parameters
     ----------
-    segments : tuple of Segment
+    outline : Outline
     features : tuple of Keyway, Flat or CrossHole
     planes, circles, size, graded_size, around
         As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
@@ -91,8 +92,6 @@ def featured_mesh(
         Divides the sizes at features; those above are given refined.
     half : bool
         Whether to draw half of the shaft where features have a mirror plane.
-    blends : tuple of Corner
-        Edges with fillets and chamfers.
     edges : bool
         Whether elements are smaller at the re-entrant edges of features and at holes.
 
@@ -106,21 +105,21 @@ def featured_mesh(
         Geometry that cannot be cut or meshed, inverted elements, or a wrong volume.
     """
     gmsh = import_gmsh()
-    shapes = [Frustum.of(s) for s in segments]
     plane = mirror_plane(features) if half else None
     start, turn = (0.0, 2 * pi) if plane is None else (_START[plane], pi)
-    radii = {s.name: float(s.outer0) for s in segments}
+    radii = {s.name: float(s.outer0) for s in outline.segments}
     share = turn / (2 * pi)
-    whole = share * volume_of(segments, blends)
-    arcs = max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+    whole = share * volume_of(outline)
+    arcs = lost_by_arcs(around)
 
     def made(finer: float, at_steps: float) -> tuple[MeshTet2, np.ndarray, float]:
         """The mesh, its elements in features, and their volume as OCC says."""
         graded = graded_size and graded_size / at_steps
         with Session(gmsh):
-            corners = draw_revolved(gmsh, shapes, planes, circles, start, turn, blends)
+            draw_revolved(gmsh, outline, planes, circles, start, turn)
+            corners = graded_corners(outline, planes, circles)
             pieces = _cut(gmsh, features, radii)
-            formulas = size_formulas(shapes, corners, size, graded, None, around, blends)
+            formulas = size_formulas(outline, corners, size, graded, None, around)
             formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
             sharp = [edge_size(f, radii[f.segment], refinement) for f in features if edges]
             formulas += [found[0] for found in sharp]
@@ -152,8 +151,7 @@ def featured_mesh(
             f"the solid cut out of the mesh has, more than {OF_CUT:.0%}: raise refinement"
         )
     quality = check_mesh(mesh, volume=whole, rtol=arcs)
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    segment = segment_of_elements(mesh, outline.segments)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
 
 
@@ -182,17 +180,7 @@ def _cut(gmsh, features, radii) -> list[int]:
 
 
 def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
-    """The elements of a curved mesh that are kept, with the nodes in the middle of their edges.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-    keep : (ne,) ndarray of bool
-
-    Returns
-    -------
-    skfem.MeshTet2
-    """
+    """The elements of a curved mesh that are kept, with the nodes in the middle of their edges."""
     corners = mesh.t[:, keep]
     used, small = np.unique(corners, return_inverse=True)
     straight = MeshTet1(

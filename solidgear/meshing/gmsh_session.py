@@ -1,5 +1,7 @@
 """gmsh, loaded when needed, and a model in it that leaves no trace."""
 
+from typing import Any
+
 from solidgear.machine.interruptible import abandoned
 from solidgear.meshing.quality import MeshError
 
@@ -9,17 +11,9 @@ _APT = (
 )
 
 
-def import_gmsh():
-    """The module gmsh.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    MeshError
-        If it or a system library it needs is missing; the message names what to install.
+def import_gmsh() -> Any:
+    """The module gmsh; MeshError if it or a system library it needs is missing, with what to
+    install.
     """
     try:
         import gmsh

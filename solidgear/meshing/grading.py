@@ -4,12 +4,19 @@ two ends.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, log
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, PointMass, Port, Segment
+
+    Station = Port | Bearing | PointMass
 
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
 REACH = 0.25
@@ -83,25 +90,17 @@ class Grading:
         """Layers towards the ends of averaged seats, never more than towards shoulders."""
         return min(self.edge_layers, self.layers)
 
-    def seat_layers(self, station, segments, ties) -> int:
-        """Further layers towards the ends of a narrow seat.
+    def seat_layers(
+        self, station: Station, segments: Sequence[Segment], ties: Sequence[str]
+    ) -> int:
+        """Further layers towards the ends of a narrow seat that is built with some ties.
 
         A load on a ring indents the shaft over a few widths of the ring, which cells that know of
-        the radius only do not see: two coarse meshes then agree on what both of them lack.
-
-        Parameters
-        ----------
-        station : Port, Bearing or PointMass
-        segments : sequence of Segment
-        ties : sequence of str
-            That the station is built with; sections spread no load on the seat.
-
-        Returns
-        -------
-        int
-            As many as bring the last layer down to the width of the seat; none where grading starts
-            within it, or on a line. Where no shoulder grades the surface (:func:`ungraded_depth`)
-            one for a seat that is narrower than two and a half depths of its cells.
+        the radius only do not see: two coarse meshes then agree on what both of them lack. They are
+        as many as bring the last layer down to the width of the seat; none where grading starts
+        within it, on a line, or under sections, which spread no load on it. Where no shoulder
+        grades the surface (:func:`ungraded_depth`) one for a seat that is narrower than two and a
+        half depths of its cells.
         """
         width = station.hi - station.lo
         under = segments_under(station, segments)
@@ -119,36 +118,17 @@ class Grading:
         """Cells along either half of a fillet."""
         return max(1, round(self.corner_cells * self.refinement))
 
-    def cell(self, segment) -> tuple[float, float]:
-        """Cell size of a segment.
-
-        Parameters
-        ----------
-        segment : Segment
-
-        Returns
-        -------
-        near, far : float
-            Beside singular points and away from them, m.
-        """
+    def cell(self, segment: Segment) -> tuple[float, float]:
+        """Cell sizes of a segment beside singular points and away from them, m."""
         if self.size is not None:
             return self.size, self.size
         far = self.relative_size * _radius(segment)
         return min(self.relative_size, 1.0) * local_length(segment), far
 
 
-def local_length(segment) -> float:
-    """Length over which what happens at a line of the surface dies away: the radius, or a shell's
-    ``2 sqrt(r t)``.
-
-    Parameters
-    ----------
-    segment : Segment
-
-    Returns
-    -------
-    float
-        m.
+def local_length(segment: Segment) -> float:
+    """Length over which what happens at a line of the surface dies away, m: the radius, or a
+    shell's ``2 sqrt(r t)``.
 
     Examples
     --------
@@ -162,37 +142,18 @@ def local_length(segment) -> float:
     return min(radius, SHELL * float(np.sqrt(radius * _wall(segment))))
 
 
-def corner_length(segment) -> float:
-    """Length over which stress at a corner is singular: the wall, or the radius of a solid shaft.
-
-    Parameters
-    ----------
-    segment : Segment
-
-    Returns
-    -------
-    float
-        m.
+def corner_length(segment: Segment) -> float:
+    """Length over which stress at a corner is singular, m: the wall, or the radius of a solid
+    shaft.
     """
     return min(_wall(segment), _radius(segment))
 
 
-def joint_length(segments, k: int) -> float:
-    """Length over which stress at the corners of a joint is singular, m.
+def joint_length(segments: Sequence[Segment], k: int) -> float:
+    """Length over which stress at the corners where segment k ends is singular, m.
 
-    The least of the walls on both sides, and of a disc that stands out further than it is thick, its
-    thickness.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    k : int
-        Place of the segment before the joint.
-
-    Returns
-    -------
-    float
-        m.
+    The least of the walls on both sides, and of a disc that stands out further than it is thick,
+    its thickness.
 
     Examples
     --------
@@ -231,34 +192,18 @@ def _bore(segment) -> tuple[float, float]:
     return -segment.inner0, -segment.inner1
 
 
-def segments_under(station, segments) -> list[int]:
-    """Places of the segments that a seat lies on.
-
-    Parameters
-    ----------
-    station : Port, Bearing or PointMass
-    segments : sequence of Segment
-    """
+def segments_under(station: Station, segments: Sequence[Segment]) -> list[int]:
+    """Places of the segments that a seat lies on."""
     lo, hi = station.lo + TOUCH, station.hi - TOUCH
     return [k for k, s in enumerate(segments) if s.y0 < hi and lo < s.y1]
 
 
-def ungraded_depth(segments, k: int) -> float:
-    """Depth of the cells of a coarse mesh under the surface of a segment.
+def ungraded_depth(segments: Sequence[Segment], k: int) -> float:
+    """Depth of the cells of a coarse mesh under the surface of segment k, m; zero where the surface
+    itself is graded.
 
     A shoulder grades the surface of its smaller side, and lines run on from there into the larger
     one: between them and a surface that no shoulder ends at there is nothing.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    k : int
-        Place of the segment.
-
-    Returns
-    -------
-    float
-        m; zero where the surface itself is graded.
 
     Examples
     --------
@@ -368,19 +313,8 @@ def _filled(a: float, b: float, length: float, near: float, far: float) -> np.nd
     return lines
 
 
-def distinct(values, tol):
-    """Ascending values without those that repeat the one before.
-
-    Parameters
-    ----------
-    values : sequence of float
-        Ascending, at least one.
-    tol : float
-        Values no further apart than this are one.
-
-    Returns
-    -------
-    list of float
+def distinct(values: Sequence[float], tol: float) -> list[float]:
+    """Ascending values without those that repeat the one before, to a tolerance.
 
     Examples
     --------

@@ -17,10 +17,6 @@ TOLD = 12
 def there_are(names: Sequence[str]) -> str:
     """Groups of a file in a sentence.
 
-    Parameters
-    ----------
-    names : sequence of str
-
     Examples
     --------
     >>> there_are(["core", "sleeve"])
@@ -34,13 +30,8 @@ def there_are(names: Sequence[str]) -> str:
 
 
 def found(name: str, known: Sequence[str]) -> str | None:
-    """The name of a group as the file writes it.
-
-    Parameters
-    ----------
-    name : str
-        As the scene writes it, in letters of either size.
-    known : sequence of str
+    """The name of a group as the file writes it, which the scene may in letters of either size;
+    None where there is none.
     """
     if name in known:
         return name
@@ -49,25 +40,9 @@ def found(name: str, known: Sequence[str]) -> str | None:
 
 
 def owners(deck: Deck, named: Sequence[str]) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Place of the group of each element.
-
-    Parameters
-    ----------
-    deck : Deck
-    named : sequence of str
-        Groups with materials of their own.
-
-    Returns
-    -------
-    owner : (ne,) ndarray of int
-        Among ``named``, one more for the rest.
-    rest : tuple of str
-        Groups with elements of the rest.
-
-    Raises
-    ------
-    MeshError
-        A group that is not there, or two that share elements.
+    """Place (ne,) of the group of each element among those with materials of their own, one more
+    for the rest; and the groups with elements of the rest. MeshError for a group that is not there,
+    or two that share elements.
     """
     by_name = {group.name: group for group in deck.groups}
     owner = np.full(deck.cells.shape[1], len(named))
@@ -96,12 +71,7 @@ def _short(deck: Deck, place: int) -> str:
 
 
 def material_groups(deck: Deck) -> tuple[str, ...]:
-    """Groups that tell materials, where there are at least two that share nothing.
-
-    Parameters
-    ----------
-    deck : Deck
-    """
+    """Groups that tell materials, where there are at least two that share nothing."""
     groups: list[Group] = [g for g in deck.groups if g.tells]
     apart = [g for g in groups if len(g.elements) < deck.cells.shape[1]]
     return tuple(g.name for g in apart) if len(apart) > 1 else ()

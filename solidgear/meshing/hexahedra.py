@@ -14,7 +14,8 @@ import numpy as np
 from skfem import MeshHex1, MeshHex2
 from skfem.element import ElementHex2
 
-from solidgear.meshing.blended import ENDS, HIGH, IN, LOW, OUT, Cell, quadrilaterals
+from solidgear.meshing.blended import quadrilaterals
+from solidgear.meshing.cells import ENDS, HIGH, IN, LOW, OUT, Cell
 from solidgear.meshing.layout import Layout
 from solidgear.meshing.quality import MeshError
 
@@ -51,11 +52,11 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     >>> from solidgear import Scene, Segment
     >>> from solidgear.meshing.grading import Grading
     >>> from solidgear.meshing.layout import layout
-    >>> from solidgear.meshing.closed_form import volume_of
+    >>> from solidgear.scene.closed_form import volume_of
     >>> from solidgear.meshing.quality import check_mesh
     >>> scene = Scene.from_parts([Segment.cylinder("rod", length=0.3, diameter=0.06)])
     >>> mesh, segment = hexahedra(scene, layout(scene, Grading(layers=0, core=True)))
-    >>> quality = check_mesh(mesh, volume=volume_of(scene.segments))
+    >>> quality = check_mesh(mesh, volume=volume_of(scene.outline))
     >>> quality.n_elements == len(segment)
     True
     """
@@ -71,15 +72,15 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     core = _core(k)
     rim = _rim(core)
     offsets = (2 * ElementHex2.doflocs).round().astype(int)  # (27, 3) in half cells
-    made = quadrilaterals(scene, plan)
+    cells, places = quadrilaterals(scene, plan)
     nodes, keys, owner = [], [], []
     a = np.arange(around)
     i, j = (g.ravel() for g in np.meshgrid(np.arange(k), np.arange(k), indexing="ij"))
     fan = offsets[None] + np.stack([0 * a, 2 * a, 0 * a], axis=-1)[:, None]
     turn = fan[..., 1] % (2 * around)
-    for cell in made.cells:
+    for cell in cells:
         # (across, along the shaft) in half cells: r and y
-        r, y = _nine(cell, made.places)
+        r, y = _nine(cell, places)
         segment = scene.segments[cell.segment]
         solid = segment.inner0 == segment.inner1 == 0.0
         if cell.ring == 0 and not solid and np.any(r[0] == 0.0):
@@ -163,8 +164,6 @@ def _nine(cell: Cell, places) -> tuple[np.ndarray, np.ndarray]:
     out[0, 0], out[2, 0], out[2, 2], out[0, 2] = corner
     out[1, [0, 2]] = (out[0, [0, 2]] + out[2, [0, 2]]) / 2
     out[:, 1] = (out[:, 0] + out[:, 2]) / 2
-    if cell.halfway:
-        out[[0, 2], 1, 0] = cell.halfway
     if cell.arc:
         edge, *centre = cell.arc
         a, b = (corner[end] - centre for end in ENDS[edge])

@@ -45,19 +45,7 @@ class Hole:
 
 
 def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
-    """Holes of a bolt circle with the element edge that a refinement asks of them.
-
-    Parameters
-    ----------
-    bolts : BoltCircle
-    segment : Segment
-    refinement : float
-        Divides the size.
-
-    Returns
-    -------
-    Hole
-    """
+    """Holes of a bolt circle in a segment, with the element edge that a refinement asks of them."""
     # a circle of fewer than eight edges is no hole
     taken = bolts.count * bolts.diameter**2 / 4
     share = taken / (min(segment.outer0, segment.outer1) ** 2 - segment.inner0**2)
@@ -70,23 +58,10 @@ def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
 def hole_places(
     bolts: Any, segment: Any, twists: list[tuple[Any, Any]], first: float, within: float
 ) -> list[Place]:
-    """Middles of holes in the straight sector, whose middle looks to +z.
+    """Middles (x, z) of holes in the straight sector, whose middle looks to +z, m.
 
-    Parameters
-    ----------
-    bolts : BoltCircle
-    segment : Segment
-    twists : list of (Segment, Teeth or Spline)
-        What turns the sections later.
-    first : float
-        Angle of the middle of the sector in the shaft, rad.
-    within : float
-        Angle from the middle of the sector up to which holes are wanted, rad.
-
-    Returns
-    -------
-    list of (float, float)
-        x and z, m.
+    `twists` turn the sections later, `first` is the angle of the middle of the sector in the shaft,
+    and `within` the angle from there up to which holes are wanted, rad.
 
     Examples
     --------
@@ -105,19 +80,8 @@ def hole_places(
 
 
 def hole_size(hole: Hole, places: Sequence[Place]) -> str:
-    """Formula of the element edge at holes: fine at their walls, growing with the distance from the
-    nearest one.
-
-    Parameters
-    ----------
-    hole : Hole
-    places : sequence of (float, float)
-        x and z of the middles of all holes that may be the nearest one, m.
-
-    Returns
-    -------
-    str
-        In x, y, z, m, as gmsh's parser reads it.
+    """Formula (in x, y, z, m) of the element edge at holes: fine at their walls, growing with the
+    distance from the nearest of some middles (x, z).
     """
     away = ""
     for x, z in places:

@@ -18,17 +18,8 @@ TURN = 0.1
 
 
 def lost_elements(mesh: Any) -> np.ndarray:
-    """Places where the surface is as if an element were lost.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet1 or MeshTet2
-        Its corners count.
-
-    Returns
-    -------
-    (3, n) ndarray
-        A point of each such place, m; one with three faces has three.
+    """Points (3, n), m, where the surface is as if an element were lost; one with three faces has
+    three.
     """
     p, outside = mesh.p, mesh.boundary_facets()
     faces, inside = mesh.facets[:, outside], mesh.t[:, mesh.f2t[0, outside]]

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.meshing.blended import ENDS, quadrilaterals
+from solidgear.meshing.blended import quadrilaterals
+from solidgear.meshing.cells import ENDS
 from solidgear.meshing.corner_layers import Pieces, cut_towards
 from solidgear.meshing.layout import Layout
 
@@ -58,16 +59,7 @@ class Meridian:
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:
-    """Mesh the meridian of a scene along a layout.
-
-    Parameters
-    ----------
-    scene : Scene
-    plan : Layout
-
-    Returns
-    -------
-    Meridian
+    """Mesh of the meridian of a scene along a layout.
 
     Examples
     --------
@@ -79,16 +71,16 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     >>> float(mesh.points[0].max()), float(mesh.points[1].max())
     (0.03, 0.3)
     """
-    made = quadrilaterals(scene, plan)
+    made, places = quadrilaterals(scene, plan)
     index: dict[int, int] = {}
-    for cell in made.cells:
+    for cell in made:
         for corner in cell.ids:
             index.setdefault(corner, len(index))
-    points = np.array([made.places[corner] for corner in index]).T
-    cells = np.array([[index[corner] for corner in cell.ids] for cell in made.cells]).T
-    edge, centre = np.full(len(made.cells), -1), np.zeros((2, len(made.cells)))
-    flip = np.zeros((4, len(made.cells)), bool)
-    for k, cell in enumerate(made.cells):
+    points = np.array([places[corner] for corner in index]).T
+    cells = np.array([[index[corner] for corner in cell.ids] for cell in made]).T
+    edge, centre = np.full(len(made), -1), np.zeros((2, len(made)))
+    flip = np.zeros((4, len(made)), bool)
+    for k, cell in enumerate(made):
         if cell.arc:
             edge[k], *centre[:, k] = cell.arc
         if cell.flip is not None:
@@ -96,9 +88,9 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     return Meridian(
         points,
         cells,
-        np.array([cell.segment for cell in made.cells]),
-        np.array([k for k, cell in enumerate(made.cells) if cell.ring == cell.count - 1]),
-        np.array([k for k, cell in enumerate(made.cells) if cell.ring == 0]),
+        np.array([cell.segment for cell in made]),
+        np.array([k for k, cell in enumerate(made) if cell.ring == cell.count - 1]),
+        np.array([k for k, cell in enumerate(made) if cell.ring == 0]),
         edge,
         centre,
         flip,
@@ -106,22 +98,8 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
 
 
 def drawn_across(flat: Meridian, across: Sequence[tuple[float, float]]) -> Meridian:
-    """A mesh with further lines, from side to opposite side through all cells in their way.
-
-    Parameters
-    ----------
-    flat : Meridian
-    across : sequence of (float, float)
-        y and r of a point on a side that each line passes, m.
-
-    Returns
-    -------
-    Meridian
-
-    Raises
-    ------
-    SolidgearError
-        If no side is there.
+    """A mesh with further lines, from side to opposite side through all cells in their way, each by
+    y and r of a point on a side that it passes, m; SolidgearError if no side is there.
     """
     through = [np.array([r, y]) for y, r in across]
     return _pieced(flat, cut_towards(flat.cells.T, flat.points.T, {}, CUT_RATIO, through))

@@ -62,15 +62,8 @@ class FileMesh:
     remarks: tuple[str, ...] = ()
 
     def faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Its surface and what lies between groups.
-
-        Returns
-        -------
-        points : (3, n) ndarray
-        triangles : (3, t) ndarray of int
-            Quadrilaterals are cut in two.
-        sides : (2, t) ndarray of int
-            Owner on each side, -1 outside.
+        """Its surface and what lies between groups: (3, n) points, (3, t) triangles, into which
+        quadrilaterals are cut, and (2, t) owners on both sides, -1 outside.
         """
         f2t = self.mesh.f2t
         sides = np.where(f2t >= 0, self.owner[f2t], -1)
@@ -106,25 +99,11 @@ def _around(p, quads) -> np.ndarray:
 
 
 def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMesh:
-    """The volume mesh of a file.
+    """The volume mesh of a file, in which some groups have materials of their own.
 
-    Parameters
-    ----------
-    path : str
-    place : Placing
-    named : tuple of str
-        Groups of the file with materials of their own.
-
-    Returns
-    -------
-    FileMesh
-
-    Raises
-    ------
-    MeshError
-        A file that cannot be read, a surface mesh, several kinds of elements, elements that are not
-        assembled here or are inverted, a mesh in pieces or with a hole where an element is missing,
-        and groups that are not there or share elements.
+    MeshError for a file that cannot be read, a surface mesh, several kinds of elements, elements
+    that are not assembled here or are inverted, a mesh in pieces or with a hole where an element is
+    missing, and groups that are not there or share elements.
     """
     deck = read(path)
     points = place.of(deck.points)

@@ -12,14 +12,15 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.machine.isolated import IsolatedError, isolated
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.round_part import ON_LINE, RoundPart, Wall, round_part
+from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
 from solidgear.meshing.step import look
 from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Frustum, Outline
 from solidgear.scene.recognised import Recognised
 
 #: seconds after which a file is given up
@@ -36,23 +37,9 @@ LARGEST = 500_000_000
 
 
 def recognise(table: BodyTable, folder: Path) -> Recognised:
-    """Read a part and recognise the body of revolution inside it.
-
-    Parameters
-    ----------
-    table : BodyTable
-    folder : Path
-        That the name of the file is relative to.
-
-    Returns
-    -------
-    Recognised
-
-    Raises
-    ------
-    SceneError
-        A file that is no part, another unit or size than the table says, or a part that is not
-        round about the axis.
+    """A part and the body of revolution inside it, from a file in a folder; SceneError for a file
+    that is no part, another unit or size than the table says, or a part that is not round about the
+    axis.
     """
     path = (folder / table.file).resolve()
     try:
@@ -77,7 +64,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     points = points - [[0.0], [start], [0.0]]
     shares, kinds = _shared_out(found_in, found.walls)
     walls = tuple(
-        Wall(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
+        Frustum(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
         for w in (share.wall for share in shares)
     )
     body = BodyFile(
@@ -90,7 +77,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         foot=(x, y, z),
         volume=found_in.volume,
         round_share=found.share,
-        round_volume=volume_of(walls) / found_in.volume,  # type: ignore[arg-type]
+        round_volume=volume_of(Outline(walls)) / found_in.volume,
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else found.facets / found_in.volume,
         groups=found_in.groups,
@@ -332,20 +319,8 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
 def seat_share(
     points: np.ndarray, triangles: np.ndarray, radius: float, lo: float, hi: float
 ) -> float:
-    """Area of a surface on a cylinder between two places, over that of the cylinder.
-
-    Parameters
-    ----------
-    points : (3, n) ndarray
-        m.
-    triangles : (3, t) ndarray of int
-    radius, lo, hi : float
-        m.
-
-    Returns
-    -------
-    float
-        A whole turn of chords is a little less than 1.
+    """Area of a surface of (3, t) triangles on a cylinder between two places, over that of the
+    cylinder: a whole turn of chords is a little less than 1.
     """
     r = np.hypot(points[0], points[2])[triangles]
     on = (np.abs(r - radius) <= 10 * ON_LINE * radius).all(axis=0)

@@ -76,7 +76,7 @@ def check_mesh(
         Right-handed. scikit-fem itself integrates with |det J|, and its `init_tensor` meshes are
         left-handed.
     volume : float, optional
-        Volume the mesh should have [m^3], see :func:`solidgear.meshing.closed_form.volume_of`; None
+        Volume the mesh should have [m^3], see :func:`solidgear.scene.closed_form.volume_of`; None
         skips the comparison.
     rtol : float
         Relative mismatch of volume that is still accepted.
@@ -130,37 +130,14 @@ def check_mesh(
 
 
 def element_ratios(mesh: Mesh) -> np.ndarray:
-    """(min det J) / (max det J) inside each element; no gate.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
-
-    Returns
-    -------
-    (n_elements,) ndarray
-        1 for affine elements, -1 where no det J is positive.
-
-    Raises
-    ------
-    MeshError
-        Not a volume mesh, or one without elements.
+    """(min det J) / (max det J) inside each element, no gate: 1 for affine ones, -1 where no det J
+    is positive. MeshError for what is no volume mesh, or has no elements.
     """
     return _measure(mesh)[3]
 
 
 def element_volumes(mesh: Mesh) -> np.ndarray:
-    """Volume of each element; no gate.
-
-    Parameters
-    ----------
-    mesh : skfem.MeshTet1, MeshTet2, MeshHex1 or MeshHex2
-
-    Returns
-    -------
-    (n_elements,) ndarray
-        m^3.
-    """
+    """Volume of each element, m^3; no gate."""
     return np.concatenate([_polynomials(mesh, part)[2] for part in _parts(mesh)])
 
 

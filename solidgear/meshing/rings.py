@@ -6,13 +6,19 @@ band is high, cells along the band bend as a plate does, and near its free faces
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial, reduce
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from solidgear.meshing.bands import first_of_run
-from solidgear.meshing.blocks import layers_at
+from solidgear.meshing.bands import Bands, first_of_run
 from solidgear.meshing.grading import Grading, corner_length, graded, joint_length, segments_under
+from solidgear.scene.outline import Surface
+
+if TYPE_CHECKING:
+    from solidgear.scene.parts import Segment
+    from solidgear.scene.shaft import Shaft
 
 #: longest cell of a plate, in its outer radii. With one cell from the axis to the rim the second mesh
 #: of a plate of 0.01 diameters was 1e-2 off in bending 1, with three 1e-4; in thicker ones cells as
@@ -24,69 +30,76 @@ FREE_EDGE = 1.0
 
 #: layers towards a boundary of a band, and where they begin, m
 Need = tuple[int, float]
+#: needs by boundary and segment
+Needs = dict[tuple[int, int], Need]
+#: radii of the boundaries of every segment at one of its ends, m
+Radii = Sequence[np.ndarray]
 
 
-def fractions_of(
-    scene, grading: Grading, attachments, bands, left, right, joints, strips
-) -> dict[tuple[int, int], np.ndarray]:
-    """Subdivision of every radial band, graded towards the surfaces that carry singular points.
+class Run(NamedTuple):
+    """Neighbouring segments that have a band, without a gap between them.
 
-    Parameters
+    Attributes
     ----------
-    scene : Scene
-    grading : Grading
-    attachments : tuple of str or None
-        As for :func:`solidgear.meshing.layout.layout`.
-    bands, left, right
-        From :func:`solidgear.meshing.bands.radial_bands`.
-    joints : list of Joint
-    strips : dict
-        From :func:`solidgear.meshing.blocks.strips_of`.
-
-    Returns
-    -------
-    dict of (band index, first segment of a run) -> (m + 1,) ndarray
-        Of each band, 0 to 1 outwards.
+    band : int
+    segments : tuple of int
+    thicknesses : tuple of float
+        Of the band at both ends of each segment, m.
+    on_axis : bool
+        Whether it begins on the axis, the only band boundary that is no surface anywhere.
     """
-    segments = scene.segments
-    needs = _needs(scene, grading, attachments, bands, joints)
-    finer = partial(_finer, ratio=grading.ratio)
-    fractions = {}
+
+    band: int
+    segments: tuple[int, ...]
+    thicknesses: tuple[float, ...]
+    on_axis: bool
+
+    @property
+    def key(self) -> tuple[int, int]:
+        """Band and first segment."""
+        return self.band, self.segments[0]
+
+
+def runs_of(bands: Bands, left: Radii, right: Radii) -> Iterator[Run]:
+    """All runs, band by band; radii of the boundaries are those at the two ends of every segment."""
     for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
         having = [k for k, b in enumerate(bands) if b[0] <= band < b[1]]
         first_of = {k: first_of_run(bands, band, k) for k in having}
         for first in sorted(set(first_of.values())):
-            run = [k for k in having if first_of[k] == first]
-            place = {k: band - bands[k][0] for k in run}
-            thickness = max(
-                float(max(np.diff(left[k])[i], np.diff(right[k])[i])) for k, i in place.items()
-            )
-            for side in (0, 1):
-                strip = strips.get((band, first, side))
-                thickness -= strip.depth if strip else 0.0
-            # The axis is the only band boundary that is no surface anywhere.
-            on_axis = any(
-                i == 0 and left[k][0] == 0.0 and right[k][0] == 0.0 for k, i in place.items()
-            )
-            inside, outside = (
-                reduce(finer, (needs.get((boundary, k), (0, thickness)) for k in run))
-                for boundary in (band, band + 1)
-            )
-            near, far = (min(sizes) for sizes in zip(*(grading.cell(segments[k]) for k in run)))
-            thick = sum(segments[k].length for k in run)
-            if thick < thickness and not grading.plain:
-                longest = max(thick, PLATE_CELL * max(_outermost(segments[k]) for k in run))
-                near, far = min(near, longest), min(far, longest)
-                edge = min(1, grading.across), min(FREE_EDGE * thick, grading.reach * thickness)
-                inside, outside = (need if need[0] else edge for need in (inside, outside))
-            layers = (0 if on_axis else inside[0], outside[0])
-            reach = (inside[1], outside[1])
-            whole = not (on_axis and grading.core)
-            part = thickness if whole else thickness / 2
-            lines = graded(part, (near, far), grading.ratio, reach, grading.refinement, *layers)
-            lines = lines if whole else np.concatenate([[0.0], part + lines])
-            fractions[band, first] = lines / thickness
-    return fractions
+            run = tuple(k for k in having if first_of[k] == first)
+            place = [(k, band - bands[k][0]) for k in run]
+            ends = [(end[k][i], end[k][i + 1]) for k, i in place for end in (left, right)]
+            solid = any(i == 0 and left[k][0] == right[k][0] == 0.0 for k, i in place)
+            yield Run(band, run, tuple(float(b - a) for a, b in ends), solid)
+
+
+def ring_lines(
+    segments: Sequence[Segment], grading: Grading, run: Run, needs: Needs, thickness: float
+) -> np.ndarray:
+    """Subdivision of a band, 0 to 1 outwards, graded towards the surfaces that carry singular
+    points; its thickness is in m, and segments are all of the shaft.
+    """
+    inside, outside = (
+        reduce(
+            partial(_finer, ratio=grading.ratio),
+            (needs.get((boundary, k), (0, thickness)) for k in run.segments),
+        )
+        for boundary in (run.band, run.band + 1)
+    )
+    near, far = (min(sizes) for sizes in zip(*(grading.cell(segments[k]) for k in run.segments)))
+    thick = sum(segments[k].length for k in run.segments)
+    if thick < thickness and not grading.plain:
+        longest = max(thick, PLATE_CELL * max(_outermost(segments[k]) for k in run.segments))
+        near, far = min(near, longest), min(far, longest)
+        edge = min(1, grading.across), min(FREE_EDGE * thick, grading.reach * thickness)
+        inside, outside = (need if need[0] else edge for need in (inside, outside))
+    layers = (0 if run.on_axis else inside[0], outside[0])
+    reach = (inside[1], outside[1])
+    whole = not (run.on_axis and grading.core)
+    part = thickness if whole else thickness / 2
+    lines = graded(part, (near, far), grading.ratio, reach, grading.refinement, *layers)
+    lines = lines if whole else np.concatenate([[0.0], part + lines])
+    return lines / thickness
 
 
 def _outermost(segment) -> float:
@@ -103,27 +116,31 @@ def _finer(one: Need, other: Need, ratio: float) -> Need:
     return near if near[1] < ratio * far[1] else far
 
 
-def _needs(scene, grading: Grading, attachments, bands, joints) -> dict[tuple[int, int], Need]:
-    """Layers and reach (m) that a band boundary needs in a segment."""
+def needs_of(
+    scene: Shaft,
+    grading: Grading,
+    attachments: tuple[str, ...] | None,
+    bands: Bands,
+    corners: Mapping[tuple[int, Surface], int],
+) -> Needs:
+    """Layers and reach (m) that a band boundary needs in a segment; `corners` are layers towards
+    those of the outline, by joint and surface.
+    """
     segments = scene.segments
-    needs: dict[tuple[int, int], Need] = {}
+    needs: Needs = {}
 
     def add(boundary: int, segment: int, layers: int, reach: float) -> None:
         if layers:
             known = needs.get((boundary, segment), (0, 0.0))
             needs[boundary, segment] = _finer(known, (layers, reach), grading.ratio)
 
-    for i, (a, b) in enumerate(zip(segments, segments[1:])):
-        reach = grading.radial_reach * joint_length(segments, i)
-        joint = next((j for j in joints if j.index == i + 1), None)
+    for (joint, surface), layers in corners.items():
+        reach = grading.radial_reach * joint_length(segments, joint - 1)
+        (low, high), (other_low, other_high) = bands[joint - 1 : joint + 1]
         # A band boundary meets a shoulder where it is the surface of the smaller neighbour.
-        for boundary, surface in (
-            (min(bands[i][1], bands[i + 1][1]), "outer"),
-            (max(bands[i][0], bands[i + 1][0]), "bore"),
-        ):
-            layers = layers_at(joint, a, b, surface, grading.across, reach, grading.ratio)
-            for k in (i, i + 1):
-                add(boundary, k, layers, reach)
+        boundary = min(high, other_high) if surface == "outer" else max(low, other_low)
+        for k in (joint - 1, joint):
+            add(boundary, k, layers, reach)
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)

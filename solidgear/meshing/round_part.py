@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solidgear.scene.outline import Frustum
+
 #: distance from a line of the meridian, over the largest radius, at which a point is on it: mesh
 #: files carry six digits and more
 ON_LINE = 2e-5
@@ -48,24 +50,13 @@ class Lathe(NamedTuple):
         return self.r0 + (self.r1 - self.r0) * (y - self.y0) / (self.y1 - self.y0)
 
 
-class Wall(NamedTuple):
-    """A frustum of the round part, m."""
-
-    y0: float
-    y1: float
-    outer0: float
-    outer1: float
-    inner0: float
-    inner1: float
-
-
 @dataclass(frozen=True)
 class RoundPart:
     """The recognised part.
 
     Attributes
     ----------
-    walls : tuple of Wall
+    walls : tuple of Frustum
         End to end.
     surfaces : tuple of Lathe
         Round surfaces, outer ones and bores.
@@ -77,7 +68,7 @@ class RoundPart:
         be many-sided, and no facet but a curved one speaks for something round.
     """
 
-    walls: tuple[Wall, ...]
+    walls: tuple[Frustum, ...]
     surfaces: tuple[Lathe, ...]
     share: float
     facets: float = 0.0
@@ -219,7 +210,7 @@ def _lathe(y, r, area, largest) -> Lathe | None:
     return Lathe(y0, y1, max(r0, 0.0), max(r1, 0.0), float(area.sum() / whole))
 
 
-def _walls(points, triangles, surfaces, first, last) -> tuple[list[Wall], bool]:
+def _walls(points, triangles, surfaces, first, last) -> tuple[list[Frustum], bool]:
     """Frusta end to end between the places where something begins or ends, and whether some of
     them are of mean radii.
     """
@@ -230,7 +221,7 @@ def _walls(points, triangles, surfaces, first, last) -> tuple[list[Wall], bool]:
         if place > cuts[-1] + near:
             cuts.append(place)
     cuts[-1] = last
-    walls: list[Wall] = []
+    walls: list[Frustum] = []
     by_rays = False
     for y0, y1 in zip(cuts, cuts[1:]):
         here = [s for s in surfaces if s.y0 < y0 + near and s.y1 > y1 - near]
@@ -245,7 +236,7 @@ def _walls(points, triangles, surfaces, first, last) -> tuple[list[Wall], bool]:
         bore = min(rest, key=lambda s: s.radius(middle), default=None)
         if out is not None and (bore is not None or inner == 0.0):
             ends = [s.radius(e) if s else 0.0 for s in (out, bore) for e in (y0, y1)]
-            walls.append(Wall(float(y0), float(y1), *map(float, ends)))
+            walls.append(Frustum(float(y0), float(y1), *map(float, ends)))
         else:
             walls += _sliced(points, triangles, y0, y1, out, bore)
             by_rays = True
@@ -264,7 +255,7 @@ def _at_radius(surfaces, middle, radius) -> list[Lathe]:
     )
 
 
-def _sliced(points, triangles, y0, y1, out, bore) -> list[Wall]:
+def _sliced(points, triangles, y0, y1, out, bore) -> list[Frustum]:
     """Frusta by mean radii where the surface is not round."""
     edges = np.linspace(y0, y1, SLICES + 1)
     walls = []
@@ -278,24 +269,26 @@ def _sliced(points, triangles, y0, y1, out, bore) -> list[Wall]:
             for s, mean in ((out, outer), (bore, inner))
             for e in (a, b)
         ]
-        walls.append(Wall(float(a), float(b), *map(float, ends)))
+        walls.append(Frustum(float(a), float(b), *map(float, ends)))
     return walls
 
 
-def _joined(walls, near) -> list[Wall]:
+def _joined(walls, near) -> list[Frustum]:
     """Neighbours on one line are one wall: a cut that a bore made is none for the outer surface,
     but both are asked.
     """
-    out: list[Wall] = []
+    out: list[Frustum] = []
     for wall in walls:
         if out and _in_line(out[-1], wall):
             before = out.pop()
-            wall = Wall(before.y0, wall.y1, before.outer0, wall.outer1, before.inner0, wall.inner1)
+            wall = Frustum(
+                before.y0, wall.y1, before.outer0, wall.outer1, before.inner0, wall.inner1
+            )
         out.append(wall)
     return out
 
 
-def _in_line(a: Wall, b: Wall) -> bool:
+def _in_line(a: Frustum, b: Frustum) -> bool:
     for a0, a1, b0, b1 in ((a[2], a[3], b[2], b[3]), (a[4], a[5], b[4], b[5])):
         slope = (a1 - a0) / (a.y1 - a.y0)
         other = (b1 - b0) / (b.y1 - b.y0)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.meshing.round_part import Wall
+from solidgear.scene.outline import Frustum
 
 #: two places along y nearer than this part of the length are one
 SAME_PLACE = 2e-6
@@ -20,12 +20,12 @@ class Share(NamedTuple):
 
     Attributes
     ----------
-    wall : Wall
+    wall : Frustum
     groups : tuple of (int, float)
         Groups and their shares of its volume, roughly where there are several.
     """
 
-    wall: Wall
+    wall: Frustum
     groups: tuple[tuple[int, float], ...]
 
     @property
@@ -35,25 +35,13 @@ class Share(NamedTuple):
 
 
 def shared_out(
-    points: np.ndarray, triangles: np.ndarray, sides: np.ndarray, walls: Sequence[Wall]
+    points: np.ndarray, triangles: np.ndarray, sides: np.ndarray, walls: Sequence[Frustum]
 ) -> list[Share]:
-    """Frusta cut where groups meet in a plane across the axis, and what each is made of.
+    """Frusta of a part, cut where groups meet in a plane across the axis, and what each is made of:
+    of one group only if no other comes into it anywhere.
 
-    Parameters
-    ----------
-    points : (3, n) ndarray
-        m; y is the axis.
-    triangles : (3, t) ndarray of int
-        The surface of the part, and what lies between groups.
-    sides : (2, t) ndarray of int
-        Group on each side of a triangle, -1 outside.
-    walls : sequence of Wall
-        Of the whole part.
-
-    Returns
-    -------
-    list of Share
-        A frustum is of one group only if no other comes into it anywhere.
+    `triangles` (3, t) are the surface of the part and what lies between groups, `sides` (2, t) the
+    groups on both sides of each, -1 outside; y is the axis, m.
     """
     y = points[1][triangles]
     low, high = y.min(axis=0), y.max(axis=0)
@@ -80,7 +68,7 @@ def shared_out(
     return out
 
 
-def _cut(walls: Sequence[Wall], places: Iterable[float], near: float) -> Iterable[Wall]:
+def _cut(walls: Sequence[Frustum], places: Iterable[float], near: float) -> Iterable[Frustum]:
     for wall in walls:
         start = wall
         for place in places:

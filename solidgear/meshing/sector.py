@@ -10,7 +10,7 @@ each other's image and volumes what they were.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import cos, gcd, pi, sin
 from typing import Any
@@ -24,12 +24,15 @@ from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.holes import Hole, hole_of, hole_places, hole_size
-from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
+from solidgear.meshing.revolved import graded_corners
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
-from solidgear.meshing.tetrahedra import filled
+from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
+from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
+from solidgear.scene.outline import Outline
+from solidgear.scene.parts import Segment
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9
@@ -74,16 +77,8 @@ class SectorMesh:
 
 
 def sectors_of(features: Iterable[Any]) -> int:
-    """Number of equal sectors of a shaft with cyclic features.
-
-    Parameters
-    ----------
-    features : iterable of Teeth, Spline or BoltCircle
-
-    Returns
-    -------
-    int
-        The greatest common divisor of their counts; 0 without any.
+    """Number of equal sectors of a shaft with cyclic features, the greatest common divisor of their
+    counts; 0 without any.
 
     Examples
     --------
@@ -136,24 +131,23 @@ def sector_mesh(
     if reason:
         raise MeshError(reason)
     gmsh = import_gmsh()
-    shapes = [Frustum.of(s) for s in segments]
-    tolerance = tolerance_of(shapes)
+    outline = Outline(segments)
     toothed = {f.segment: f for f in features if f.toothed}
     plane = mirror_angle(features, count)
     half = plane is not None
     first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = draw_sector(gmsh, segments, shapes, toothed, planes, circles, count, half)
+        own = draw_sector(gmsh, segments, toothed, planes, circles, count, half)
         holes = [f for f in features if not f.toothed]
         own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
         gmsh.model.occ.synchronize()
         drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
         if not half:
-            pair_faces(gmsh, count, tolerance)
-        corners = corners_of(slabs_between(shapes, planes, tolerance), circles, tolerance)
-        formulas = size_formulas(shapes, corners, size, graded_size, None, around)
+            pair_faces(gmsh, count)
+        corners = graded_corners(outline, planes, circles)
+        formulas = size_formulas(outline, corners, size, graded_size, None, around)
         formulas += tooth_sizes(segments, features, refinement)
         for f, here, hole in hole_sizes(segments, features, refinement):
             # those in the sector, and on either side of it
@@ -162,9 +156,8 @@ def sector_mesh(
         set_size(gmsh, formulas, size)
         mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     exact = volume_of_sector(segments, features, count) / (2 if half else 1)
-    quality = check_mesh(mesh, volume=exact, rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0))
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    quality = check_mesh(mesh, volume=exact, rtol=lost_by_arcs(around))
+    segment = segment_of_elements(mesh, segments)
     if half:
         return SectorMesh(mesh, segment, count, mesh.p, quality, drawn, first, True)
     # turned to where the features look
@@ -172,64 +165,31 @@ def sector_mesh(
     return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn, first)
 
 
-def tooth_sizes(segments, features, refinement: float) -> list[str]:
-    """Formulas of element size at teeth, as gmsh reads them.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    refinement : float
-
-    Returns
-    -------
-    list of str
-    """
+def tooth_sizes(
+    segments: Iterable[Segment], features: Iterable[Any], refinement: float
+) -> list[str]:
+    """Formulas of element size at teeth, as gmsh reads them."""
     of = {s.name: s for s in segments}
     return [tooth_size(f, of[f.segment], refinement) for f in features if f.toothed]
 
 
-def hole_sizes(segments, features, refinement: float) -> list[tuple[Any, Any, Hole]]:
-    """Holes with their element sizes, and the segments that they are in.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    refinement : float
-
-    Returns
-    -------
-    list of (BoltCircle, Segment, Hole)
-    """
+def hole_sizes(
+    segments: Iterable[Segment], features: Iterable[Any], refinement: float
+) -> list[tuple[Any, Any, Hole]]:
+    """Bolt circles, the segments that they are in, and their holes with element sizes."""
     of = {s.name: s for s in segments}
     found = [(f, of[f.segment]) for f in features if not f.toothed]
     return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
-def volume_of_sector(segments, features, count: int) -> float:
-    """Closed form of the volume of a sector.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    features : sequence of Teeth, Spline or BoltCircle
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    float
-        m^3.
-    """
+def volume_of_sector(segments: Sequence[Segment], features: Iterable[Any], count: int) -> float:
+    """Closed form of the volume of one of so many sectors, m^3."""
     toothed = {f.segment: f for f in features if f.toothed}
     total = 0.0
     for s in segments:
         area = section_area(toothed[s.name]) if s.name in toothed else pi
-        outer, inner = (
-            (a * a + a * b + b * b) / 3 for a, b in ((s.outer0, s.outer1), (s.inner0, s.inner1))
-        )
-        total += (area * outer - pi * inner) * (s.y1 - s.y0)
+        total += area * integrals_along(s.length, s.outer0, s.outer1)[0]
+        total -= pi * integrals_along(s.length, s.inner0, s.inner1)[0]
     for f in features:
         if not f.toothed:
             lo, hi = f.reach(next(s for s in segments if s.name == f.segment))
@@ -245,26 +205,8 @@ def _turned(mesh: MeshTet2, by) -> MeshTet2:
 
 
 def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Nodes on one cut face that a turn takes to those of the other.
-
-    Parameters
-    ----------
-    nodes : (3, n) ndarray
-        m.
-    count : int
-        Sectors around.
-    low, high : (k,) ndarray of int
-        Nodes on both cut faces.
-
-    Returns
-    -------
-    (k,) ndarray of int
-        The one of ``low`` for every one of ``high``.
-
-    Raises
-    ------
-    MeshError
-        If one of them has no partner.
+    """Nodes on one cut face that a turn takes to those of the other, one for every one of `high`;
+    MeshError if one of them has no partner.
     """
     turned = rotation(1, 2 * pi / count)[:3, :3] @ nodes[:, low]
     gap, at = cKDTree(turned.T).query(nodes[:, high].T)
@@ -280,16 +222,7 @@ def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) ->
 
 
 def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices of the two cut faces, without those on the axis, and these.
-
-    Parameters
-    ----------
-    made : SectorMesh
-
-    Returns
-    -------
-    low, high, axis : ndarray of int
-    """
+    """Vertices of the lower and of the higher cut face, without those on the axis, and these."""
     used = np.unique(made.mesh.t)
     x, _, z = made.straight[:, used]
     near = np.hypot(x, z) < MATCH * np.ptp(made.straight[1])
@@ -301,16 +234,8 @@ def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
-    """The mesh of the whole shaft, sector by sector around the axis.
-
-    Parameters
-    ----------
-    made : SectorMesh
-
-    Returns
-    -------
-    mesh : skfem.MeshTet2
-    segment : (ne,) ndarray of int
+    """The mesh of the whole shaft, sector by sector around the axis, and the segment of each
+    element.
     """
     mesh, count = made.mesh, made.count
     corners = np.unique(mesh.t)
@@ -329,16 +254,8 @@ def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
 
 
 def mirrored(made: SectorMesh) -> SectorMesh:
-    """The whole sector from its half: the elements, and their images in the middle plane.
-
-    Parameters
-    ----------
-    made : SectorMesh
-        A half; a whole sector is given back as it is.
-
-    Returns
-    -------
-    SectorMesh
+    """The whole sector from its half, the elements and their images in the middle plane; a whole
+    one as it is.
     """
     if not made.half:
         return made
@@ -355,23 +272,11 @@ def mirrored(made: SectorMesh) -> SectorMesh:
     return SectorMesh(turned, segment, made.count, whole.p, quality, 2 * made.drawn, made.turn)
 
 
-def joined(mesh: MeshTet2, maps, number: np.ndarray, total: int) -> MeshTet2:
-    """One mesh of turned or mirrored copies of a mesh.
+def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total: int) -> MeshTet2:
+    """One mesh of copies of a mesh, turned or mirrored by orthogonal maps.
 
-    Parameters
-    ----------
-    mesh : skfem.MeshTet2
-    maps : sequence of (3, 3) ndarray
-        Orthogonal, one a copy.
-    number : (copies, nv) ndarray of int
-        What the vertices of every copy are called; those that copies share come to lie on each
-        other.
-    total : int
-        Vertices of all copies.
-
-    Returns
-    -------
-    skfem.MeshTet2
+    `number` (copies, nv) says what the vertices of every copy are called, of a total of all copies;
+    those that copies share come to lie on each other.
     """
     points, cells, ends, middles = np.zeros((3, total)), [], [], []
     at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]

@@ -9,11 +9,12 @@ import numpy as np
 from solidgear.frames import rotation
 from solidgear.meshing.holes import hole_places
 from solidgear.meshing.quality import MeshError
+from solidgear.meshing.revolved import draw_revolved
 from solidgear.meshing.teeth import half_outline, outline
-from solidgear.meshing.tetrahedra import draw_revolved
+from solidgear.scene.outline import Outline
 
 
-def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, half: bool):
+def draw_sector(gmsh, segments, toothed, planes, circles, count: int, half: bool):
     """Volumes of the sector, or of its half from the middle on: wedges of runs of plain segments,
     and slabs of toothed ones.
     """
@@ -29,11 +30,11 @@ def draw_sector(gmsh, segments, shapes, toothed, planes, circles, count: int, ha
         else:
             runs.append([i])
     for run in runs:
-        own = [shapes[i] for i in run]
+        own = [segments[i] for i in run]
         inside = [
             [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
         ]
-        draw_revolved(gmsh, own, inside[0], inside[1], start, turn)
+        draw_revolved(gmsh, Outline(own), inside[0], inside[1], start, turn)
     gmsh.model.occ.synchronize()
     return gmsh.model.getEntities(3)
 
@@ -85,7 +86,7 @@ def drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
     return [entity for entity in cut if entity[0] == 3]
 
 
-def pair_faces(gmsh, count: int, tolerance: float) -> None:
+def pair_faces(gmsh, count: int) -> None:
     """Tell gmsh which cut faces carry the same mesh."""
     half = pi / count
     low: dict[int, tuple[float, ...]] = {}

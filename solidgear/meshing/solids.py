@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import acos
+from typing import Any
 
 import numpy as np
 
@@ -18,27 +19,9 @@ from solidgear.meshing.quality import MeshError
 TOLD = 8
 
 
-def read_solids(gmsh, path: str, place: Placing, *, several: bool) -> list[int]:
-    """The solids of a file, turned and shifted; lengths are metres.
-
-    Parameters
-    ----------
-    gmsh : module
-        With a session.
-    path : str
-    place : Placing
-    several : bool
-        Whether there may be more than one.
-
-    Returns
-    -------
-    list of int
-        In the order of the file.
-
-    Raises
-    ------
-    MeshError
-        A file that cannot be read, or one without a solid, or with several where one is wanted.
+def read_solids(gmsh: Any, path: str, place: Placing, *, several: bool) -> list[int]:
+    """The solids of a file in its order, turned and shifted, in metres; MeshError where it cannot
+    be read, or has no solid, or several where one is wanted.
     """
     gmsh.option.setString("Geometry.OCCTargetUnit", "M")
     occ = gmsh.model.occ
@@ -68,17 +51,7 @@ def read_solids(gmsh, path: str, place: Placing, *, several: bool) -> list[int]:
 
 
 def axis_angle(turn: np.ndarray) -> tuple[tuple[float, float, float], float]:
-    """Axis and angle of a rotation.
-
-    Parameters
-    ----------
-    turn : (3, 3) ndarray
-
-    Returns
-    -------
-    axis : tuple of float
-    angle : float
-        rad, 0 to pi.
+    """Axis and angle (rad, 0 to pi) of a (3, 3) rotation.
 
     Examples
     --------
@@ -98,29 +71,11 @@ def axis_angle(turn: np.ndarray) -> tuple[tuple[float, float, float], float]:
 
 
 def solid_owners(
-    gmsh, solids: list[int], named: Sequence[str]
+    gmsh: Any, solids: list[int], named: Sequence[str]
 ) -> tuple[list[int], tuple[str, ...]]:
-    """Place of each solid among those with materials of their own.
-
-    Parameters
-    ----------
-    gmsh : module
-    solids : list of int
-        Numbered from 1 in the order of the file.
-    named : sequence of str
-        Such numbers.
-
-    Returns
-    -------
-    owner : list of int
-        One more than the last place for the rest.
-    rest : tuple of str
-        Numbers of the rest.
-
-    Raises
-    ------
-    MeshError
-        A number that is not there, or twice.
+    """Place of each solid among the numbers (from 1, in the order of the file) of those with
+    materials of their own, one more than the last place for the rest; and the numbers of the rest.
+    MeshError for a number that is not there, or twice.
     """
     numbers = [str(k) for k in range(1, len(solids) + 1)]
     for name in named:
@@ -137,25 +92,10 @@ def _size(gmsh, tag: int) -> str:
     return f"of {1e6 * occ.getMass(3, tag):.4g} cm^3 at {mm(occ.getCenterOfMass(3, tag))}"
 
 
-def fragmented(gmsh, solids: list[int], tools: list[tuple[int, int]]) -> list[list[int]]:
-    """Solids cut by tools and by each other, so that they share the faces where they touch.
-
-    Parameters
-    ----------
-    gmsh : module
-    solids : list of int
-    tools : list of (int, int)
-        Dimension and tag of circles and discs.
-
-    Returns
-    -------
-    list of list of int
-        Pieces of each solid.
-
-    Raises
-    ------
-    MeshError
-        If they cannot be cut, or solids overlap or do not touch.
+def fragmented(gmsh: Any, solids: list[int], tools: list[tuple[int, int]]) -> list[list[int]]:
+    """Pieces of each solid, cut by circles and discs (dimension and tag) and by each other, so that
+    they share the faces where they touch; MeshError where they cannot be cut, overlap or do not
+    touch.
     """
     occ = gmsh.model.occ
     if len(solids) == 1 and not tools:

@@ -66,25 +66,11 @@ class Seen:
 
 
 def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
-    """Triangles on the surface of the part in a STEP file.
+    """Triangles on the surface of the part in a STEP file, in the unit that it names.
 
-    Parameters
-    ----------
-    path : str
-    place : Placing
-        Its unit is not used: STEP files name their own.
-    named : tuple of str
-        Numbers of solids with materials of their own; without any, one solid is wanted.
-
-    Returns
-    -------
-    Seen
-
-    Raises
-    ------
-    MeshError
-        No part, several without names, solids that overlap or do not touch, an open one, or faces
-        that cannot be meshed.
+    `named` are numbers of solids with materials of their own; without any, one solid is wanted.
+    MeshError where there is no part, several without names, solids that overlap or do not touch, an
+    open one, or faces that cannot be meshed.
     """
     gmsh = import_gmsh()
     with Session(gmsh):

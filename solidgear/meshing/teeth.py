@@ -9,22 +9,13 @@ import numpy as np
 
 from solidgear.meshing.cuts import ACROSS, GROWTH
 from solidgear.meshing.element_size import _num
+from solidgear.scene.closed_form import integrals_along
 from solidgear.scene.features.toothed import arc
 
 
 def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the section of a sector, from one cut face to the other.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    angle, radius : (k,) ndarray
-        rad, from the middle of the sector; over the pitch radius.
+    """Corners of the section of one of so many sectors, from one cut face to the other: angles from
+    its middle, rad, and radii over the pitch radius.
 
     Examples
     --------
@@ -51,18 +42,8 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the section of half a sector, from its middle to a cut face.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    angle, radius : (k,) ndarray
-        As of :func:`outline`.
+    """Corners of the section of half a sector, from its middle to a cut face, as of
+    :func:`outline`.
 
     Examples
     --------
@@ -81,14 +62,6 @@ def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
 def section_area(teeth: Any) -> float:
     """Area of a toothed section of unit pitch radius, closed form.
 
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-
-    Returns
-    -------
-    float
-
     Examples
     --------
     >>> from solidgear.scene import Teeth
@@ -103,14 +76,6 @@ def section_area(teeth: Any) -> float:
 
 def section_polar(teeth: Any) -> float:
     """Polar second moment of area of a toothed section of unit pitch radius, closed form.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-
-    Returns
-    -------
-    float
 
     Examples
     --------
@@ -128,40 +93,19 @@ def section_polar(teeth: Any) -> float:
 
 
 def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
-    """Mass and polar inertia that a toothed segment has beyond its cone.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-    segment : Segment
-
-    Returns
-    -------
-    mass, polar : float
-        kg, kg m^2; below zero where the cone has more.
+    """Mass, kg, and polar inertia, kg m^2, that a toothed segment has beyond its cone; below zero
+    where the cone has more.
     """
-    a, b = segment.outer0, segment.outer1
-    bulk = segment.material.density * (segment.y1 - segment.y0)
-    fourth = (a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) / 5
+    square, _, _, fourth = integrals_along(segment.length, segment.outer0, segment.outer1)
     return (
-        bulk * (section_area(teeth) - pi) * (a * a + a * b + b * b) / 3,
-        bulk * (section_polar(teeth) - pi / 2) * fourth,
+        segment.material.density * (section_area(teeth) - pi) * square,
+        segment.material.density * (section_polar(teeth) - pi / 2) * fourth,
     )
 
 
 def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
-    """Angle by which spiral teeth have turned the sections.
-
-    Parameters
-    ----------
-    y : ndarray
-        m.
-    twists : list of (Segment, Teeth or Spline)
-
-    Returns
-    -------
-    ndarray
-        rad about +y; zero at the start of the shaft, and constant outside the teeth.
+    """Angle about +y, rad, by which spiral teeth on segments have turned the sections at places y,
+    m: zero at the start of the shaft, and constant outside the teeth.
 
     Examples
     --------
@@ -186,19 +130,8 @@ def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
 
 
 def tooth_size(teeth: Any, segment: Any, refinement: float) -> str:
-    """Formula of the element edge at teeth: a part of their height in the section, growing inwards.
-
-    Parameters
-    ----------
-    teeth : Teeth or Spline
-    segment : Segment
-    refinement : float
-        Divides the size.
-
-    Returns
-    -------
-    str
-        In x, y, z, m, as gmsh's parser reads it.
+    """Formula (in x, y, z, m) of the element edge at teeth: a part of their height in the section
+    that refinement divides, growing inwards.
     """
     share = (teeth.tip - teeth.root) / (ACROSS * refinement)
     slope = (segment.outer1 - segment.outer0) / (segment.y1 - segment.y0)

@@ -1,14 +1,11 @@
 """Curved second-order tetrahedra in a shaft of revolution, by gmsh.
 
-The meridian (the half section, radius against y) is drawn once as a planar map in which
-neighbouring segments share their edges, and the whole map is turned about the axis: what was shared
-stays shared, so interfaces and planes are conforming without any boolean operation.
-
 Second-order tetrahedra on straight edges lose 0.3 to 0.7 % of the volume. With mid-edge nodes on
 the true surface the loss is a^4/30, where an edge spans the angle 2a: 5e-5 with 16 elements around.
 So they are moved beyond it (:mod:`solidgear.meshing.curving`), and some 2e-6 is left.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import pi
 
@@ -16,20 +13,14 @@ import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
-from solidgear.meshing.closed_form import volume_of
 from solidgear.meshing.curving import relaxed, volume_preserved
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
-from solidgear.meshing.outline import (
-    Frustum,
-    corners_of,
-    cuts_of,
-    rows_between,
-    slabs_between,
-    tolerance_of,
-)
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
+from solidgear.meshing.revolved import draw_revolved, graded_corners, tolerance_of
+from solidgear.scene.closed_form import volume_of
+from solidgear.scene.outline import Outline, Shape
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 
@@ -53,7 +44,7 @@ class TetMesh:
 
 
 def tetrahedra(
-    segments,
+    outline: Outline,
     planes=(),
     circles=(),
     *,
@@ -61,16 +52,14 @@ def tetrahedra(
     graded_size=None,
     reach=None,
     around=16,
-    blends=(),
     progress=None,
 ):
     """Mesh a shaft of revolution about y with curved ten-node tetrahedra.
 
     Parameters
     ----------
-    segments : sequence
-        Objects with y0, y1, outer0, outer1, inner0, inner1 [m], end to end along y; inner 0 is
-        solid.
+    outline : Outline
+        Of segments end to end along y, with fillets and chamfers.
     planes : sequence of float
         Positions y of cross-sections to be made of element faces [m].
     circles : sequence of float
@@ -86,8 +75,6 @@ def tetrahedra(
         None.
     around : int
         Least number of elements around a circle.
-    blends : sequence of Corner
-        Edges with fillets and chamfers.
     progress : callable, optional
         Called as progress(fraction, message) between the stages.
 
@@ -101,7 +88,7 @@ def tetrahedra(
     MeshError
         Geometry that cannot be meshed, gmsh missing or failing, inverted elements, wrong volume.
     """
-    segments = [Frustum.of(s) for s in segments]
+    segments = outline.segments
     planes, circles = [float(y) for y in planes], [float(y) for y in circles]
     _validate(segments, planes, circles, size, graded_size, reach, around)
     gmsh = import_gmsh()
@@ -109,8 +96,9 @@ def tetrahedra(
 
     with Session(gmsh):
         report(0.0, "drawing the meridian")
-        corners = draw_revolved(gmsh, segments, planes, circles, blends=blends)
-        formulas = size_formulas(segments, corners, size, graded_size, reach, around, blends)
+        draw_revolved(gmsh, outline, planes, circles)
+        corners = graded_corners(outline, planes, circles)
+        formulas = size_formulas(outline, corners, size, graded_size, reach, around)
         set_size(gmsh, formulas, size)
         mesh = filled(
             gmsh,
@@ -120,15 +108,24 @@ def tetrahedra(
         )
 
     report(0.9, "checking the mesh")
-    # four times what the arcs lose by themselves: a lost part is far larger
-    quality = check_mesh(
-        mesh, volume=volume_of(segments, blends), rtol=max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
-    )
-    # interfaces are planes of element faces, so the mean of the corners decides
-    y = mesh.p[1][mesh.t].mean(axis=0)
-    segment = np.searchsorted([s.y1 for s in segments[:-1]], y)
+    quality = check_mesh(mesh, volume=volume_of(outline), rtol=lost_by_arcs(around))
     report(1.0, f"{quality.n_elements} elements")
-    return TetMesh(mesh, segment, quality)
+    return TetMesh(mesh, segment_of_elements(mesh, segments), quality)
+
+
+def lost_by_arcs(around: int) -> float:
+    """Share of its volume that a mesh may lack with so many elements around, four times what the arcs
+    lose by themselves: a lost part is far larger.
+    """
+    return max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
+
+
+def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray:
+    """Segment that each element lies in: interfaces are planes of element faces, so the mean of its
+    corners decides.
+    """
+    y = mesh.p[1][mesh.t].mean(axis=0)
+    return np.searchsorted([s.y1 for s in segments[:-1]], y)
 
 
 def filled(gmsh, refusal: str, report=lambda fraction, message: None):
@@ -224,96 +221,6 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
             raise MeshError(f"{name} is {value:g} m: give a positive length")
     if around < 6:
         raise MeshError(f"around is {around}: at least 6 elements are needed around a circle")
-
-
-def draw_revolved(
-    gmsh, segments, planes, circles, start: float = 0.0, turn: float = 2.0 * pi, blends=()
-):
-    """Draw the meridian with shared edges and turn it about y; the (y, radius) to grade at.
-
-    Parameters
-    ----------
-    gmsh : module
-    segments : list of Frustum
-    planes, circles : list of float
-        As for :func:`tetrahedra`.
-    start, turn : float
-        Angle about y from +x towards -z at which the meridian is drawn, and by which it is turned,
-        rad.
-    blends : sequence of Corner
-        Edges with fillets and chamfers.
-
-    Returns
-    -------
-    list of (float, float)
-        (y, radius) to grade at, m.
-    """
-    occ = gmsh.model.occ
-    tolerance = tolerance_of(segments)
-    points: dict[tuple[float, float], int] = {}
-    lines: dict[tuple[int, int], int] = {}
-    faces = []
-
-    def point(r, y):
-        for (r0, y0), tag in points.items():
-            if abs(r - r0) <= tolerance and abs(y - y0) <= tolerance:
-                return tag
-        points[r, y] = occ.addPoint(r, y, 0.0)
-        return points[r, y]
-
-    def line(a, b):
-        if (b, a) in lines:
-            return -lines[b, a]
-        if (a, b) not in lines:
-            lines[a, b] = curve(a, b)
-        return lines[a, b]
-
-    def curve(a, b):
-        for blend in blends:
-            if blend.centre and {a, b} == {point(*blend.on_face), point(*blend.on_cylinder)}:
-                middle = occ.addPoint(*blend.centre, 0.0)
-                made = occ.addCircleArc(a, middle, b)
-                occ.remove([(0, middle)])
-                return made
-        return occ.addLine(a, b)
-
-    slabs = slabs_between(segments, planes, tolerance)
-    rows = [
-        rows_between(below, above, blends, tolerance)
-        for below, above in zip([None, *slabs], [*slabs, None])
-    ]
-    for slab, (_, first), (last, _) in zip(slabs, rows, rows[1:]):
-        side = first.outer + cuts_of(slab, circles, tolerance) + last.outer
-        # the bore closes the loop from the last point to the first
-        loop = first.bore + first.points + side + last.points[::-1] + last.bore
-        tags = []
-        for r, y in loop:
-            tag = point(r, y)
-            if tag not in tags:
-                tags.append(tag)
-        curves = [line(a, b) for a, b in zip(tags, tags[1:] + tags[:1])]
-        faces.append((2, occ.addPlaneSurface([occ.addCurveLoop(curves)])))
-    if start:
-        occ.rotate(faces, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, start)
-    occ.revolve(faces, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, turn)
-    if turn == 2.0 * pi:  # else they bound the volumes
-        occ.remove(faces, recursive=True)
-    occ.synchronize()
-    _embed_tips(gmsh, tolerance)
-    return corners_of(slabs, circles, tolerance, blends)
-
-
-def _embed_tips(gmsh, tolerance):
-    """Make the tip of a conical bore a node of the disc it touches: the two share a point, but no
-    curve.
-    """
-    ends = [(tag, gmsh.model.getValue(0, tag, [])) for _, tag in gmsh.model.getEntities(0)]
-    tips = {tag: y for tag, (x, y, _) in ends if abs(x) <= tolerance}
-    for _, face in gmsh.model.getEntities(2) if tips else ():
-        y = gmsh.model.occ.getCenterOfMass(2, face)[1]
-        if gmsh.model.getType(2, face) == "Plane" and len(gmsh.model.getBoundary([(2, face)])) == 1:
-            touching = [tag for tag, at in tips.items() if abs(at - y) <= 10.0 * tolerance]
-            gmsh.model.mesh.embed(0, touching, 2, face)
 
 
 def to_skfem(gmsh):

@@ -25,22 +25,8 @@ def number(
     below: float | None = None,
     whole: bool = False,
 ) -> Given:
-    """A number within limits, or one sentence.
-
-    Parameters
-    ----------
-    model, name : str
-        Of the builder and its option, for the sentence.
-    value : object
-        None is passed through: the builder's default.
-    above, least, below : float, optional
-        Limits; ``least`` may be met, the others not.
-    whole : bool
-        Whether it must be an integer.
-
-    Raises
-    ------
-    SolidgearError
+    """A number within limits, of which only `least` may be met, or one sentence (SolidgearError)
+    that names the option of the builder; None, its default, is passed through.
     """
     if value is None or is_number(value, whole) and within(value, above, least, below):
         return value
@@ -56,17 +42,10 @@ def number(
 
 
 def countable(model: str, scene: Shaft, size: float, refinement: float) -> float:
-    """A size of cells of which a mesh can be laid out at all, or one sentence.
-
-    Parameters
-    ----------
-    model : str
-    scene : Scene
-    size : float
-        Of cells where nothing asks for smaller ones, m.
-    refinement : float
+    """A size of cells, m, where nothing asks for smaller ones, of which a mesh can be laid out at
+    all, or one sentence (SolidgearError).
     """
-    extent = max(scene.length, *(max(s.outer0, s.outer1) for s in scene.segments))
+    extent = max(scene.length, scene.outline.largest_radius)
     lines = extent / size * refinement
     if lines > MOST_LINES:
         raise SolidgearError(

@@ -66,16 +66,8 @@ class Modal:
     fields: dict[int, np.ndarray]
 
     def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """mu_0 and mu_1 with some combinations of the modes taken out.
-
-        Parameters
-        ----------
-        turn : (k, l) ndarray
-            The combinations, orthonormal.
-
-        Returns
-        -------
-        static, inert : (6 p, 6 p) ndarray
+        """mu_0 and mu_1, (6 p, 6 p) each, with some orthonormal combinations (k, l) of the modes
+        taken out.
         """
         motions, value = self.motions @ turn, turn.T @ self.value @ turn
         reached = np.linalg.solve(value, motions.T)
@@ -115,17 +107,7 @@ class Modal:
 
 
 def modal(body: Body, count: int) -> Modal:
-    """Port numbers of a free body with its ``count`` lowest modes, twins counted twice.
-
-    Parameters
-    ----------
-    body : Body
-    count : int
-
-    Returns
-    -------
-    Modal
-    """
+    """Port numbers of a free body with its ``count`` lowest modes, twins counted twice."""
     found = modes(body, (), n=count, ovalising=False, stations=STATIONS)
     vectors, values, moved = [], [], []
     for mode in found.modes:

@@ -228,26 +228,9 @@ SOLID_OPTIONS = {
 
 
 def checked(model: str, options: Mapping[str, Any], known: Mapping[str, Option]) -> dict[str, Any]:
-    """Options of one builder, within their limits.
-
-    Parameters
-    ----------
-    model : str
-        Named in errors.
-    options : mapping
-        By name; those left out keep the builder's default.
-    known : mapping of str to Option
-        What the builder takes.
-
-    Returns
-    -------
-    dict
-        The same, lists as tuples.
-
-    Raises
-    ------
-    SolidgearError
-        For a name the builder does not know, or a value that it cannot use.
+    """Options of a builder by name, within the limits of those that are known, lists as tuples;
+    those left out keep its default. SolidgearError for a name that it does not know, or a value
+    that it cannot use.
     """
     out = {}
     for name, value in options.items():

@@ -63,10 +63,6 @@ class Size:
 def of_body(body: Body) -> Size:
     """Of a body that is there.
 
-    Parameters
-    ----------
-    body : Body
-
     Examples
     --------
     >>> import solidgear as sg
@@ -83,16 +79,8 @@ def of_body(body: Body) -> Size:
 
 
 def of_mesh(dofs: np.ndarray, parts: int = 1, mirrors: bool = False) -> Size:
-    """Of the 3D solid of a mesh.
-
-    Parameters
-    ----------
-    dofs : (nb, ne) ndarray of int
-        Nodes of elements.
-    parts : int
-        Blocks of the same mesh.
-    mirrors : bool
-        Whether its matrix is factored in pieces.
+    """Of the 3D solid of a mesh by the nodes (nb, ne) of its elements, of several blocks of the
+    same mesh and with a matrix that is factored in pieces, if so.
     """
     pattern = Pattern(dofs)
     unknowns, entries = 3 * pattern.n, 9 * len(pattern.indices)

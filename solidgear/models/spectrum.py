@@ -24,15 +24,7 @@ LEVELS = 60  # radii at which overhangs are looked for
 
 def elastic_scale(scene: Shaft) -> float:
     """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging
-    plates.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Notes
-    -----
-    It places spectral shifts; an error of a factor of ten is harmless.
+    plates: it places spectral shifts, where a factor of ten is harmless.
     """
     chain = _Chain(scene.segments)
     return min(
@@ -148,13 +140,9 @@ def _flanges(segments):
 def overhangs(
     parts: Sequence[tuple[float, float, float]], *bases: float
 ) -> Iterator[tuple[float, list[tuple[float, float, float]]]]:
-    """Neighbours that together reach beyond a radius: yields (that radius, list of parts) for every
-    radius that a part ends at, and for ``bases``.
-
-    Parameters
-    ----------
-    parts : list of (radius, length, E / rho)
-        Along the shaft.
+    """Neighbours that together reach beyond a radius, of parts (radius, length, E / rho) along the
+    shaft: yields (that radius, list of parts) for every radius that a part ends at, and for
+    ``bases``.
     """
     levels = sorted({*bases, *(part[0] for part in parts)})
     levels = levels[:: 1 + len(levels) // LEVELS] + levels[-1:]

@@ -267,17 +267,19 @@ LEAST_TEXT = 12
 
 
 def fitted(table: Table, console: Console, options: ConsoleOptions) -> RichTable:
-    """A table for a terminal of a width: heads take several lines, columns move together, and no
-    number is ever cut; what is wider still runs over.
+    """A table for a terminal of a width: texts and then heads take several lines, columns move
+    together, and no number is ever cut; what is wider still runs over.
     """
     shown = printed(table)
     if _width(shown, console, options) <= options.max_width:
         return shown
-    least = [_least(column, cells) for column, cells in zip(table.columns, zip(*table.texts))]
-    given = shown.padding
-    for padding in (given, *TIGHT):
+    columns = list(zip(table.columns, zip(*table.texts)))
+    whole = [_least(column, cells, column.head.split("\n")) for column, cells in columns]
+    broken = [_least(column, cells, column.head.split()) for column, cells in columns]
+    ways = [(shown.padding, whole), *((pad, broken) for pad in (shown.padding, *TIGHT))]
+    for padding, widths in ways:
         shown.padding = padding
-        for column, width in zip(shown.columns, least):
+        for column, width in zip(shown.columns, widths):
             column.width, column.no_wrap = width, False
         spare = options.max_width - _width(shown, console, options)
         if spare >= 0:
@@ -294,21 +296,28 @@ def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
     return Measurement.get(console, options.update(max_width=1000), shown).maximum
 
 
-def _least(column: Column, cells: Iterable[str]) -> int:
-    """Characters of the widest cell, or of the longest word of the head; of texts a few."""
+def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
+    """Characters of the widest cell or part of the head; of texts a few."""
     from rich.cells import cell_len
 
-    words = [cell_len(word) for word in in_ascii(column.head).split()]
-    if column.kind == TEXT:
-        return max([LEAST_TEXT, *words])
-    return max([*(cell_len(in_ascii(cell)) for cell in cells), *words])
+    told = heads if column.kind == TEXT else [*heads, *cells]
+    widest = max((cell_len(in_ascii(one)) for one in told), default=0)
+    return max(widest, LEAST_TEXT) if column.kind == TEXT else widest
 
 
 def _widen_texts(table: Table, shown: RichTable, spare: int) -> None:
-    """Share among columns of texts what is left of a line."""
-    texts = [k for k, column in enumerate(table.columns) if column.kind == TEXT]
-    for k in texts:
-        shown.columns[k].width = (shown.columns[k].width or 0) + spare // len(texts)
+    """Share what is left of a line among columns of texts, none more than it needs."""
+    from rich.cells import cell_len
+
+    left = []
+    for k, (column, cells) in enumerate(zip(table.columns, zip(*table.texts))):
+        if column.kind == TEXT:
+            needs = max((cell_len(in_ascii(cell)) for cell in cells), default=0)
+            left.append((needs - (shown.columns[k].width or 0), k))
+    for done, (needs, k) in enumerate(sorted(left)):
+        more = max(min(needs, spare // (len(left) - done)), 0)
+        shown.columns[k].width = (shown.columns[k].width or 0) + more
+        spare -= more
 
 
 def printed(table: Table) -> RichTable:

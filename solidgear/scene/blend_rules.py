@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from solidgear.errors import SceneError
-from solidgear.scene.blends import Blend, Corner, radius_of
+from solidgear.scene.blends import Blend, Corner
+from solidgear.scene.outline import TOUCH, radii_of
 from solidgear.scene.parts import Segment
-from solidgear.scene.rules import TOUCH
 
 #: a shaft carries no more of them
 MOST_BLENDS = 40
@@ -56,7 +56,7 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
     """
     here, what, key = segments[corner.owner], blend.what, blend.size_key
     for other, at in before:
-        if _same_joint(at, corner) and (at.r, at.surface) == (corner.r, corner.surface):
+        if (at.joint, at.r, at.surface) == (corner.joint, corner.r, corner.surface):
             return "y", f'this edge has "{other.name}" already'
     if min(corner.axial, corner.radial) < SMALLEST * corner.r:
         return key, (
@@ -66,9 +66,7 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
     face = _face_height(corner, segments)
     if corner.radial > face + TOUCH:
         return key, f"a {what} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
-    same_face = [
-        at for _, at in before if _same_joint(at, corner) and _same_face(at, corner, segments)
-    ]
+    same_face = [at for _, at in before if _same_face(at, corner, segments)]
     if corner.radial + sum(at.radial for at in same_face) > MOST_OF_FACE * face:
         beside = f' beside "{same_face[0].name}"' if same_face else ""
         return key, (
@@ -119,18 +117,12 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
 def _face_height(corner: Corner, segments: Sequence[Segment]) -> float:
     """Of the plane face beside an edge, m."""
     here = segments[corner.owner]
-    k = corner.owner + (0 if corner.side > 0 else 1)  # the joint
+    k = corner.joint
     if k in (0, len(segments)):
         return here.outer0 - here.inner0 if k == 0 else here.outer1 - here.inner1
-    low, high = segments[k - 1], segments[k]
-    return abs(radius_of(low, corner.surface, "1") - radius_of(high, corner.surface, "0"))
-
-
-def _same_joint(a: Corner, b: Corner) -> bool:
-    """True of edges at one joint, whose two segments may miss one another by a hair."""
-    return abs(a.y - b.y) <= TOUCH
+    before, after = (radii_of(s, corner.surface) for s in segments[k - 1 : k + 1])
+    return abs(before[1] - after[0])
 
 
 def _same_face(a: Corner, b: Corner, segments: Sequence[Segment]) -> bool:
-    at_end = a.y <= TOUCH or a.y >= segments[-1].y1 - TOUCH
-    return at_end or a.surface == b.surface
+    return a.joint == b.joint and (a.joint in (0, len(segments)) or a.surface == b.surface)

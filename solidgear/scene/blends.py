@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 from pydantic import BeforeValidator
 
 from solidgear.errors import SceneError
+from solidgear.scene.outline import TOUCH, Surface, radii_of
 from solidgear.scene.parts import Segment
 from solidgear.scene.places import Placed, Places
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Position, PositiveLength, quantity
 
-Surface = Literal["outer", "bore"]
 Edge = Literal["root", "rim"]
 
 
@@ -67,6 +66,21 @@ class Corner:
     radial: float
 
     @property
+    def joint(self) -> int:
+        """Segment that begins at the edge, or would behind the last one."""
+        return self.owner if self.side > 0 else self.owner + 1
+
+    @property
+    def face_side(self) -> int:
+        """Side of the joint on which the segment lies whose plane face the outline leaves."""
+        return -self.side if self.root else self.side
+
+    @property
+    def face_owner(self) -> int:
+        """That segment."""
+        return self.joint if self.face_side > 0 else self.joint - 1
+
+    @property
     def on_face(self) -> tuple[float, float]:
         """(r, y) where the outline leaves the plane face, m."""
         return self.r + self.out * self.radial, self.y
@@ -96,15 +110,22 @@ class Corner:
         ends = (self.y, self.on_cylinder[1])
         return min(ends), max(ends)
 
+    def at(self, share: float) -> tuple[float, float]:
+        """(r, y) at a share of its length from the face to the cylinder, m."""
+        if self.centre is None:
+            (a, b), (c, d) = self.on_face, self.on_cylinder
+            return a + share * (c - a), b + share * (d - b)
+        # from the face (straight along the axis from the centre) to the cylinder (straight across)
+        turn = math.pi / 2 * share
+        (r, y), f = self.centre, self.radial
+        return r - self.out * f * math.sin(turn), y - self.side * f * math.cos(turn)
+
     def points(self, count: int = 9) -> list[tuple[float, float]]:
         """(r, y) along the outline from the face to the cylinder, m."""
         if self.centre is None:
             return [self.on_face, self.on_cylinder]
-        # from the face (straight along the axis from the centre) to the cylinder (straight across)
-        turns = [math.pi / 2 * k / (count - 1) for k in range(count)]
-        (r, y), f = self.centre, self.radial
-        found = [(r - self.out * f * math.sin(t), y - self.side * f * math.cos(t)) for t in turns]
-        return [self.on_face, *found[1:-1], self.on_cylinder]
+        between = [self.at(k / (count - 1)) for k in range(1, count - 1)]
+        return [self.on_face, *between, self.on_cylinder]
 
 
 class _At(Model):
@@ -160,9 +181,8 @@ class _Blend(Placed):
         """
         outer = self.surface == "outer"
         i, low, high = self._place(segments)
-        before, after = (
-            radius_of(s, self.surface, end) if s else None for s, end in ((low, "1"), (high, "0"))
-        )
+        before = radii_of(low, self.surface)[1] if low else None
+        after = radii_of(high, self.surface)[0] if high else None
         edge = self.edge
         if before is None or after is None:
             if edge == "root":
@@ -185,10 +205,11 @@ class _Blend(Placed):
             deeper_first = (before < after) == outer
             owner = i - 1 if deeper_first == (edge == "root") else i
         here = segments[owner]
-        radius = radius_of(here, self.surface, "0" if owner == i else "1")
+        start, end = radii_of(here, self.surface)
+        radius = start if owner == i else end
         if not radius:
             raise SceneError(f'"{here.name}" has no bore there', path=("surface",))
-        if radius_of(here, self.surface, "0") != radius_of(here, self.surface, "1"):
+        if start != end:
             raise SceneError(
                 f'"{here.name}" is a cone there; a {self.what} runs into a cylinder',
                 path=("y",),
@@ -317,13 +338,3 @@ class Chamfer(_Blend):
 #: either of them
 Blend: TypeAlias = Fillet | Chamfer
 BLENDS: dict[str, type[_Blend]] = {"fillet": Fillet, "chamfer": Chamfer}
-
-
-def corners_of_blends(segments: Sequence[Segment], blends: Sequence[Blend]) -> tuple[Corner, ...]:
-    """Edges with their fillets and chamfers; see :meth:`Fillet.corner`."""
-    return tuple(blend.corner(segments) for blend in blends)
-
-
-def radius_of(segment: Segment, surface: Surface, end: str) -> float:
-    """Radius of a surface of a segment at its end "0" or "1", m."""
-    return getattr(segment, ("outer" if surface == "outer" else "inner") + end)

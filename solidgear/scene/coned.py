@@ -30,7 +30,7 @@ def coned(scene: Any) -> Any:
     >>> [(s.name, round(s.outer0, 3), round(s.outer1, 3)) for s in coned(scene).segments]
     [('a', 0.04, 0.04), ('b (c)', 0.025, 0.02), ('b', 0.02, 0.02)]
     """
-    filled = [c for c in getattr(scene, "corners", ()) if c.root and c.kind == "chamfer"]
+    filled = [c for c in scene.outline.corners if c.root and c.kind == "chamfer"]
     if not filled:
         return scene
     segments: list[Segment] = []

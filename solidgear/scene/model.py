@@ -9,6 +9,7 @@ its first end face.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 from typing import Any, ClassVar
 
 from pydantic import model_validator
@@ -17,22 +18,18 @@ from solidgear.display import Displayed
 from solidgear.errors import SceneError
 from solidgear.scene.ask import Ask
 from solidgear.scene.between import problems_between
-from solidgear.scene.blends import Blend, Corner, corners_of_blends
+from solidgear.scene.blends import Blend, Corner
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.ends import snapped
 from solidgear.scene.features import Feature
 from solidgear.scene.housing import Housing
 from solidgear.scene.lubrication import Lubrication
+from solidgear.scene.outline import Outline
 from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.plain_data import plain_data
 from solidgear.scene.point_mass import PointMass
-from solidgear.scene.rules import (
-    ONE_HOUSING,
-    no_such_point,
-    question_problems,
-    shaft_problems,
-    steps,
-)
+from solidgear.scene.rules import ONE_HOUSING, no_such_point, question_problems, shaft_problems
 from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.typed import Model
 from solidgear.scene.units import AxialSpring
@@ -204,15 +201,20 @@ class Scene(Displayed, Model):
             return self
         return self.with_changes(features=(), body=None)
 
+    @cached_property
+    def outline(self) -> Outline[Segment]:
+        """Lines and arcs of the meridian."""
+        return Outline(self.segments, [blend.corner(self.segments) for blend in self.blends])
+
     @property
     def corners(self) -> tuple[Corner, ...]:
         """Edges with fillets and chamfers."""
-        return corners_of_blends(self.segments, self.blends)
+        return self.outline.corners
 
     @property
     def steps(self) -> tuple[float, ...]:
         """y (m) where the outer radius jumps, end faces left out."""
-        return steps(self.segments)
+        return self.outline.steps
 
     def with_changes(self, **changes: Any) -> Scene:
         """A validated copy with some fields replaced.
@@ -395,6 +397,4 @@ class Scene(Displayed, Model):
         -------
         dict
         """
-        from solidgear.scene.plain_data import plain_data
-
         return plain_data(self)

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import model_serializer, model_validator
 
 from solidgear.errors import SceneError
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
     Density,

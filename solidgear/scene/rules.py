@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest, show
 from solidgear.quantity import AT, STIFFNESS, Quantity
+from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Material, PointMass, Port, Segment
-
-#: m; two edges nearer than this are one edge
-TOUCH = 1e-9
 
 #: least diameter and least length of a part over the length of the shaft, least wall over the
 #: radius; what is thinner would ask for meshes without end, or drown in rounding, and comes from a
@@ -38,13 +36,6 @@ MOST_PORTS = 12
 ONE_HOUSING = (
     "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of both out"
 )
-
-
-def steps(segments: Sequence[Segment]) -> tuple[float, ...]:
-    """Places (m) where the outer radius jumps, end faces left out."""
-    return tuple(
-        b.y0 for a, b in zip(segments, segments[1:]) if abs(a.outer1 - b.outer0) > 1e-9 * a.outer1
-    )
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
@@ -160,7 +151,7 @@ def station_problems(
     """Ports (the main one first) and seats lie on the shaft, on one smooth surface each, and seats
     do not overlap.
     """
-    length, jumps = segments[-1].y1, steps(segments)
+    length, jumps = segments[-1].y1, Outline(segments).steps
     for what, of, most in (("bearings", bearings, MOST_BEARINGS), ("ports", ports, MOST_PORTS)):
         if len(of) > most:
             key = "further_ports" if what == "ports" else what

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Corner, PointMass, Port, Segment
+    from solidgear.scene import Bearing, PointMass, Port, Segment
+    from solidgear.scene.outline import Outline
 
 
 class Shaft(Protocol):
@@ -24,8 +25,8 @@ class Shaft(Protocol):
         """Things attached, the port first; each has name, y, lo, hi (m) and attachment."""
 
     @property
-    def corners(self) -> tuple[Corner, ...]:
-        """Edges with fillets and chamfers."""
+    def outline(self) -> Outline[Segment]:
+        """Lines and arcs of the meridian, fillets and chamfers among them."""
 
     @property
     def length(self) -> float:

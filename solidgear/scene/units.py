@@ -88,8 +88,7 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
 #: what else stands on a nameplate for revolutions a minute
 TURNS = dict.fromkeys(("1/min", "min^-1", "min-1", "rev/min", "r/min", "U/min"), "rpm")
 
-#: no quantity of a scene is larger than this in SI, and no spring softer: squares and products of
-#: such numbers neither overflow nor vanish
+#: no quantity is larger than this in SI, and no spring softer: their squares neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
 #: letters of a quantity

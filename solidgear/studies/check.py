@@ -16,7 +16,8 @@ from solidgear.judge.solution import Solution
 from solidgear.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
-from solidgear.meshing.closed_form import mass_properties
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.outline import Outline
 from solidgear.scene.shaft import named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
@@ -284,14 +285,14 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
-    exact = mass_properties(scene.segments, scene.corners)
+    exact = mass_properties(scene.outline)
     matrix, own = body.mass_matrix(), (body.fidelity,)
     # beams leave out fillets and chamfers, and are held against what they are made of
     beam = LADDER[body.fidelity].family == BEAM
-    due = mass_properties(scene.segments) if beam else exact
+    due = mass_properties(Outline(scene.segments)) if beam else exact
     # of what is cut there is no closed form; of a part there is what its file says
     closed = [("mass", matrix[0, 0], due.mass), ("polar inertia", matrix[4, 4], due.iyy)]
-    bare = " without fillets and chamfers" * bool(beam and scene.corners)
+    bare = " without fillets and chamfers" * bool(beam and scene.outline.corners)
     where, off = f"closed form{bare}", f"the closed form{bare}"
     if not body.mesh.get("round", True):
         whole = scene.body
@@ -312,7 +313,9 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
     )
     for name, got, want in closed:
         error = got / want - 1
-        limit = max(LADDER[body.fidelity].mass_tolerance, FOLLOWED if scene.corners else 0.0)
+        limit = max(
+            LADDER[body.fidelity].mass_tolerance, FOLLOWED if scene.outline.corners else 0.0
+        )
         yield Notice("fact", own, f"{name} of the mesh against {where}: {error:+.1e}")
         if abs(error) > limit:
             yield Notice(

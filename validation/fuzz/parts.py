@@ -126,7 +126,7 @@ def sound_files() -> dict[str, str]:
 
 def _written(folder: Path) -> dict[str, str]:
     scene = sg.load(SCENE)
-    mesh = tetrahedra(scene.segments, size=0.012).mesh
+    mesh = tetrahedra(scene.outline, size=0.012).mesh
     # nodes of second order are left out
     used, numbered = np.unique(mesh.t, return_inverse=True)
     corners = numbered.reshape(4, -1).T

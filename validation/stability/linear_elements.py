@@ -13,8 +13,9 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.meshing.closed_form import mass_properties
 from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.outline import Outline
 from validation.stability.frame import Finding, crossing, main
 
 RADIUS, LENGTH = 0.05, 0.4
@@ -101,7 +102,10 @@ def mass_error(scene, around: int) -> dict:
     mass = sg.build(
         scene, "solid", element="hex8", size=4 * RADIUS, around=around, **PLAIN
     ).mass_matrix()[0, 0]
-    return {"HEX8, cells around": around, "mass": mass / mass_properties(scene.segments).mass - 1}
+    return {
+        "HEX8, cells around": around,
+        "mass": mass / mass_properties(Outline(scene.segments)).mass - 1,
+    }
 
 
 def measure(quick: bool = False) -> Finding:

@@ -37,21 +37,8 @@ class _Block(NamedTuple):
 
 
 def read(path: str) -> Deck:
-    """The mesh of a deck.
-
-    Parameters
-    ----------
-    path : str
-
-    Returns
-    -------
-    Deck
-
-    Raises
-    ------
-    MeshError
-        Lines that are cut off, elements with too few nodes or a number twice, several parts, and
-        what a deck may not hold here.
+    """The mesh of a deck; MeshError for lines that are cut off, elements with too few nodes or a
+    number twice, several parts, and what a deck may not hold here.
     """
     text = text_of(path)
     blocks = list(_blocks(text))

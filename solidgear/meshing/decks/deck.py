@@ -81,13 +81,7 @@ class Deck:
     remarks: tuple[str, ...] = ()
 
     def named(self, place: int) -> str:
-        """An element in a sentence.
-
-        Parameters
-        ----------
-        place : int
-            In :attr:`cells`.
-        """
+        """An element in a sentence, by its place in :attr:`cells`."""
         if self.numbers is None or self.lines is None:
             return f"element {place + 1}"
         return f"line {self.lines[place]}: element {self.numbers[place]}"
@@ -103,20 +97,8 @@ class Element(NamedTuple):
 
 
 def read(path: str) -> Deck:
-    """The mesh in a file.
-
-    Parameters
-    ----------
-    path : str
-
-    Returns
-    -------
-    Deck
-
-    Raises
-    ------
-    MeshError
-        A file that cannot be read, or one without elements of one kind that is assembled here.
+    """The mesh in a file; MeshError where it cannot be read or has no elements of one kind that is
+    assembled here.
     """
     ending = Path(path).suffix.lower()
     if ending not in FORMATS:
@@ -130,17 +112,7 @@ def read(path: str) -> Deck:
 
 
 def text_of(path: str) -> str:
-    """The text of a file.
-
-    Parameters
-    ----------
-    path : str
-
-    Raises
-    ------
-    MeshError
-        If it cannot be opened, or holds no text.
-    """
+    """The text of a file; MeshError where it cannot be opened, or holds no text."""
     try:
         content = Path(path).read_bytes()
     except OSError as error:
@@ -151,17 +123,8 @@ def text_of(path: str) -> str:
 
 
 def one_kind(counts: dict[str, int]) -> str:
-    """The one kind of cells of a volume, of those that a file holds.
-
-    Parameters
-    ----------
-    counts : dict of str to int
-        Cells of each kind, in meshio's words.
-
-    Raises
-    ------
-    MeshError
-        If there is none, more than one, or one that is not assembled here.
+    """The one kind of cells of a volume, by the cells of each kind (in meshio's words) that a file
+    holds; MeshError where there is none, more than one, or one that is not assembled here.
     """
     volumes = [kind for kind in counts if kind.startswith(VOLUMES)]
     if not volumes:
@@ -322,20 +285,7 @@ def _gaps(numbers: np.ndarray, lines: Sequence[int]) -> Iterable[str]:
 
 
 def integer(text: str, line: int, what: str) -> int:
-    """A whole number of a line.
-
-    Parameters
-    ----------
-    text : str
-    line : int
-    what : str
-        It stands for.
-
-    Raises
-    ------
-    MeshError
-        If it is none.
-    """
+    """A whole number of a line, and what it stands for; MeshError if it is none."""
     try:
         return int(text)
     except ValueError:

@@ -19,21 +19,7 @@ MOST_VALUES = 200
 
 
 def read(path: str) -> Deck:
-    """The mesh of a file.
-
-    Parameters
-    ----------
-    path : str
-
-    Returns
-    -------
-    Deck
-
-    Raises
-    ------
-    MeshError
-        A file that cannot be read.
-    """
+    """The mesh of a file; MeshError where it cannot be read."""
     found = _parsed(path, MODULES[Path(path).suffix.lower()])
     points = np.asarray(found.points, float)
     if points.ndim != 2 or points.shape[1] != 3:

@@ -32,21 +32,8 @@ class Card(NamedTuple):
 
 
 def read(path: str) -> Deck:
-    """The mesh of a bulk data file.
-
-    Parameters
-    ----------
-    path : str
-
-    Returns
-    -------
-    Deck
-
-    Raises
-    ------
-    MeshError
-        A file without ENDDATA, elements with too few nodes or a number twice, and
-        nodes in a system of coordinates of their own.
+    """The mesh of a bulk data file; MeshError for one without ENDDATA, elements with too few nodes
+    or a number twice, and nodes in a system of coordinates of their own.
     """
     lines = Lines()
     for card in cards(text_of(path)):
@@ -65,17 +52,7 @@ def read(path: str) -> Deck:
 
 
 def cards(text: str) -> Iterator[Card]:
-    """The cards of a bulk data section, lines that go on joined.
-
-    Parameters
-    ----------
-    text : str
-
-    Raises
-    ------
-    MeshError
-        Without ENDDATA.
-    """
+    """The cards of a bulk data section, lines that go on joined; MeshError without ENDDATA."""
     # what comes before is for the solver; many programs write the bulk alone
     begins = re.compile(r"\s*BEGIN\s*BULK", re.I)
     inside = not any(begins.match(line) for line in text.splitlines())

@@ -36,21 +36,8 @@ IS_ELEMENT = 8
 
 
 def read(path: str) -> Deck:
-    """The mesh of a universal file.
-
-    Parameters
-    ----------
-    path : str
-
-    Returns
-    -------
-    Deck
-
-    Raises
-    ------
-    MeshError
-        A dataset that does not end, elements with another number of nodes than their kind has, or a
-        number twice.
+    """The mesh of a universal file; MeshError for a dataset that does not end, elements with
+    another number of nodes than their kind has, or a number twice.
     """
     lines, found = Lines(), set()
     for kind, data in _datasets(text_of(path)):

@@ -190,22 +190,8 @@ def beam(
 
 
 def mesh(scene, elements: int | None, wanted=()):
-    """Nodes at segment ends, ports and ends of rigid seats, filled in evenly.
-
-    Parameters
-    ----------
-    scene : Scene
-    elements : int or None
-        Least number of elements; None is eight to a diameter.
-    wanted : sequence of (station, str)
-        Stations with their attachments.
-
-    Returns
-    -------
-    nodes : (n,) ndarray
-        Ascending, m.
-    owner : list of Segment
-        That of every element.
+    """Nodes (n,) at segment ends, ports and ends of rigid seats, filled in evenly to at least so
+    many elements (None is eight to a diameter), m; and the segment of every element.
     """
     found = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
     for station, attachment in wanted:

@@ -14,6 +14,7 @@ import numpy as np
 
 from solidgear.body.revolution import Rings, Wave, revolve, wave
 from solidgear.body.surface import Surface
+from solidgear.scene.outline import SURFACES, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
@@ -73,15 +74,13 @@ def _profile(scene: Shaft, nodes: np.ndarray) -> Rings:
     y).
     """
     tol = 1e-9 * scene.length
-    outer: list[tuple[float, float]] = []
-    inner: list[tuple[float, float]] = []
-    for s in scene.segments:
-        inside = nodes[(nodes > s.y0 + tol) & (nodes < s.y1 - tol)]
-        y = np.concatenate([[s.y0], inside, [s.y1]])
-        share = (y - s.y0) / s.length
-        outer += zip(s.outer0 + share * (s.outer1 - s.outer0), y)
-        inner += zip(s.inner0 + share * (s.inner1 - s.inner0), y)
-    loop = np.array(outer + inner[::-1])
+    along: dict[str, list[tuple[float, float]]] = {surface: [] for surface in SURFACES}
+    for piece in Outline(scene.segments).pieces:  # sharp: a beam knows no fillets
+        inside = nodes[(nodes > piece.y0 + tol) & (nodes < piece.y1 - tol)]
+        y = np.concatenate([[piece.y0], inside, [piece.y1]])
+        share = (y - piece.y0) / (piece.y1 - piece.y0)
+        along[piece.surface] += zip(piece.r0 + share * (piece.r1 - piece.r0), y)
+    loop = np.array(along["outer"] + along["bore"][::-1])
     loop = loop[np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1) > tol]
     # Faces across the axis are divided, so that their colours follow the displacement.
     parts, drawn, size = [], [], 0

@@ -19,7 +19,7 @@ import numpy as np
 from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.cell_shapes import Kind
-from solidgear.meshing.blended import HIGH, LOW, OUT
+from solidgear.meshing.cells import HIGH, LOW, OUT
 from solidgear.models.harmonic.blocks import _Work, strains
 from solidgear.models.harmonic.body import HarmonicMesh
 from solidgear.scene.blends import Corner
@@ -84,17 +84,7 @@ class Arc:
         self._cells = cells
 
     def stress(self, block: Block, u: np.ndarray) -> ArcStress:
-        """Stress under displacements of a block.
-
-        Parameters
-        ----------
-        block : Block
-        u : (n,) ndarray
-
-        Returns
-        -------
-        ArcStress
-        """
+        """Stress under (n,) displacements of a block."""
         waves = {"torsion": -1, "axial": 0}.get(block.name, 1)
         count = {-1: 1, 0: 2}.get(waves, 3)
         every = np.zeros(self._work.n * count)

@@ -215,7 +215,7 @@ def harmonic_layout(
     countable(
         "harmonic",
         scene,
-        size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments),
+        size or relative_size * scene.outline.least_radius,
         refinement,
     )
     return layout(

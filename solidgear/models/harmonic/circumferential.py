@@ -80,7 +80,7 @@ class Families:
     def _light_work(self):
         if self._work is None:
             s = self._scene
-            thick = max(max(p.outer0, p.outer1) for p in s.segments)
+            thick = s.outline.largest_radius
             flat = meridian(
                 s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3)))
             )

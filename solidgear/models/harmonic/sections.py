@@ -42,19 +42,9 @@ def from_cells(
     parts: tuple[Part, ...],
     unknowns: int,
 ) -> Sections:
-    """Sections of a block on meridian cells.
-
-    Parameters
-    ----------
-    shapes : Shapes
-        Of the cells, with an element of this ``order``.
-    dofs : (nb, ne) ndarray of int
-    density : (ne,) ndarray
-        kg/m3.
-    parts : tuple of Part
-        One per component.
-    unknowns : int
-        At each scalar degree of freedom, numbered together.
+    """Sections of a block on meridian cells, by their (nb, ne) degrees of freedom and densities
+    (ne,), kg/m3: one part a component, with so many unknowns at each scalar degree of freedom,
+    numbered together.
     """
     n = int(dofs.max()) + 1
     x, w = np.polynomial.legendre.leggauss(order + 2)

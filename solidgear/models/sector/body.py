@@ -133,25 +133,8 @@ def _solved_part(made: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Block
 
 
 def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Body:
-    """Free body of the same shaft in full: all sectors, copies of one mesh.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    refinement : float
-    **own
-        ``size`` and ``graded_size`` of :func:`sector`.
-
-    Returns
-    -------
-    Body
-        One block.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`sector`.
+    """Free body, in one block, of the same shaft in full: all sectors, copies of one mesh with the
+    ``size`` and ``graded_size`` of :func:`sector`.
     """
     features = cyclic_features(scene)
     mesh, segment, made = whole_mesh(scene, wanted, refinement=refinement, **own)
@@ -173,16 +156,8 @@ def whole_mesh(
 
 
 def cyclic_features(scene: Any) -> tuple[Any, ...]:
-    """Features of a scene that repeat themselves around the axis: those that are resolved, or, where
-    there are none, teeth that the scene smears for other models.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    tuple of Teeth, Spline or BoltCircle
+    """Features of a scene that repeat themselves around the axis: those that are resolved, or,
+    where there are none, teeth that the scene smears for other models.
     """
     every = tuple(f for f in getattr(scene, "features", ()) if f.sort == CYCLIC)
     return tuple(f for f in every if not f.smeared) or every
@@ -191,14 +166,6 @@ def cyclic_features(scene: Any) -> tuple[Any, ...]:
 def no_sector(scene: Any) -> str:
     """Reason why the features of a scene have no sector that can be meshed, or nothing.
 
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    str
-
     Examples
     --------
     >>> import solidgear as sg
@@ -206,8 +173,8 @@ def no_sector(scene: Any) -> str:
     ''
     """
     features = cyclic_features(scene)
-    if features and scene.corners:
-        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.corners)
+    if features and scene.outline.corners:
+        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.outline.corners)
         teeth = all(f.toothed for f in features)
         return (
             f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
@@ -235,17 +202,7 @@ def sectors_around(scene, given: Mapping[str, Any]) -> int:
 
 
 def halved(scene: Any, count: int) -> bool:
-    """True where the middle of a sector can lie in a mirror plane of all features.
-
-    Parameters
-    ----------
-    scene : Scene
-    count : int
-        Sectors around.
-
-    Returns
-    -------
-    bool
+    """True where the middle of one of so many sectors can lie in a mirror plane of all features.
 
     Examples
     --------
@@ -299,7 +256,7 @@ def rough_sector(scene, wanted, *, refinement: float, count: int | None = None, 
     fine = [fine_lines(hole) for *_, hole in hole_sizes(scene.segments, features, refinement)]
     around = count or max(1, sectors_of(features))
     own = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.segments, fine=fine, **own) / (2 * around)
+    return rough_cells(scene.outline, fine=fine, **own) / (2 * around)
 
 
 def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:

@@ -131,15 +131,7 @@ def _blocks(nodes, columns, block, shape) -> sp.csr_matrix:
 
 
 def doubled(matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """The real matrix that acts on real and imaginary parts side by side.
-
-    Parameters
-    ----------
-    matrix : (n, m) sparse, complex
-
-    Returns
-    -------
-    (2 n, 2 m) sparse
+    """The real matrix (2 n, 2 m) that acts on real and imaginary parts side by side.
 
     Examples
     --------

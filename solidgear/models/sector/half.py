@@ -148,20 +148,10 @@ def half_sector_blocks(
     parts_of: Callable[[Any, str], Any],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
-    """Blocks of a whole part from the mesh of half a sector.
-
-    Parameters
-    ----------
-    mesh : HalfSectorSolid
-    scene : Scene
-    wanted, parts_of, harmonics
-        As for :func:`solidgear.models.sector.cyclic.cyclic_blocks`.
-
-    Returns
-    -------
-    tuple of Block
-        ``axial``, ``torsion``, ``bending_z`` and its mirror image ``bending_x``, and
-        ``ovalising_h`` without ports, which stands for its twin as well.
+    """Blocks of a whole part from the mesh of half a sector, as by
+    :func:`solidgear.models.sector.cyclic.cyclic_blocks`: ``axial``, ``torsion``, ``bending_z`` and
+    its mirror image ``bending_x``, and ``ovalising_h`` without ports, which stands for its twin as
+    well.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m, n, half = m.tocsr(), mesh.nodes.shape[1], mesh.sector
@@ -307,17 +297,7 @@ def _phases(name: str, angle: float) -> tuple[float, float]:
 
 
 def half_sector_solid(made: SectorMesh) -> HalfSectorSolid:
-    """The isoparametric mesh of half a sector, its planes found.
-
-    Parameters
-    ----------
-    made : SectorMesh
-        A half.
-
-    Returns
-    -------
-    HalfSectorSolid
-    """
+    """The isoparametric mesh of half a sector, its planes found."""
     plain = _isoparametric(made.mesh, "tet10", made.segment)
     outside = made.mesh.boundary_facets()
     x, _, z = made.mesh.p[:, made.mesh.facets[:, outside]]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -18,23 +19,10 @@ from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.solid.seat_faces import Seats
 
 
-def seats(mesh: SolidMesh, straight: np.ndarray, scene, features) -> Facets:
-    """Facets of seats: on what is left of surfaces of revolution, and flanks, tips and roots of
-    teeth.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of a sector, or of the whole.
-    straight : (3, nv) ndarray
-        Places of its vertices, m; only y and the radius count.
-    scene : Scene
-    features : sequence of Teeth, Spline or BoltCircle
-
-    Returns
-    -------
-    callable
-        ``facets(station, attachment)``.
+def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[Any]) -> Facets:
+    """Facets of seats, in a sector or the whole: on what is left of surfaces of revolution, and
+    flanks, tips and roots of teeth; of the (3, nv) places of straight vertices only y and the
+    radius count.
     """
     toothed = {f.segment: f for f in features if f.toothed}
     tolerance = 1e-7 * scene.length
@@ -125,20 +113,8 @@ class SectorSolid(PieceSolid):
 
 
 def sector_solid(made: SectorMesh) -> SectorSolid:
-    """The isoparametric mesh of a sector, its cut faces matched.
-
-    Parameters
-    ----------
-    made : SectorMesh
-
-    Returns
-    -------
-    SectorSolid
-
-    Raises
-    ------
-    MeshError
-        If the cut faces carry different meshes.
+    """The isoparametric mesh of a sector, its cut faces matched; MeshError if they carry different
+    meshes.
     """
     plain = _isoparametric(made.mesh, "tet10", made.segment)
     low, high, axis = cut_vertices(made)

@@ -22,19 +22,8 @@ Facets = Callable[[Any, str], np.ndarray]
 
 
 def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> Facets:
-    """Facets of the seats and sections of a body of revolution.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-    segments : sequence of Segment
-    tolerance : float
-        m.
-
-    Returns
-    -------
-    callable
-        ``facets(station, attachment)``.
+    """Facets of the seats and sections of a body of revolution, within a tolerance, m, by station
+    and attachment.
     """
 
     def facets(station, attachment):
@@ -51,21 +40,8 @@ BEYOND = 0.1
 
 
 def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges between the corners of facets, and their middle nodes.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of elements with middle nodes.
-    corners : (c, f) ndarray of int
-        Vertices of the facets.
-
-    Returns
-    -------
-    edge : (m, f) ndarray of int
-        -1 for a diagonal of a quadrilateral, which is no edge.
-    places : (3, m, f) ndarray
-        m; a corner for a diagonal.
+    """Edges (m, f) between the (c, f) corners of facets, -1 for a diagonal of a quadrilateral,
+    which is no edge; and their middle nodes (3, m, f), m, a corner for a diagonal.
     """
     at = np.zeros(mesh.mesh.edges.shape[1], int)
     at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
@@ -81,18 +57,8 @@ def _pairs(corners: np.ndarray) -> list[tuple[int, int]]:
 
 
 def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
-    """Radii halfway between the ends of the edges of facets, in the order of :func:`edges_of`.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-    corners : (c, f) ndarray of int
-        Vertices of the facets.
-
-    Returns
-    -------
-    (m, f) ndarray
-        m.
+    """Radii (m, f) halfway between the ends of the edges of facets, m, in the order of
+    :func:`edges_of`.
     """
     p = mesh.mesh.p[[0, 2]]
     middles = [(p[:, corners[i]] + p[:, corners[j]]) / 2 for i, j in _pairs(corners)]
@@ -100,18 +66,7 @@ def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
 
 
 def rigid_motions(nodes: np.ndarray) -> np.ndarray:
-    """Unit rigid motions about the origin.
-
-    Parameters
-    ----------
-    nodes : (3, n) ndarray
-        m.
-
-    Returns
-    -------
-    (3 n, 6) ndarray
-        Unknowns node by node.
-    """
+    """(3 n, 6) unit rigid motions about the origin of (3, n) nodes, m, node by node."""
     n = nodes.shape[1]
     rigid: np.ndarray = np.zeros((n, 3, 6))
     rigid[:, :, :3] = np.eye(3)

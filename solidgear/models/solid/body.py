@@ -161,9 +161,9 @@ def solid(
 
 
 def _hexes(scene, wanted, grading):
-    from solidgear.meshing.closed_form import volume_of
     from solidgear.meshing.hexahedra import hexahedra
     from solidgear.meshing.quality import check_mesh
+    from solidgear.scene.closed_form import volume_of
 
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
@@ -171,20 +171,20 @@ def _hexes(scene, wanted, grading):
     return (
         mesh,
         segment,
-        check_mesh(mesh, volume=volume_of(scene.segments, scene.corners), rtol=1e-3),
+        check_mesh(mesh, volume=volume_of(scene.outline), rtol=1e-3),
     )
 
 
 def _tets(scene, wanted, element, size, graded_size, refinement, around):
-    from solidgear.meshing.closed_form import volume_of
     from solidgear.meshing.quality import check_mesh
     from solidgear.meshing.tetrahedra import tetrahedra
+    from solidgear.scene.closed_form import volume_of
 
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
     assemblable(tetrahedra_of(scene, plan, refinement), 10)
-    made = tetrahedra(scene.segments, blends=scene.corners, **plan)
+    made = tetrahedra(scene.outline, **plan)
     if ELEMENTS[element].order == 2:
         return made.mesh, made.segment, made.quality
     from skfem import MeshTet1
@@ -194,5 +194,5 @@ def _tets(scene, wanted, element, size, graded_size, refinement, around):
     return (
         straight,
         made.segment,
-        check_mesh(straight, volume=volume_of(scene.segments, scene.corners), rtol=5e-2),
+        check_mesh(straight, volume=volume_of(scene.outline), rtol=5e-2),
     )

@@ -5,6 +5,7 @@ plane.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -28,9 +29,8 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
     """
     assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
     return featured_mesh(
-        scene.segments,
+        scene.outline,
         resolved(scene),
-        blends=scene.corners,
         **plan,
         refinement=refinement,
         half=half,
@@ -39,29 +39,11 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
 
 
 def featured_body(
-    scene, wanted: Sequence, made: FeaturedMesh, refinement: float, *, plain: bool = False
+    scene: Any, wanted: Sequence, made: FeaturedMesh, refinement: float, *, plain: bool = False
 ) -> Body:
-    """Free body of a meshed scene, with its features cut out or left in.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    made : FeaturedMesh
-    refinement : float
-        For the record.
-    plain : bool
-        Leave the features in: the shaft of revolution on the same mesh.
-
-    Returns
-    -------
-    Body
-        Two blocks where there is a mirror plane, one where there is none.
-
-    Raises
-    ------
-    SolidgearError
-        If no face is left of a seat; MeshError for inverted elements.
+    """Free body of a meshed scene with its features cut out or, `plain`, left in: two blocks where
+    there is a mirror plane, one where there is none. SolidgearError if no face is left of a seat,
+    MeshError for inverted elements.
     """
     keep = np.ones(len(made.cut), bool) if plain else ~made.cut
     mesh = made.mesh if plain else without(made.mesh, keep)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -29,29 +30,11 @@ PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]
 
 
 def half_blocks(
-    mesh: SolidMesh, scene, wanted: Sequence, facets_of: Facets, axis: int
+    mesh: SolidMesh, scene: Any, wanted: Sequence, facets_of: Facets, axis: int
 ) -> tuple[Block, Block]:
-    """Blocks of a whole part from the mesh of its half.
-
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of one half, with the cut faces in the plane.
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    facets_of : callable
-        Facets of the half that carry a station.
-    axis : {0, 2}
-        At right angles to the plane.
-
-    Returns
-    -------
-    symmetric, antisymmetric : Block
-
-    Raises
-    ------
-    SolidgearError
-        If no face lies on a seat.
+    """The symmetric and the antisymmetric block of a whole part from the mesh of its half, whose
+    cut faces lie in the plane at right angles to an axis, 0 or 2; SolidgearError if no face of the
+    half lies on a seat.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m = m.tocsr()

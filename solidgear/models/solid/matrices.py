@@ -85,22 +85,10 @@ def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...])
 
 
 def weighed(pieces, y0: float, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Normal equations of the rigid motion that is nearest to the motion of some pieces.
+    """Normal equations of the rigid motion about y0 (m) that is nearest to the motion of some
+    pieces, of :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`, of a mesh of n nodes.
 
-    Parameters
-    ----------
-    pieces : iterable of (values, x, weights, unknowns)
-        From :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`.
-    y0 : float
-        Point on the axis that motions are about, m.
-    n : int
-        Nodes of the mesh.
-
-    Returns
-    -------
-    gram : (6, 6) ndarray
-    loads : (3 n, 6) ndarray
-        The rigid motion of displacements u is ``gram^-1 loads' u``.
+    With gram (6, 6) and loads (3 n, 6) the rigid motion of displacements u is ``gram^-1 loads' u``.
     """
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))

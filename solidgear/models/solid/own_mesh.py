@@ -72,7 +72,7 @@ def solid_body(
     >>> from solidgear.meshing.tetrahedra import tetrahedra
     >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.06)
     >>> scene = sg.Scene.from_parts([rod])
-    >>> body = solid_body(tetrahedra([rod], size=0.03).mesh, scene, element="tet10")
+    >>> body = solid_body(tetrahedra(scene.outline, size=0.03).mesh, scene, element="tet10")
     >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
     True
     """

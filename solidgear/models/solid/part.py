@@ -14,9 +14,9 @@ from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
 from solidgear.meshing.mesh_file import mesh_from
-from solidgear.meshing.outline import Frustum, corners_of, slabs_between, tolerance_of
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
+from solidgear.meshing.revolved import graded_corners
 from solidgear.models.solid.own_mesh import solid_body
 from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
@@ -29,7 +29,7 @@ BEYOND = 1.1
 
 
 def part_body(
-    scene,
+    scene: Any,
     wanted: Sequence,
     *,
     size: float | None,
@@ -37,26 +37,11 @@ def part_body(
     refinement: float,
     around: int,
 ) -> Body:
-    """Free body of the part of a scene.
+    """Free body, in one block, of the part of a scene with a ``body``; sizes as for
+    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is.
 
-    Parameters
-    ----------
-    scene : Scene
-        With a ``body``.
-    wanted : sequence of (station, attachment)
-    size, graded_size, refinement, around
-        As for :func:`solidgear.models.solid.body.solid`; a mesh file is the mesh that it is.
-
-    Returns
-    -------
-    Body
-        One block.
-
-    Raises
-    ------
-    SolidgearError
-        Where the file has changed since the scene was read, or no face lies on a seat; MeshError
-        where it cannot be meshed.
+    SolidgearError where the file has changed since the scene was read, or no face lies on a seat;
+    MeshError where it cannot be meshed.
     """
     file = scene.body
     try:
@@ -115,36 +100,22 @@ def _apart(file, function, *arguments) -> Any:
         raise MeshError(f"{file.name} {error}") from None
 
 
-def step_plan(scene, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
-    """Cuts and sizes of the mesh of a STEP part, those of the round part inside it.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    size, graded_size, refinement, around
-        As for :func:`solidgear.models.solid.body.solid`.
-
-    Returns
-    -------
-    dict
-        For :func:`solidgear.meshing.step.mesh`.
+def step_plan(scene: Any, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
+    """Cuts and sizes of the mesh of a STEP part for :func:`solidgear.meshing.step.mesh`, those of
+    the round part inside it; sizes as for :func:`solidgear.models.solid.body.solid`.
     """
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
     assemblable(tetrahedra_of(scene, plan, refinement), 10)
-    shapes = [Frustum.of(s) for s in scene.segments]
-    tolerance = tolerance_of(shapes)
-    slabs = slabs_between(shapes, plan["planes"], tolerance)
-    corners = corners_of(slabs, plan["circles"], tolerance)
+    corners = graded_corners(scene.outline, plan["planes"], plan["circles"])
     graded = plan["graded_size"] or plan["size"]
-    largest = max(max(s.outer0, s.outer1) for s in scene.segments)
+    largest = scene.outline.largest_radius
     return {
         "circles": [(y, r) for y in plan["circles"] for r in _radii(scene, y)],
         "planes": [(y, BEYOND * largest) for y in plan["planes"]],
         "formulas": size_formulas(
-            shapes, corners, plan["size"], plan["graded_size"], None, plan["around"]
+            scene.outline, corners, plan["size"], plan["graded_size"], None, plan["around"]
         ),
         "size": plan["size"],
         "graded": graded,

@@ -30,7 +30,7 @@ def hexahedra_layout(
     countable(
         "solid",
         scene,
-        size or relative_size * min(min(s.outer0, s.outer1) for s in scene.segments),
+        size or relative_size * scene.outline.least_radius,
         refinement,
     )
     grading = Grading(
@@ -58,12 +58,12 @@ def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) 
     cuts = [f for f in resolved(scene) if f.sort == CUTS]
     fine = [fine_lines(f, radii[f.segment], refinement, edges) for f in cuts]
     sizes = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.segments, blends=scene.corners, fine=fine, **sizes)
+    return rough_cells(scene.outline, fine=fine, **sizes)
 
 
 def usual_size(scene) -> float:
     """Element edge of tetrahedra at refinement 1, away from everything, m."""
-    return max(max(s.outer0, s.outer1) for s in scene.segments) / 3
+    return scene.outline.largest_radius / 3
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:

@@ -8,8 +8,8 @@ from typing import ClassVar, Literal
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST, Count, OnSegment
+from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.units import PositiveLength
 
 

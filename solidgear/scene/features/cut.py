@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST, OnSegment
+from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
 from solidgear.scene.places import Along, Places
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Position, PositiveLength
 
@@ -92,7 +92,19 @@ class Cut(OnSegment):
         raise NotImplementedError
 
     def volume(self, outer: float, inner: float) -> float | None:
-        """Volume that it takes from its segment, m^3, where that is known in closed form."""
+        """Volume that it takes from its segment of these radii, m^3, where a closed form is known:
+        None for a cross hole through a wall, or a cut down to a bore.
+
+        Examples
+        --------
+        A flat down to nearly the axis is nearly half of the cylinder:
+
+        >>> from math import pi
+        >>> from solidgear.scene import Flat
+        >>> deep = Flat(name="flat", segment="rod", y=0.0, length=1.0, depth=0.1 - 1e-9)
+        >>> round(deep.volume(0.1, 0.0) / (pi * 0.1**2), 6)
+        0.5
+        """
         raise NotImplementedError
 
     def edges(self, radius: float) -> tuple[float, float]:

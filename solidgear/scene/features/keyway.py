@@ -9,8 +9,8 @@ from typing import Any, Literal
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST
 from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
-from solidgear.scene.rules import TOUCH
 from solidgear.scene.units import PositiveLength
 
 

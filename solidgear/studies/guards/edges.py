@@ -23,7 +23,7 @@ NOTICED, LARGE = 0.02, 0.07
 def fillets(probe: Probe) -> Notices:
     """Fillets at roots that a beam leaves out, from where a thousandth is at stake."""
     segments = probe.scene.segments
-    for corner in probe.scene.corners:
+    for corner in probe.scene.outline.corners:
         here = segments[corner.owner]
         ratio = min(corner.axial, corner.radial) / (2 * corner.r)
         if not corner.root or corner.surface != "outer" or ratio < NOTICED:

@@ -106,7 +106,7 @@ def linear_elements(probe: Probe) -> Notices:
 
 def hexahedra_at_fillets(probe: Probe) -> Notices:
     """Hexahedra whose layers do not converge beside fillets as error bars ask."""
-    element, corners = str(probe.body.mesh.get("element", "")), probe.scene.corners
+    element, corners = str(probe.body.mesh.get("element", "")), probe.scene.outline.corners
     if probe.body.fidelity == "solid" and element.startswith("hex") and corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in corners)
         yield Notice(

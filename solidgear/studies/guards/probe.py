@@ -32,7 +32,7 @@ from solidgear.models.size import Size, of_body
 from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 from solidgear.solve.modes import ModeSet, modes
 
 if TYPE_CHECKING:

@@ -12,8 +12,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.closed_form import mass_properties
 from solidgear.meshing.teeth import lacking
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.outline import Outline
 from solidgear.scene.shaft import named
 from solidgear.studies.guards.notice import Notice, Notices, everything
 
@@ -58,7 +59,7 @@ def expected(scene: Scene) -> tuple[float, float]:
     >>> [round(e, 3) for e in expected(pinion.with_changes(features=(teeth,)))]
     [0.016, 0.019]
     """
-    own = mass_properties(scene.segments)
+    own = mass_properties(Outline(scene.segments))
     stiffness = max(STIFFER * (f.tip - f.root) for f in _smeared(scene))
     mass, polar = _lacking(scene)
     share = max(abs(mass) / own.mass, abs(polar) / own.iyy)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -174,7 +174,7 @@ def fillet_factors(
     """
     piece = piece_around(scene, name, reach)
     section, radius = _reference(piece)
-    corner = next(c for c in scene.corners if c.name == name)
+    corner = next(c for c in scene.outline.corners if c.name == name)
     found: FilletFactors | None = None
     for order in orders:
         unknowns, profiles = _solved(piece, section, radius, order, refinement)

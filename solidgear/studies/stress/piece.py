@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.scene import Port
 from solidgear.scene.coned import coned
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene import Corner, Scene, Segment
@@ -33,7 +33,7 @@ class Piece:
     ----------
     segments : tuple of Segment
         From y = 0 on.
-    corners : tuple of Corner
+    outline : Outline
     corner : Corner
         The one looked at, in the places of the piece.
     start : float
@@ -41,7 +41,7 @@ class Piece:
     """
 
     segments: tuple[Segment, ...]
-    corners: tuple[Corner, ...]
+    outline: Outline[Segment]
     corner: Corner
     start: float
 
@@ -80,10 +80,8 @@ def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
     [('head', 0.0582), ('head.backcone', 0.01), ('shaft', 0.184)]
     """
     whole = coned(scene.plain)
-    corner = next(c for c in whole.corners if c.name == name)
-    joints = [0.0, *(s.y1 for s in whole.segments)]
-    at = min(range(len(joints)), key=lambda k: abs(joints[k] - corner.y))
-    low, high = whole.segments[at - 1], whole.segments[at]
+    corner = next(c for c in whole.outline.corners if c.name == name)
+    low, high = whole.segments[corner.joint - 1 : corner.joint + 1]
     first, last = corner.span
     start = _cut(whole, first - reach * low.outer1, -1)
     end = _cut(whole, last + reach * high.outer0, 1)
@@ -92,10 +90,10 @@ def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
     segments = tuple(_part(s, start, end) for s in kept)
     corners = {
         c.name: replace(c, y=c.y - start, owner=c.owner - before)
-        for c in whole.corners
+        for c in whole.outline.corners
         if start + TOUCH < c.y < end - TOUCH and _counts(c, corner)
     }
-    return Piece(segments, tuple(corners.values()), corners[name], start)
+    return Piece(segments, Outline(segments, corners.values()), corners[name], start)
 
 
 def _counts(other: Corner, corner: Corner) -> bool:
@@ -104,7 +102,7 @@ def _counts(other: Corner, corner: Corner) -> bool:
     """
     if other.root:
         return other.kind == "fillet"
-    return abs(other.y - corner.y) <= TOUCH
+    return other.joint == corner.joint
 
 
 def _cut(shaft: Scene, y: float, way: int) -> float:
@@ -118,8 +116,8 @@ def _cut(shaft: Scene, y: float, way: int) -> float:
     )
     segment = shaft.segments[index]
     rooms = (
-        ROOM * max((c.axial for c in shaft.corners if abs(c.y - end) <= TOUCH), default=TOUCH)
-        for end in (segment.y0, segment.y1)
+        ROOM * max((c.axial for c in shaft.outline.corners if c.joint == joint), default=TOUCH)
+        for joint in (index, index + 1)
     )
     first, last = segment.y0 + next(rooms), segment.y1 - next(rooms)
     # not so near to the joint passed that its fillets have no room

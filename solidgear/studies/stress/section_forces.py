@@ -36,8 +36,8 @@ import numpy as np
 
 from solidgear.errors import SolidgearError, listed, nearest
 from solidgear.frames import DOF_NAMES, shift
-from solidgear.meshing.closed_form import mass_properties
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -247,8 +247,8 @@ def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
     g = np.asarray(gravity, float)
     loads = []
     for k, segment in enumerate(scene.segments):
-        edges = [replace(corner, owner=0) for corner in scene.corners if corner.owner == k]
-        found = mass_properties([segment], edges)
+        edges = [replace(corner, owner=0) for corner in scene.outline.corners if corner.owner == k]
+        found = mass_properties(Outline([segment], edges))
         force = np.concatenate([found.mass * g, np.zeros(3)])
         loads.append(Load(f"{WEIGHT}{segment.name}", found.centre, force))
     seats = {station.name: station.y for station in scene.stations}

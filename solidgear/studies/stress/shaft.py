@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.scene.blends import Corner, radius_of
-from solidgear.scene.rules import TOUCH
+from solidgear.scene.blends import Corner
+from solidgear.scene.outline import radii_of
 from solidgear.studies.stress.din743 import LOADS
 from solidgear.studies.stress.din743 import Load as LoadKind
 from solidgear.studies.stress.nominal import (
@@ -37,7 +37,7 @@ from solidgear.studies.stress.section_forces import SectionForces, forces_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from solidgear.scene import Scene, Segment
+    from solidgear.scene import Scene
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
 NEAR, TOUCHING = 1.0, 0.01
@@ -45,6 +45,8 @@ NEAR, TOUCHING = 1.0, 0.01
 SHEARED = 0.05
 #: relative bar below which no order leads
 FINEST = 3e-3
+#: rad; a surface that turns by less is straight, but for rounding
+SMOOTH = 1e-9
 
 
 @dataclass(frozen=True)
@@ -219,7 +221,7 @@ def shaft_stress(
         for feature in scene.features
     ]
     notches = []
-    for corner in sorted(scene.corners, key=lambda c: c.y):
+    for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             progress(corner.name)
             try:
@@ -250,27 +252,10 @@ def check_tolerance(tolerance: float) -> None:
 
 def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
     """Re-entrant corners of the outline that have no fillet."""
-    blended = [corner for corner in scene.corners if corner.root]
-    for low, high in zip(scene.segments, scene.segments[1:]):
-        for surface in ("outer", "bore"):
-            at = (c.kind for c in blended if c.surface == surface and abs(c.y - low.y1) <= TOUCH)
-            kind = next(at, "")
-            if kind != "fillet" and _re_entrant(low, high, surface):
-                yield SharpCorner(low.y1, surface, (low.name, high.name), bool(kind))
-
-
-def _re_entrant(low: Segment, high: Segment, surface) -> bool:
-    """True where the outline of two segments has a corner that opens into the material."""
-    before, after = radius_of(low, surface, "1"), radius_of(high, surface, "0")
-    if surface == "bore" and not (before and after):
-        return bool(before) != bool(after)
-    if abs(before - after) > TOUCH:
-        return True
-    slopes = [
-        (radius_of(s, surface, "1") - radius_of(s, surface, "0")) / s.length for s in (low, high)
-    ]
-    bend = slopes[1] - slopes[0]
-    return bend > 1e-9 if surface == "outer" else bend < -1e-9
+    for edge in scene.outline.edges:
+        if edge.angle > np.pi + SMOOTH:
+            low, high = scene.segments[edge.joint - 1 : edge.joint + 1]
+            yield SharpCorner(edge.y, edge.surface, (low.name, high.name), bool(edge.root))
 
 
 def _notch(
@@ -316,7 +301,8 @@ def _notch(
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     """Diameters of the surface on both sides of a step, that of the fillet's cylinder first, m."""
     beside = scene.segments[corner.owner - corner.side]
-    return 2 * corner.r, 2 * radius_of(beside, corner.surface, "1" if corner.side > 0 else "0")
+    start, end = radii_of(beside, corner.surface)
+    return 2 * corner.r, 2 * (end if corner.side > 0 else start)
 
 
 def local_stress(found: FilletFactors, forces: np.ndarray) -> Local:

@@ -12,7 +12,6 @@ from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene import (
     Bearing,
-    Corner,
     Elastic,
     Feature,
     Housing,
@@ -23,6 +22,7 @@ from solidgear.scene import (
 )
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
+from solidgear.scene.outline import Outline
 from solidgear.studies.sweep.vary import Axis
 
 E = TypeVar("E", bound=Elastic)
@@ -37,9 +37,9 @@ class SeatedShaft:
 
     segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing | PointMass, ...]
+    outline: Outline[Segment]
     features: tuple[Feature, ...] = ()
     body: BodyFile | None = None
-    corners: tuple[Corner, ...] = ()
 
     @property
     def plain(self) -> SeatedShaft:
@@ -162,9 +162,9 @@ class Variants:
         return SeatedShaft(
             self.scene.segments,
             (self.scene.port, *ordered, *own, *self.scene.further_ports),
+            self.scene.outline,
             self.scene.features,
             self.scene.body,
-            self.scene.corners,
         )
 
 

@@ -269,7 +269,7 @@ def _apexes(train: Train) -> list[str]:
 def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
     scene, apex = train.member(side).scene, train.member(side).apex
     port = scene.port
-    most = max(max(s.outer0, s.outer1) for s in scene.segments)
+    most = scene.outline.largest_radius
     # a wheel that is a rigid mass is not among the segments; its pitch radius says how far it goes
     most = max(most, train.member(side).pitch_radius or 0.0)
     radius = float(np.hypot(point[0], point[2]))

@@ -18,10 +18,10 @@ from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.ladder.model import SOLID
 from solidgear.ladder.registry import LADDER
-from solidgear.meshing.closed_form import mass_properties
 from solidgear.models.kinds import CYCLIC
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.plan import tetrahedra_plan
+from solidgear.scene.closed_form import mass_properties
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.commands import spoken
 from validation.campaign.rows import CLAIM, Cost, Found, Row
@@ -147,7 +147,7 @@ def expected_mass(scene: sg.Scene, smeared: bool) -> tuple[np.ndarray, float]:
     """(6, 6) rigid mass matrix of the part, and the largest share that is cut out of it; teeth that
     the scene smears are a cone if `smeared`.
     """
-    plain = _revolved(mass_properties(scene.segments, scene.corners))
+    plain = _revolved(mass_properties(scene.outline))
     removed = removed_mass(scene)
     share = float(np.max(np.diag(removed) / np.diag(plain)))
     for f in scene.features:
