@@ -18,7 +18,7 @@ from solidgear.report.measured_chart import measured_chart
 from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import WIDE, Make
 from solidgear.report.table import Column, Table
-from solidgear.report.train_chart import label, receptance_chart, response_chart
+from solidgear.report.train_chart import receptance_chart, response_chart
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 
@@ -53,7 +53,7 @@ def write_response(
         "response": partial(response_chart, responses, title, teeth, band, {}, shown)
     }
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, label(first))]
+    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, first.label)]
     if orders is not None:
         tables["orders"] = crossings(orders)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)
@@ -78,7 +78,7 @@ def write_response(
     page = write_sheet(
         folder / "response.html",
         title,
-        f"Steady response, {first.damping} losses; tables of {label(first)}.",
+        f"Steady response, {first.damping} losses; tables of {first.label}.",
         [*told, train_tables.facts(train, shown)],
         charts=charts,
         notes=remarks,
@@ -138,7 +138,7 @@ def write_receptance(
     page = write_sheet(
         folder / "receptance.html",
         title,
-        f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
+        f"Steady motion for a unit force, {first.damping} losses; table of {first.label}.",
         [
             train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
             train_tables.facts(train, shown),
@@ -172,11 +172,16 @@ def write_data(
     folder.mkdir(parents=True, exist_ok=True)
     first, *others = [table.write(folder / f"{name}.csv") for name, table in tables.items()]
     files = [first, first.with_name(f"{name or first.stem}.json"), *others]
-    with whole(files[1]) as half:
-        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    write_json(files[1], data)
     for name, make in charts.items():
         files += write_charts(folder / name, make)
     return files
+
+
+def write_json(path: Path, data: Mapping[str, Any]) -> None:
+    """Plain data as a whole file or none."""
+    with whole(path) as half:
+        half.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def write_charts(stem: Path, make: Make) -> list[Path]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from solidgear.machine.whole_file import write_page
 from solidgear.report.page_parts import template
@@ -29,16 +31,47 @@ WORDS = {
 }
 
 
+class Figure(NamedTuple):
+    """A chart in a section, by a name of letters and underscores that is no other's of the page, and
+    what it says in words.
+    """
+
+    name: str
+    words: str
+    make: Make
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page, with a heading that the contents point to.
+
+    Attributes
+    ----------
+    anchor, title, words : str
+    figures : sequence of Figure
+    tables : sequence of Table
+        Those without rows are left out.
+    """
+
+    anchor: str
+    title: str
+    words: str = ""
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+
+
 def write_sheet(
     path: Path,
     title: str,
     lead: str,
-    tables: Iterable[Table],
+    tables: Iterable[Table] = (),
     *,
     charts: Mapping[str, Make] | None = None,
     viewer: str = "",
     notes: Sequence[str] = (),
     cautions: Sequence[str] = (),
+    verdict: Sequence[str] = (),
+    sections: Sequence[Section] = (),
 ) -> Path:
     """Write a page that needs no network and no other file.
 
@@ -53,6 +86,10 @@ def write_sheet(
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
     notes, cautions : sequence of str
+    verdict : sequence of str
+        Conclusions, which come first.
+    sections : sequence of Section
+        After all else but the notes.
 
     Raises
     ------
@@ -61,14 +98,25 @@ def write_sheet(
     """
     from markupsafe import Markup
 
-    drawn = {name: page_svg(name, make) for name, make in (charts or {}).items()}
+    figures = [Figure(name, WORDS[name], make) for name, make in (charts or {}).items()]
+    shown = [(s, [table for table in s.tables if table], _drawn(s.figures)) for s in sections]
     page = template("train_sheet.html").render(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=[(Markup(svg.decode()), WORDS[name]) for name, svg in drawn.items() if svg],
+        charts=_drawn(figures),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
+        verdict=verdict,
+        sections=[part for part in shown if part[0].words or part[1] or part[2]],
     )
     return write_page(path, page)
+
+
+def _drawn(figures: Sequence[Figure]) -> list[tuple[str, str]]:
+    """Figures as they stand in the page, and their words; what has nothing to draw is left out."""
+    from markupsafe import Markup
+
+    drawn = [(page_svg(figure.name, figure.make), figure.words) for figure in figures]
+    return [(Markup(svg.decode()), words) for svg, words in drawn if svg]

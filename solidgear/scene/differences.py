@@ -52,6 +52,18 @@ class Difference:
         """True where it moves no number: a title, a source, the name of a file that is looked into."""
         return self.path.rpartition(".")[2] in WORDS
 
+    def written(self, width: int) -> tuple[str | None, str | None]:
+        """Both entries in at most so many letters: texts without quotes, and all else as in a file.
+
+        Examples
+        --------
+        >>> Difference("mesh.stiffness", "2.5e8 N/m", None).written(70)
+        ('2.5e8 N/m', None)
+        >>> Difference("losses", {"mesh": 0.12}, "a long text").written(8)
+        ('{"mes...', 'a lon...')
+        """
+        return _written(self.a, width), _written(self.b, width)
+
 
 def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference, ...]:
     """Entries in which two files differ, in the order of the first.
@@ -92,8 +104,8 @@ class _Files:
 
     def found(self) -> Iterator[Difference]:
         """Their differences."""
-        left_out = ("ask",) if self.prefix else ()
-        yield from self._tables("", *self.raw, left_out)
+        a, b = self.raw
+        yield from self._tables("", a, b, left_out=("ask",) if self.prefix else ())
 
     def _meaning(self, k: int) -> Any:
         """What a file says, whatever it leaves out; None where it cannot be read alone."""
@@ -153,6 +165,12 @@ class _Files:
         return all(f.is_file() for f in files) and files[0].read_bytes() != files[1].read_bytes()
 
 
+def _written(value: Any, width: int) -> str | None:
+    if value is None or not isinstance(value, str):
+        return None if value is None else show(value, width)
+    return value if len(value) <= width else f"{value[: width - 3]}..."
+
+
 def _are_tables(value: Any) -> bool:
     return isinstance(value, list) and all(isinstance(entry, dict) for entry in value)
 
@@ -171,16 +189,3 @@ def _alike(a: Any, b: Any) -> bool:
     if one is None or other is None:
         return bool(a == b)
     return isclose(one, other, rel_tol=ROUNDING)
-
-
-def written(value: Any, width: int = 70) -> str:
-    """An entry in one line: a text without quotes, and all else as in a file.
-
-    Examples
-    --------
-    >>> written("90 mm"), written([1, 2]), written({"kxx": 1e8})
-    ('90 mm', '[1, 2]', '{"kxx": 100000000.0}')
-    """
-    if not isinstance(value, str):
-        return show(value, width)
-    return value if len(value) <= width else f"{value[: width - 3]}..."

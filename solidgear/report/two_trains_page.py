@@ -1,0 +1,231 @@
+"""Everything that two trains beside each other leave in a folder: numbers, curves, charts, and one
+self-contained page.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solidgear.report import train_tables
+from solidgear.report import two_trains_tables as tables
+from solidgear.report.folder import begun
+from solidgear.report.plot import Make
+from solidgear.report.run_tables import pairs_of
+from solidgear.report.shares_chart import Bar, shares_chart
+from solidgear.report.train_chart import columns_chart, response_chart
+from solidgear.report.train_files import over_frequency, write_charts, write_json
+from solidgear.report.train_sheet import Figure, Section, write_sheet
+from solidgear.report.units import ENGINEERING, Units, units_named
+from solidgear.report.words import seconds
+
+#: a reaction is drawn if it has this share of the largest of its unit in either train
+LARGE = 0.2
+SIDES = ("pinion", "gear")
+
+
+def write_two_trains(
+    found: Any,
+    results: Mapping[str, Any],
+    out: str | os.PathLike,
+    units: str | Units = ENGINEERING,
+) -> Path:
+    """Write results.json, the responses as tables, the charts and report.html.
+
+    Parameters
+    ----------
+    found : TwoTrains
+    results : mapping
+        The same as plain data, as of ``two_trains_told.results``.
+    out : path
+    units : str or Units
+        Of tables and charts; all else is SI.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    SolidgearError
+        If the folder cannot be written.
+    """
+    shown = units_named(units)
+    charts = charts_of(found, shown)
+    files = ["report.html", *(f"response_{key}.csv" for key in "ab")]
+    files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+    with begun(out) as folder:
+        # Numbers first: whatever happens to charts, they are there.
+        write_json(folder / "results.json", {**results, "files": files})
+        for key, one in zip("ab", found.both):
+            teeth = one.workshop.train.pinion.teeth
+            over_frequency(one.response, teeth).write(folder / f"response_{key}.csv")
+        for name, make in charts.items():
+            write_charts(folder / name, make)
+        return write_sheet(
+            folder / "report.html",
+            _title(results),
+            f"solidgear report on two trains: {tables.who(found)}.",
+            verdict=results["sentences"],
+            cautions=found.cautions,
+            sections=_sections(found, results, charts, shown),
+            notes=[f"Whole run: {seconds(found.seconds)} s."],
+        )
+
+
+def _title(results: Mapping[str, Any]) -> str:
+    titles = [train["title"] for train in results["trains"].values()]
+    return titles[0] if len(set(titles)) == 1 else f"{titles[0]} beside {titles[1]}"
+
+
+def charts_of(found: Any, units: Units) -> dict[str, Make]:
+    """Charts by their names: response, reactions, motions, shares."""
+    both = [one.response for one in found.both]
+    teeth = {one.workshop.train.pinion.teeth for one in found.both}
+    shared = teeth.pop() if len(teeth) == 1 else None
+    return {
+        "response": partial(response_chart, both, "", shared, None, {}, units),
+        "reactions": partial(columns_chart, both, reactions(found), shared, units),
+        "motions": partial(columns_chart, both, motions(found), shared, units),
+        "shares": partial(shares_chart, _bars(found)),
+    }
+
+
+def reactions(found: Any) -> list[tuple[str, str]]:
+    """Columns of bearing reactions that are large, or the largest of their bearing, and what they are
+    called; forces before moments, the pinion's before the gear's.
+    """
+    out: list[tuple[str, str]] = []
+    for unit in ("[N]", "[N m]"):
+        sizes: dict[tuple[str, str], float] = {}
+        for column in found.columns:
+            bearing, _, dof = column.removesuffix(f" {unit}").rpartition(" ")
+            if " bearing " in column and column.endswith(unit):
+                tops = [one.largest(column) for one in found.both]
+                sizes[bearing, dof] = max(top[1] for top in tops if top is not None)
+        largest = max(sizes.values(), default=0.0)
+        by_bearing = sorted(
+            sizes.items(), key=lambda one: (SIDES.index(one[0][0].split()[0]), one[0][0])
+        )
+        for (bearing, dof), size in by_bearing:
+            own = max(other for (name, _), other in sizes.items() if name == bearing)
+            if size > 0 and (size == own or size >= LARGE * largest):
+                out.append((f"{bearing} {dof} {unit}", f"{bearing}, {dof}"))
+    return out
+
+
+def motions(found: Any) -> list[tuple[str, str]]:
+    """Columns of the motions of both lumped points, and what they are called."""
+    return [
+        (column, f"{column.partition(' ')[0]}, {column.partition(' [')[0].rpartition(' ')[2]}")
+        for column in found.columns
+        if column.partition(" ")[0] in SIDES and " bearing " not in column
+    ]
+
+
+def _bars(found: Any) -> list[tuple[str, Sequence[Bar]]]:
+    out: list[tuple[str, Sequence[Bar]]] = []
+    for pair in found.modes:
+        bars = [
+            Bar(letter, one.name, one.frequency_hz, one.shares)
+            for letter, one in (("A", pair.a), ("B", pair.b))
+            if one is not None
+        ]
+        out.append((bars[0].name, bars))
+    return out
+
+
+def _sections(
+    found: Any,
+    results: Mapping[str, Any],
+    charts: Mapping[str, Make],
+    units: Units,
+) -> list[Section]:
+    rest = found.misalignment()
+    at_rest = (
+        [tables.misalignment(found, units), tables.bearing_loads(found, units)] if rest else []
+    )
+    facts = [
+        train_tables.facts(train, units, f"Train {one.label}")
+        for train, one in zip(results["trains"].values(), found.both)
+    ]
+    return [
+        Section(
+            "input",
+            "Input",
+            "" if found.inputs else "Nothing differs between the two files.",
+            tables=[tables.inputs(found)],
+        ),
+        Section(
+            "response",
+            "Mesh force",
+            "Steady response to the transmission error of each file.",
+            [
+                Figure(
+                    "response",
+                    "Dynamic mesh force and transmission error of both trains.",
+                    charts["response"],
+                )
+            ],
+            [tables.peaks(found, units)],
+        ),
+        Section("modes", "Modes", tables=[tables.modes(found)]),
+        Section(
+            "reactions",
+            "Bearing reactions",
+            f"Forces and moments of bearings on their shafts as the teeth excite them: those of {LARGE:.0%} "
+            "of the largest of their kind or more, and the largest of every bearing. All are in "
+            "results.json and in the tables response_a.csv and response_b.csv.",
+            [
+                Figure(
+                    "reactions",
+                    "Bearing reactions of both trains over frequency.",
+                    charts["reactions"],
+                )
+            ],
+            tables.largest(found, reactions(found), units),
+        ),
+        Section(
+            "motions",
+            "Motions of the lumped points",
+            "Six components at the lumped point of each shaft, in the axes of its own file: y along the "
+            "shaft, x and z across it.",
+            [
+                Figure(
+                    "motions",
+                    "Motions of both lumped points of both trains over frequency.",
+                    charts["motions"],
+                )
+            ],
+            tables.largest(found, motions(found), units),
+        ),
+        Section(
+            "shares",
+            "Strain energy",
+            "The part of the strain energy of every mode that is in shafts, bearings with their "
+            "housing, teeth and torsion springs.",
+            [
+                Figure(
+                    "shares",
+                    "Strain energy of every mode of A and B by what it is in.",
+                    charts["shares"],
+                )
+            ],
+            [tables.shares(found)],
+        ),
+        Section(
+            "rest",
+            "Under torque",
+            tables=at_rest,
+        ),
+        Section(
+            "trains",
+            "Both trains",
+            " ".join(results["unpublished_lines"]),
+            tables=[*facts, pairs_of(results["environment"], "Environment of the run")],
+        ),
+    ]
