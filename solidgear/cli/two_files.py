@@ -75,7 +75,7 @@ def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) 
     from solidgear.report import two_trains_tables as tables
     from solidgear.report.folder import held
     from solidgear.report.two_trains_page import write_two_trains
-    from solidgear.report.units import units_named
+    from solidgear.report.units import in_ascii, units_named
     from solidgear.scene.differences import differences
     from solidgear.studies.train.shaft import checked_rung
     from solidgear.studies.train.two_trains import two_trains
@@ -87,9 +87,9 @@ def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) 
     shown, names = units_named(run.units), _names(a, b)
     with held(out), run.progress() as progress:
         found = two_trains(shops, names, differences(a, b), *models, progress=progress)
-        told = results(found)
+        told, words = results(found), sentences(found, shown)
         progress("report")
-        write_two_trains(found, told, out, run.units)
+        write_two_trains(found, told, words, out, shown)
     if run.as_json:
         print(json.dumps(told, allow_nan=False))
         return
@@ -98,7 +98,7 @@ def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) 
         tables.inputs(found, tables.SHORT),
         tables.modes(found),
         tables.peaks(found, shown),
-        *sentences(found, shown),
+        *map(in_ascii, words),
         *told["unpublished_lines"],
         *map(caution, found.cautions),
         f"Report: {out / 'report.html'}",

@@ -29,7 +29,7 @@ LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
     r"(report\.html|mode_\w+\.png|modes\.html|system_mode_\d+\.png"
-    r"|(response|orders|reactions|motions|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
+    r"|(response|orders|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
     rf"|{'|'.join(output.pattern for output in OUTPUTS)})"
 )
 #: what a process that was killed can have left half written, see

@@ -12,8 +12,9 @@ from solidgear.report.words import hertz
 #: in the order of shares, the colours in turn; shafts are dark, what they rest on is light
 COLOURS = ("#8a6d3b", "#0072b2", "#9cc9e6", "#b3305c", "#9fd3bf", "#00805e", "#5a3e8c")
 LIGHT = ("#9cc9e6", "#9fd3bf")
-#: px of a bar; of the names of modes on a wide and on a narrow page; of the letter beside a bar
-BAR, NAMES, NARROW_NAMES, LETTER = 13.0, 215.0, 120.0, 14.0
+#: px of a bar; of the names of modes on a wide and on a narrow page; of the letter beside a bar, and
+#: of a place in the legend
+BAR, NAMES, NARROW_NAMES, LETTER, PLACE = 13.0, 215.0, 120.0, 14.0, 142.0
 #: shares below this are too narrow for their figure
 WORTH_A_FIGURE = 0.08
 
@@ -49,7 +50,7 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
         Axis("", (len(modes) - 0.5, -0.5), ticks=names, grid=False),
         max(BAR * most + 8, 15 * lines + 2) * len(modes),
         series={place: Series(COLOURS[k % len(COLOURS)]) for k, place in enumerate(places)},
-        legend={"orient": "top", "columns": 7 if width > NARROW else 2, "symbolType": "square"},
+        legend={"orient": "top", "columns": int(width / PLACE), "symbolType": "square"},
         left=left,
     )
     thick = 0.84 / most

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from solidgear.machine.whole_file import write_page
 from solidgear.report.page_parts import template
@@ -14,7 +13,7 @@ from solidgear.report.table import Table
 
 #: what charts of a train say in words, by their names
 WORDS = {
-    "response": "Dynamic mesh force and transmission error of every model drawn.",
+    "response": "Dynamic mesh force and transmission error of all that is drawn.",
     "orders": (
         "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
         "frequencies they meet. Colour: the mesh force along an order that the transmission "
@@ -28,17 +27,10 @@ WORDS = {
         "mesh force over the same frequencies. Grey lines: natural frequencies."
     ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
+    "reactions": "Forces and moments of bearings on their shafts over frequency.",
+    "motions": "Motions of both lumped points over frequency.",
+    "shares": "Strain energy of every mode by what it is in.",
 }
-
-
-class Figure(NamedTuple):
-    """A chart in a section, by a name of letters and underscores that is no other's of the page, and
-    what it says in words.
-    """
-
-    name: str
-    words: str
-    make: Make
 
 
 @dataclass(frozen=True)
@@ -48,7 +40,9 @@ class Section:
     Attributes
     ----------
     anchor, title, words : str
-    figures : sequence of Figure
+    charts : mapping of str to callable
+        By names of letters and underscores, each of no other chart of the page; those in ``WORDS``
+        say what is written there, others the title.
     tables : sequence of Table
         Those without rows are left out.
     """
@@ -56,7 +50,7 @@ class Section:
     anchor: str
     title: str
     words: str = ""
-    figures: Sequence[Figure] = ()
+    charts: Mapping[str, Make] = field(default_factory=dict)
     tables: Sequence[Table] = ()
 
 
@@ -98,13 +92,14 @@ def write_sheet(
     """
     from markupsafe import Markup
 
-    figures = [Figure(name, WORDS[name], make) for name, make in (charts or {}).items()]
-    shown = [(s, [table for table in s.tables if table], _drawn(s.figures)) for s in sections]
+    shown = [
+        (s, [table for table in s.tables if table], _drawn(s.charts, s.title)) for s in sections
+    ]
     page = template("train_sheet.html").render(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(figures),
+        charts=_drawn(charts or {}, title),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -114,9 +109,9 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(figures: Sequence[Figure]) -> list[tuple[str, str]]:
-    """Figures as they stand in the page, and their words; what has nothing to draw is left out."""
+def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+    """Charts as they stand in the page, and their words; what has nothing to draw is left out."""
     from markupsafe import Markup
 
-    drawn = [(page_svg(figure.name, figure.make), figure.words) for figure in figures]
+    drawn = [(page_svg(name, make), WORDS.get(name, title)) for name, make in charts.items()]
     return [(Markup(svg.decode()), words) for svg, words in drawn if svg]

@@ -16,20 +16,31 @@ from solidgear.report.folder import begun
 from solidgear.report.plot import Make
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.shares_chart import Bar, shares_chart
+from solidgear.report.table import Table
 from solidgear.report.train_chart import columns_chart, response_chart
 from solidgear.report.train_files import over_frequency, write_charts, write_json
-from solidgear.report.train_sheet import Figure, Section, write_sheet
+from solidgear.report.train_sheet import Section, write_sheet
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import seconds
 
 #: a reaction is drawn if it has this share of the largest of its unit in either train
 LARGE = 0.2
 SIDES = ("pinion", "gear")
+#: charts that are files as well; those of many panels are read on the page
+FILED = ("response", "shares")
+SAME = "Nothing differs between the two files."
+EXCITED = "Steady response to the transmission error of each file."
+REACTIONS = (
+    f"Those of {100 * LARGE:g} % of the largest of their kind or more, and the largest of every "
+    "bearing. All are in results.json and in the tables response_a.csv and response_b.csv."
+)
+MOTIONS = "In the axes of each shaft's own file: y along the shaft, x and z across it."
 
 
 def write_two_trains(
     found: Any,
     results: Mapping[str, Any],
+    sentences: Sequence[str],
     out: str | os.PathLike,
     units: str | Units = ENGINEERING,
 ) -> Path:
@@ -40,6 +51,8 @@ def write_two_trains(
     found : TwoTrains
     results : mapping
         The same as plain data, as of ``two_trains_told.results``.
+    sentences : sequence of str
+        Its conclusions.
     out : path
     units : str or Units
         Of tables and charts; all else is SI.
@@ -57,20 +70,20 @@ def write_two_trains(
     shown = units_named(units)
     charts = charts_of(found, shown)
     files = ["report.html", *(f"response_{key}.csv" for key in "ab")]
-    files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+    files += [f"{name}.{kind}" for name in FILED for kind in ("png", "svg")]
     with begun(out) as folder:
         # Numbers first: whatever happens to charts, they are there.
         write_json(folder / "results.json", {**results, "files": files})
         for key, one in zip("ab", found.both):
             teeth = one.workshop.train.pinion.teeth
             over_frequency(one.response, teeth).write(folder / f"response_{key}.csv")
-        for name, make in charts.items():
-            write_charts(folder / name, make)
+        for name in FILED:
+            write_charts(folder / name, charts[name])
         return write_sheet(
             folder / "report.html",
             _title(results),
             f"solidgear report on two trains: {tables.who(found)}.",
-            verdict=results["sentences"],
+            verdict=sentences,
             cautions=found.cautions,
             sections=_sections(found, results, charts, shown),
             notes=[f"Whole run: {seconds(found.seconds)} s."],
@@ -145,87 +158,45 @@ def _sections(
     charts: Mapping[str, Make],
     units: Units,
 ) -> list[Section]:
-    rest = found.misalignment()
-    at_rest = (
-        [tables.misalignment(found, units), tables.bearing_loads(found, units)] if rest else []
-    )
+    loaded = [one for one in found.both if found.misalignment()]
+    points = [
+        f"{one.letter} at {one.loaded.point.label}: {units.text(one.loaded.mesh_force, 'N', 4)} "
+        "along the line of action."
+        for one in loaded
+    ]
     facts = [
         train_tables.facts(train, units, f"Train {one.label}")
         for train, one in zip(results["trains"].values(), found.both)
     ]
+    machine = pairs_of(results["environment"], "Environment of the run")
+
+    def section(name: str, title: str, words: str, *told: Table) -> Section:
+        own = {name: charts[name]} if name in charts else {}
+        return Section(name, title, words, own, told)
+
     return [
-        Section(
-            "input",
-            "Input",
-            "" if found.inputs else "Nothing differs between the two files.",
-            tables=[tables.inputs(found)],
-        ),
-        Section(
-            "response",
-            "Mesh force",
-            "Steady response to the transmission error of each file.",
-            [
-                Figure(
-                    "response",
-                    "Dynamic mesh force and transmission error of both trains.",
-                    charts["response"],
-                )
-            ],
-            [tables.peaks(found, units)],
-        ),
-        Section("modes", "Modes", tables=[tables.modes(found)]),
-        Section(
+        section("input", "Input", "" if found.inputs else SAME, tables.inputs(found)),
+        section("response", "Mesh force", EXCITED, tables.peaks(found, units)),
+        section("modes", "Modes", "", tables.modes(found)),
+        section(
             "reactions",
             "Bearing reactions",
-            f"Forces and moments of bearings on their shafts as the teeth excite them: those of {LARGE:.0%} "
-            "of the largest of their kind or more, and the largest of every bearing. All are in "
-            "results.json and in the tables response_a.csv and response_b.csv.",
-            [
-                Figure(
-                    "reactions",
-                    "Bearing reactions of both trains over frequency.",
-                    charts["reactions"],
-                )
-            ],
-            tables.largest(found, reactions(found), units),
+            REACTIONS,
+            *tables.largest(found, reactions(found), units),
         ),
-        Section(
+        section(
             "motions",
             "Motions of the lumped points",
-            "Six components at the lumped point of each shaft, in the axes of its own file: y along the "
-            "shaft, x and z across it.",
-            [
-                Figure(
-                    "motions",
-                    "Motions of both lumped points of both trains over frequency.",
-                    charts["motions"],
-                )
-            ],
-            tables.largest(found, motions(found), units),
+            MOTIONS,
+            *tables.largest(found, motions(found), units),
         ),
-        Section(
-            "shares",
-            "Strain energy",
-            "The part of the strain energy of every mode that is in shafts, bearings with their "
-            "housing, teeth and torsion springs.",
-            [
-                Figure(
-                    "shares",
-                    "Strain energy of every mode of A and B by what it is in.",
-                    charts["shares"],
-                )
-            ],
-            [tables.shares(found)],
-        ),
-        Section(
+        section("shares", "Strain energy", "", tables.shares(found)),
+        section(
             "rest",
             "Under torque",
-            tables=at_rest,
+            " ".join(points),
+            *([tables.misalignment(found, units)] if loaded else []),
+            *([tables.bearing_loads(found, units)] if loaded else []),
         ),
-        Section(
-            "trains",
-            "Both trains",
-            " ".join(results["unpublished_lines"]),
-            tables=[*facts, pairs_of(results["environment"], "Environment of the run")],
-        ),
+        section("trains", "Both trains", " ".join(results["unpublished_lines"]), *facts, machine),
     ]

@@ -26,10 +26,9 @@ def inputs(found: Any, width: int = LONG) -> Table:
     """Entries in which the files differ, each in at most so many letters."""
     columns = [text("entry"), text("A"), text("B")]
     rows = [[one.path, *one.written(width)] for one in found.inputs]
-    note = (
-        "A dash: not in that file, where something else holds without it. What ends in dots is whole "
-        "in results.json."
-    )
+    note = "A dash: not in that file, where something else holds without it."
+    if any(str(cell).endswith("...") for row in rows for cell in row):
+        note += " What ends in dots is whole in results.json."
     return Table("Input that differs", columns, rows, note, style="ruled")
 
 
@@ -40,15 +39,17 @@ def modes(found: Any) -> Table:
         Column("A, Hz", lambda p: _of(p.a, "frequency_hz"), hertz),
         Column("B, Hz", lambda p: _of(p.b, "frequency_hz"), hertz),
         Column("difference", lambda p: _difference(p.change)),
-        Column("both bars", lambda p: _band(p.change)),
-        word("", lambda p: None if p.change is None else p.change.verdict),
-        Column("MAC", lambda p: p.mac, "{:.2f}".format),
     ]
-    note = (
-        f"Paired {found.pairing}. Both bars: the sum of the error bars of both frequencies, relative "
-        "to A; a difference below it is not resolved, which is not agreement. MAC: how alike the "
-        "motions of both are; a dash: paired by name, or without a partner."
-    )
+    note = f"Paired {found.pairing}. "
+    if any(p.change is not None and p.change.band is not None for p in found.modes):
+        columns.append(Column("both bars", lambda p: _band(p.change)))
+        columns.append(word("", lambda p: None if p.change is None else p.change.verdict))
+        note += (
+            "Both bars: the sum of the error bars of both frequencies, relative to A; a difference "
+            "below it is not resolved, which is not agreement. "
+        )
+    columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
+    note += "MAC: how alike the motions of both are; a dash: paired by name, or without a partner."
     return Table("Natural frequencies", columns, found.modes, note, style="ruled")
 
 
@@ -167,18 +168,22 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
         word("of the axes", lambda row: f"{row[0]}, {units.unit(row[1])}"),
         *(Column(letter, partial(_value, key, units)) for letter, key in (("A", "a"), ("B", "b"))),
         Column("difference", lambda row: _apart(row, units)),
-        Column("both bars", lambda row: _bars(row, units)),
-        word("", lambda row: row[3].verdict),
     ]
     told = found.misalignment()
+    meant = "; ".join(f"{name}: {meaning}" for name, _, meaning, _ in told)
+    note = f"{meant}."
+    if any(change.band is not None for *_, change in told):
+        columns.append(Column("both bars", lambda row: _band(row[3])))
+        columns.append(word("", lambda row: row[3].verdict))
+        note += " Both bars: the sum of what the meshes of both leave, relative to A."
     for letter, ranges in zip("AB", opens):
         if any(ranges[row[0]] is not None for row in told):
             columns.append(Column(f"left open, {letter}", partial(_range, ranges, units)))
-    meant = "; ".join(f"{name}: {meaning}" for name, _, meaning, _ in told)
-    note = (
-        f"{meant}. Both bars: the sum of what the meshes of both leave. Left open: by estimated "
-        "insides and classes of clearance of bearings, which both trains may share."
-    )
+    if any(ranges[row[0]] is not None for row in told for ranges in opens):
+        note += (
+            " Left open: by estimated insides and classes of clearance of bearings, which both trains "
+            "may share."
+        )
     return Table("Misalignment", columns, told, note)
 
 
@@ -189,10 +194,6 @@ def _value(key: str, units: Units, row: Any) -> str:
 def _apart(row: Any, units: Units) -> str | Cell:
     told = units.number(row[3].difference, row[1], 3)
     return Cell(told, "unresolved") if row[3].verdict == "not resolved" else told
-
-
-def _bars(row: Any, units: Units) -> str | None:
-    return None if row[3].band is None else units.number(row[3].band, row[1], 2)
 
 
 def _range(ranges: Any, units: Units, row: Any) -> str | None:

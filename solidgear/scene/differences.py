@@ -19,7 +19,7 @@ from solidgear.errors import SceneError, show
 from solidgear.scene import file, train_file
 from solidgear.scene.toml_file import describes_train, parse
 from solidgear.scene.train import SIDES
-from solidgear.scene.units import in_si
+from solidgear.scene.units import DIMENSIONS, quantity
 
 #: relative; an angle in degrees and the same in radians differ by rounding
 ROUNDING = 1e-12
@@ -185,7 +185,18 @@ def _names(entries: list[dict]) -> list[str]:
 def _alike(a: Any, b: Any) -> bool:
     if isinstance(a, list) and isinstance(b, list):
         return len(a) == len(b) and all(map(_alike, a, b))
-    one, other = in_si(a), in_si(b)
+    one, other = _in_si(a), _in_si(b)
     if one is None or other is None:
         return bool(a == b)
     return isclose(one, other, rel_tol=ROUNDING)
+
+
+def _in_si(value: Any) -> float | None:
+    """A number, or a text of a number and a unit, whatever it is of; None for what is neither."""
+    for dimension in DIMENSIONS:
+        if dimension != "dimensionless":
+            try:
+                return quantity(value, dimension)
+            except SceneError:
+                continue
+    return None

@@ -203,33 +203,11 @@ def _read_text(text: str, dimension: str) -> float:
     if dimensionality != (own[2] if own else ()) or radians not in powers:
         wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
         raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
-    return _times(number, factor)
-
-
-def _times(number: float, factor: float) -> float:
-    """A number in SI.
-
-    Dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float as
-    0.208.
-    """
-    whole = factor < 1 and (1 / factor).is_integer()
-    return number / round(1 / factor) if whole else number * factor
-
-
-def in_si(value: Any) -> float | None:
-    """A plain number, or a text of a number and a unit, in SI, whatever it is of; None for what is
-    neither.
-
-    Examples
-    --------
-    >>> in_si("208 mm"), in_si(0.208), in_si("head.end"), in_si(True)
-    (0.208, 0.208, None, None)
-    """
-    if isinstance(value, numbers.Real) and not isinstance(value, bool):
-        return float(value)
-    match = _TEXT.fullmatch(value) if isinstance(value, str) and len(value) <= LONGEST else None
-    known = _si_factor(match["unit"]) if match and match["unit"] else None
-    return _times(float(match["number"]), known[0]) if match and known else None
+    # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
+    # as 0.208
+    return (
+        number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
+    )
 
 
 @functools.lru_cache(maxsize=256)

@@ -23,6 +23,9 @@ from solidgear.studies.train.strain import strain_shares
 from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
+#: relative; no error bar of a frequency is smaller: rounding of bodies and their reduction
+ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class SeenMode:
@@ -111,7 +114,9 @@ def told_modes(
         SeenMode(
             names[k],
             float(found.frequency_hz[k]),
-            None if bars is None else float(bars[k - found.rigid] + found.error_bound[k]),
+            None
+            if bars is None
+            else max(float(bars[k - found.rigid] + found.error_bound[k]), ROUNDING),
             bool(moved[k]),
             {name: float(share[k]) for name, share in shares.items()},
         )

@@ -12,6 +12,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.environment import environment
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, percent
+from solidgear.scene.train import SIDES
 from solidgear.studies.change import Change
 from solidgear.studies.train.comparison import described
 from solidgear.studies.train.mode_pairs import ModePair
@@ -136,9 +137,10 @@ def _modes(found: TwoTrains) -> Iterator[str]:
     verdicts = [change.verdict for _, change in pairs]
     count, sure = len(pairs), verdicts.count("resolved")
     if "no band" not in verdicts:
-        rest = "the rest do not" if 0 < sure < count else ""
-        beyond = f"{sure or 'none'} differ{'s' if sure == 1 else ''} by more than both error bars"
-        yield f"Of {count} pairs of modes {beyond} (resolved){', ' * bool(rest)}{rest}."
+        many = {0: "none", count: "all"}.get(sure, str(sure))
+        differ = "differs" if sure == 1 else "differ"
+        rest = ", the rest do not" if 0 < sure < count else ""
+        yield f"Of {count} pairs of modes {many} {differ} by more than both bars (resolved){rest}."
     moved = max(pairs, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
     if moved is not None and moved[1].verdict != "not resolved":
         yield f"Moves most: {_moved(*moved)}."
@@ -184,12 +186,23 @@ def _at_rest(found: TwoTrains, units: Units) -> Iterator[str]:
         yield "Under torque nothing is compared: lumped shafts have no bearings of their own."
         return
     told = [
-        f"{name} {units.number(c.a, unit, 3)} to {units.text(c.b, unit, 3)} ({c.verdict})"
+        f"{name} {units.number(c.a, unit, 3)} to {units.text(c.b, unit, 3)}"
+        + f" ({c.verdict})" * (c.band is not None)
         for name, unit, _, c in changes
     ]
     label = points[0].label
     where = label if label == points[1].label else f"{label} (A) and {points[1].label} (B)"
     yield f"Misalignment at {where}: {'; '.join(told)}."
+    opened = [
+        f"{m.name} of {one.letter} {units.number(m.open[0], m.unit, 3)} to "
+        f"{units.text(m.open[1], m.unit, 3)}"
+        for one in found.both
+        if one.loaded is not None
+        for m in one.loaded.misalignment
+        if m.open is not None
+    ]
+    if opened:
+        yield f"Data of bearings leave open, alike in both: {'; '.join(opened)}."
 
 
 def _sure(found: TwoTrains) -> str:
@@ -200,9 +213,12 @@ def _sure(found: TwoTrains) -> str:
             "No error bars: without a harmonic shaft there are none, so that no difference is "
             f"called resolved; {hang}."
         )
+    stations = [b for one in found.both for s in SIDES for b in one.workshop.scenes[s].bearings]
+    catalogued = any(getattr(b, "catalogue", None) is not None for b in stations)
+    left_out = ", not what data of catalogue bearings leave open" * catalogued
     return (
         f"Error bars are those of frequencies, {percent(max(bars), signed=False)} at most (meshes of "
-        f"harmonic shafts, reduction); {hang}."
+        f"harmonic shafts, reduction{left_out}); {hang}."
     )
 
 
