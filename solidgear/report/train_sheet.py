@@ -27,8 +27,6 @@ WORDS = {
         "mesh force over the same frequencies. Grey lines: natural frequencies."
     ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
-    "reactions": "Forces and moments of bearings on their shafts over frequency.",
-    "motions": "Motions of both lumped points over frequency.",
     "shares": "Strain energy of every mode by what it is in.",
 }
 
@@ -113,5 +111,5 @@ def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
     """Charts as they stand in the page, and their words; what has nothing to draw is left out."""
     from markupsafe import Markup
 
-    drawn = [(page_svg(name, make), WORDS.get(name, title)) for name, make in charts.items()]
+    drawn = [(page_svg(name, make), WORDS.get(name, f"{title}.")) for name, make in charts.items()]
     return [(Markup(svg.decode()), words) for svg, words in drawn if svg]

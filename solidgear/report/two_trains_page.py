@@ -5,7 +5,7 @@ self-contained page.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,8 @@ from solidgear.report.words import seconds
 
 #: a reaction is drawn if it has this share of the largest of its unit in either train
 LARGE = 0.2
+#: panels of a chart: more do not fit a sheet of paper
+MOST_PANELS = 8
 SIDES = ("pinion", "gear")
 #: charts that are files as well; those of many panels are read on the page
 FILED = ("response", "shares")
@@ -96,16 +98,19 @@ def _title(results: Mapping[str, Any]) -> str:
 
 
 def charts_of(found: Any, units: Units) -> dict[str, Make]:
-    """Charts by their names: response, reactions, motions, shares."""
+    """Charts by their names: response, shares, and those of reactions and motions, numbered."""
     both = [one.response for one in found.both]
     teeth = {one.workshop.train.pinion.teeth for one in found.both}
     shared = teeth.pop() if len(teeth) == 1 else None
-    return {
+    charts: dict[str, Make] = {
         "response": partial(response_chart, both, "", shared, None, {}, units),
-        "reactions": partial(columns_chart, both, reactions(found), shared, units),
-        "motions": partial(columns_chart, both, motions(found), shared, units),
         "shares": partial(shares_chart, _bars(found)),
     }
+    forces, moved = _pages(reactions(found), ("[N]", "[N m]")), _pages(motions(found), SIDES)
+    for name, pages in (("reactions", forces), ("motions", moved)):
+        for k, own in enumerate(pages):
+            charts[f"{name}_{k}"] = partial(columns_chart, both, own, shared, units)
+    return charts
 
 
 def reactions(found: Any) -> list[tuple[str, str]]:
@@ -129,6 +134,15 @@ def reactions(found: Any) -> list[tuple[str, str]]:
             if size > 0 and (size == own or size >= LARGE * largest):
                 out.append((f"{bearing} {dof} {unit}", f"{bearing}, {dof}"))
     return out
+
+
+def _pages(
+    columns: list[tuple[str, str]], groups: Sequence[str]
+) -> Iterator[list[tuple[str, str]]]:
+    """Columns that share a chart: those of a unit or a shaft, and no more than a sheet takes."""
+    for group in groups:
+        own = [c for c in columns if c[0].startswith(f"{group} ") or c[0].endswith(f" {group}")]
+        yield from (own[k : k + MOST_PANELS] for k in range(0, len(own), MOST_PANELS))
 
 
 def motions(found: Any) -> list[tuple[str, str]]:
@@ -171,7 +185,7 @@ def _sections(
     machine = pairs_of(results["environment"], "Environment of the run")
 
     def section(name: str, title: str, words: str, *told: Table) -> Section:
-        own = {name: charts[name]} if name in charts else {}
+        own = {key: make for key, make in charts.items() if key.partition("_")[0] == name}
         return Section(name, title, words, own, told)
 
     return [

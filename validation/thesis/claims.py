@@ -24,6 +24,7 @@ import solidgear as sg
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.report.plot import Make
 from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.words import capital
 from solidgear.scene import Scene
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
@@ -392,14 +393,15 @@ def main() -> None:
         found, curve = claim(), CURVES[claim.__name__]
         row = {"figure": found.place, "claim": found.says, "verdict": found.verdict}
         rows.append({**row, "found": found.found})
-        title = f"{found.place}: {found.says}"
-        words = f"{found.verdict.capitalize()}. {found.found}."
+        title = f"{capital(found.says)} ({found.place}): {found.verdict}"
+        words = f"{capital(found.found)}."
         sections.append(Section(f"claim-{k}", title, words, {claim.__name__: curve}))
         picture(curve, PAGE.with_name(f"claim_{k}.png"))
     write_rows(folder / "claims.csv", rows)
     show("Claims of chapters 2 and 3", rows)
     PAGE.write_text(page(rows), encoding="utf-8")
-    print(write_sheet(folder / "claims.html", TITLE, f"{taken()}.", sections=sections))
+    lead = f"{taken().replace('*', '')}. A: {CASES[0]}, B: {CASES[1]}."
+    print(write_sheet(folder / "claims.html", TITLE, lead, sections=sections))
 
 
 def picture(curve: Make, file: Path) -> None:
