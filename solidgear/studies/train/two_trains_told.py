@@ -95,8 +95,10 @@ def _top(one: OneTrain, column: str) -> tuple[float, float]:
 
 
 def _of_mode(one: OneTrain, hz: float) -> str:
-    """The mode that makes a peak, in brackets."""
+    """The mode that makes a peak, in brackets; the end of a range is told as such."""
     mode = next((p.mode for p in one.response.peaks if p.frequency_hz == hz), "")
+    if hz == one.response.frequency_hz[-1]:
+        mode = "the end of the range"
     return f" ({mode})" if mode else ""
 
 
