@@ -2,7 +2,8 @@
 
 import pytest
 
-from validation.thesis import claims
+from tests.charted import facts_of
+from validation.thesis import claims, curves
 from validation.thesis.claims import CAVEAT, CONFIRMED, NOT, OPEN
 
 FOUND = {claim.__name__: claim for claim in claims.CLAIMS}
@@ -33,6 +34,28 @@ def test_the_page_holds_these_verdicts(judged):
     text = claims.PAGE.read_text(encoding="utf-8")
     for claim in judged.values():
         assert f"| {claim.place} | {claim.says} | **{claim.verdict}** |" in text
+
+
+def test_every_verdict_leads_to_the_curve_it_rests_on():
+    text = claims.PAGE.read_text(encoding="utf-8")
+    assert list(curves.CURVES) == list(FOUND)
+    for k in range(1, len(FOUND) + 1):
+        row = next(line for line in text.splitlines() if f"(#claim-{k})" in line)
+        assert row.startswith("| ") and f"\n## Claim {k}\n" in text
+        assert f"](claim_{k}.png)" in text and claims.PAGE.with_name(f"claim_{k}.png").is_file()
+
+
+def test_a_curve_shows_the_numbers_of_its_verdict(judged):
+    told = judged["bending_leaves"].numbers
+    for case, key in (("A: 2-bearing", "identified 2"), ("B: 3-bearing", "identified 3")):
+        shares = [
+            float(fact["pinion bending"].split()[0]) / 100
+            for name, fact in facts_of(curves.bending_leaves(1000.0).svg())
+            if name.startswith(case)
+            and "pinion bending" in fact
+            and float(fact["frequency"].split()[0]) < 1000.0
+        ]
+        assert sum(shares) == pytest.approx(told[key], abs=0.005)  # each is told to 0.1 %
 
 
 def test_the_effective_masses_hold_below_and_not_above(judged):

@@ -40,8 +40,9 @@ def copy_pages(app=None):
         if name == "README.md":
             name, text = "cases.md", with_contents(text)
         (COPIES / name).write_text(fenced(text))
-    for name in PICTURES:
-        shutil.copy(ROOT / "validation" / "figures" / name, COPIES / name)
+    thesis = (ROOT / "validation" / "thesis").glob("claim_*.png")
+    for picture in [*(ROOT / "validation" / "figures" / name for name in PICTURES), *thesis]:
+        shutil.copy(picture, COPIES)
 
 
 def fenced(text: str) -> str:

@@ -37,6 +37,10 @@ from solidgear.ladder.registry import LADDER
 @command
 def compare(
     scene: SceneFile,
+    more: Annotated[
+        list[Path] | None,
+        typer.Argument(help="A second train, to be held beside the first.", show_default=False),
+    ] = None,
     *,
     out: Annotated[
         Path,
@@ -70,21 +74,40 @@ def compare(
             help="Also chart error against cost, as a section of the report (about four minutes more).",
         ),
     ] = False,
+    pinion: Annotated[
+        str | None,
+        typer.Option("--pinion", help=f"Of two trains: model of both pinions, {FIDELITY} else."),
+    ] = None,
+    gear: Annotated[
+        str | None, typer.Option("--gear", help="Of two trains: model of both gears, as --pinion.")
+    ] = None,
     run: Shown,
 ) -> None:
-    """Solve a scene with every model and write a report on which to trust; a train as well."""
+    """Solve a scene with every model and write a report on which to trust; a train as well, or two
+    trains beside each other.
+    """
     from solidgear.scene.toml_file import is_train
 
+    of_one_shaft = {
+        "--models": models != ",".join(LADDER.names),
+        "--solid-element": bool(solid_element),
+        "--set": bool(settings),
+        "--chart": chart,
+    }
+    if more:
+        from solidgear.cli.two_files import compare_two
+
+        compare_two([scene, *more], out, (pinion, gear), run, of_one_shaft)
+        return
+    for option, given in (("--pinion", pinion), ("--gear", gear)):
+        if given:
+            raise SolidgearError(
+                f"{option} is for two trains, and {scene} is one file: every model of it is solved"
+            )
     if is_train(scene):
         from solidgear.cli.train_judge import compare_train
 
-        given = {
-            "--models": models != ",".join(LADDER.names),
-            "--solid-element": bool(solid_element),
-            "--set": bool(settings),
-            "--chart": chart,
-        }
-        compare_train(scene, out, renders, run, given)
+        compare_train(scene, out, renders, run, of_one_shaft)
         return
     from solidgear.report.folder import held
     from solidgear.studies.comparison import check_models

@@ -29,6 +29,15 @@ def gap_verdict(gap: float, bar: float, tolerance: float) -> str:
     return BEYOND if abs(gap) - bar > tolerance else OPEN
 
 
+def resolution(size: float, band: float | None) -> str:
+    """``resolved`` where a difference is more than the bars of both sides, else ``not resolved``, or
+    ``no band``.
+    """
+    if band is None:
+        return "no band"
+    return "resolved" if size > band else "not resolved"
+
+
 @dataclass(frozen=True)
 class Deviation:
     """A quantity of a model beside that of the reference.
@@ -67,9 +76,7 @@ class Deviation:
     @property
     def verdict(self) -> str:
         """``resolved`` where it is more than the bars of both, else ``not resolved``, or ``no band``."""
-        if self.band is None:
-            return "no band"
-        return "resolved" if self.size > self.band else "not resolved"
+        return resolution(self.size, self.band)
 
     def standing(self, tolerance: float) -> str:
         """``within``, ``open`` or ``beyond`` a tolerance."""

@@ -29,7 +29,8 @@ LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
     r"(report\.html|mode_\w+\.png|modes\.html|system_mode_\d+\.png"
-    rf"|(response|orders)\.(csv|png|svg|html)|{'|'.join(output.pattern for output in OUTPUTS)})"
+    r"|(response|orders|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
+    rf"|{'|'.join(output.pattern for output in OUTPUTS)})"
 )
 #: what a process that was killed can have left half written, see
 #: :func:`solidgear.machine.whole_file.whole`
@@ -94,6 +95,29 @@ def held(out: str | os.PathLike) -> Iterator[Path]:
             lock.close()
         if made and not any(folder.iterdir()):
             folder.rmdir()
+
+
+@contextmanager
+def begun(out: str | os.PathLike) -> Iterator[Path]:
+    """A folder that is held for a run, without what an earlier one left in it.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`held`, and if writing stops.
+    """
+    with held(out) as folder:
+        try:
+            # Nothing of an earlier run must stand beside the numbers of this one, should it end
+            # early.
+            clear(folder)
+            (folder / "report.html").unlink(missing_ok=True)
+            yield folder
+        except OSError as error:
+            raise SolidgearError(
+                f"--out {out}: writing stopped ({error.strerror or error}); "
+                "files already there are whole"
+            ) from error
 
 
 def _locked(folder: Path, out) -> IO | None:

@@ -50,13 +50,18 @@ def write_files(
     folder.mkdir(parents=True, exist_ok=True)
     files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]
     files.append(folder / f"{name}.json")
-    with whole(files[-1]) as half:
-        half.write_text(json.dumps(data, indent=1, allow_nan=False), encoding="utf-8")
+    write_json(files[-1], data)
     for stem, make in charts.items():
         files += write_charts(folder / stem, make)
     path = folder / f"{name}.html"
     write_sheet(path, title, lead, tables, charts=charts, notes=notes, cautions=cautions)
     return [path, *files]
+
+
+def write_json(path: Path, data: Mapping[str, Any]) -> None:
+    """Plain data as a whole file or none."""
+    with whole(path) as half:
+        half.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def write_charts(stem: Path, make: Make) -> list[Path]:

@@ -10,15 +10,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, readout
-from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
+from solidgear.report.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
+#: of two responses beside each other, told apart by everyone
+PAIR = ("#0072b2", "#c98a00")
 #: of the band around the first model
 BAND = "#d0e8e1"
 #: px; names of peaks that are closer would lie on one another, and what one takes over the curves
 APART, ROOM = 14.0, 130.0
+#: largest over least amplitude that a panel of several shows: dips go deeper
+DEEPEST = 1e4
 #: column of a response, its name on a panel, and its SI unit
 PANELS = (
     ("mesh force [N]", "mesh force", "N"),
@@ -29,8 +33,8 @@ PANELS = (
 def response_chart(
     responses: Sequence[Any],
     title: str,
-    teeth: int,
-    band: float,
+    teeth: int | None,
+    band: float | None,
     marks: Mapping[str, float],
     units: Units = ENGINEERING,
     width: float = WIDE,
@@ -40,11 +44,11 @@ def response_chart(
     Parameters
     ----------
     responses : sequence of TrainResponse
-        Labelled by their models; the peaks of the first are named.
+        By their labels; the peaks of the first are named.
     title : str
-    teeth : int
-        Of the pinion, for the upper axis in rpm.
-    band : float
+    teeth : int or None
+        Of the pinion, for the upper axis in rpm; None where the responses do not share them.
+    band : float or None
         Drawn around the first where there are others, dB.
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
@@ -55,15 +59,16 @@ def response_chart(
     last = responses[0].frequency_hz[-1]
     # where models differ is the upper end; below half the first departure they are one line
     first = max(responses[0].frequency_hz[0], min(marks.values(), default=0.0) / 2)
-    models, panels = _models(responses), []
-    if len(responses) > 1:
+    band = band if len(responses) > 1 else None
+    models, panels = _models(responses, PAIR if band is None else COLOURS), []
+    if band is not None:
         models |= {f"{band:g} dB around it": Series(BAND)}
     words = f"mesh frequency in Hz{_cut(responses[0], first)}"
     for k, (column, what, si) in enumerate(PANELS):
         unit, top = units.unit(si), k == 0
         sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
         curves = [
-            _Curve(label(r), r.frequency_hz, size, ((what, unit, size),))
+            _Curve(r.label, r.frequency_hz, size, ((what, unit, size),))
             for r, size in zip(responses, sizes)
         ]
         height = 340.0 if top else 200.0
@@ -74,9 +79,9 @@ def response_chart(
             height,
             series=models,
             legend=_legend(width) if top else None,
-            upper=_speed(teeth, (first, last)) if top else None,
+            upper=_speed(teeth, (first, last)) if top and teeth else None,
         )
-        if len(responses) > 1:
+        if band is not None:
             _shade(panel, responses[0].frequency_hz, sizes[0], band)
         _curves(panel, curves, teeth, width)
         if top:
@@ -90,6 +95,59 @@ def response_chart(
             _peaks(panel, responses, tops, teeth, (what, unit), width)
         panels.append(panel)
     return Chart(in_columns(panels, 1), width, title)
+
+
+def columns_chart(
+    responses: Sequence[Any],
+    columns: Sequence[tuple[str, str]],
+    teeth: int | None,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart | None:
+    """Amplitudes of several columns over frequency, a panel each, the responses over one another;
+    None without any.
+
+    Parameters
+    ----------
+    responses : sequence of TrainResponse
+        By their labels; a column that one does not have is left out there.
+    columns : sequence of (str, str)
+        Name in the responses, with its unit, and what its panel is called; those that never move
+        are left out.
+    teeth : int or None
+        As of :func:`response_chart`.
+    units : Units, optional
+    width : float
+        px.
+    """
+    ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
+    models, panels = _models(responses, PAIR), []
+    beside = 2 if width > NARROW else 1
+    moving = [c for c in columns if any(np.any(r.columns.get(c[0])) for r in responses)]
+    for k, (column, title) in enumerate(moving):
+        si = column.partition(" [")[2].rstrip("]")
+        si = f"{si} moved" if si in ("m", "rad") else si
+        own = [r for r in responses if column in r.columns]
+        sizes = [units.values(np.abs(r.columns[column]), si) for r in own]
+        low, high = _ends(sizes)
+        unit = units.unit(si)
+        panel = Panel(
+            _hertz("mesh frequency in Hz" if k >= len(moving) - beside else "", ends),
+            Axis(unit, (max(low, high / DEEPEST), high), log=True),
+            140.0,
+            title,
+            series=models,
+            legend=_legend(width) if k == 0 else None,
+        )
+        curves = [
+            _Curve(r.label, r.frequency_hz, size, ((title, unit, size),))
+            for r, size in zip(own, sizes)
+        ]
+        _curves(panel, curves, teeth, width / beside / 2)
+        panels.append(panel)
+    if len(panels) % beside:  # as wide as those above it
+        panels[-1].right += (width + BETWEEN) / beside
+    return Chart(in_columns(panels, beside), width) if panels else None
 
 
 def _cut(response: Any, first: float) -> str:
@@ -143,7 +201,7 @@ def receptance_chart(
     for panel, values in ((amplitude, sizes), (phase, phases)):
         curves = [
             _Curve(
-                label(one),
+                one.label,
                 one.frequency_hz,
                 value,
                 (("receptance", unit, size), ("phase", "degrees", angle)),
@@ -165,9 +223,10 @@ class _Curve(NamedTuple):
     read: tuple[tuple[str, str, np.ndarray], ...]
 
 
-def _models(found: Sequence[Any]) -> dict[str, Series]:
+def _models(found: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
     """Models by their labels, the colours in turn."""
-    return {label(one): Series(COLOURS[k % len(COLOURS)]) for k, one in enumerate(found)}
+    colours = colours if len(found) == len(PAIR) else COLOURS
+    return {one.label: Series(colours[k % len(colours)]) for k, one in enumerate(found)}
 
 
 def _legend(width: float) -> dict[str, Any]:
@@ -200,19 +259,14 @@ def _with_room(ends: tuple[float, float], height: float) -> tuple[float, float]:
     return low, high * (high / low) ** (ROOM / (height - ROOM))
 
 
-def label(response: Any) -> str:
-    """A model in a legend."""
-    return f"pinion {response.pinion}, gear {response.gear}"
-
-
-def _words(name: str, hz: float, teeth: int, *facts: tuple[str, str, str]) -> str:
+def _words(name: str, hz: float, teeth: int | None, *facts: tuple[str, str, str]) -> str:
     """The words on a place of a model over frequency."""
-    speed = ("pinion speed", f"{60 * hz / teeth:.0f}", "rpm")
+    speed = ("pinion speed", f"{60 * hz / teeth:.0f}" if teeth else "", "rpm")
     return readout(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
 
 
 def _curves(
-    panel: Panel, curves: Sequence[_Curve], teeth: int, width: float, jump: float = np.inf
+    panel: Panel, curves: Sequence[_Curve], teeth: int | None, width: float, jump: float = np.inf
 ) -> None:
     """Curves, the first in front, and what is to be read along them; broken where one jumps."""
     first, last = panel.x.ends
@@ -255,7 +309,7 @@ def _peaks(
     panel: Panel,
     models: Sequence[Any],
     tops: Sequence[list],
-    teeth: int,
+    teeth: int | None,
     what: tuple[str, str],
     width: float,
 ) -> None:
@@ -266,9 +320,9 @@ def _peaks(
         rows = []
         for hz, size, mode in peaks:
             facts = ("peak of", mode, ""), (what[0], plain(float(size), 4), what[1])
-            words = _words(label(one), float(hz), teeth, *facts)
+            words = _words(one.label, float(hz), teeth, *facts)
             rows.append({"x": hz, "y": size, "readout": words})
-        panel.read(rows, panel.series[label(one)].colour)
+        panel.read(rows, panel.series[one.label].colour)
     first, last = panel.x.ends
     pixel = np.log(last / first) / (width - panel.beside - panel.right)
     named, before = [], -np.inf

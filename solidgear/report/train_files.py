@@ -17,7 +17,7 @@ from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import Make
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Column, Table
-from solidgear.report.train_chart import label, receptance_chart, response_chart
+from solidgear.report.train_chart import receptance_chart, response_chart
 from solidgear.report.units import ENGINEERING, Units, units_named
 
 
@@ -51,7 +51,7 @@ def write_response(
         "response": partial(response_chart, responses, title, teeth, band, {}, shown)
     }
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, label(first))]
+    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, first.label)]
     if orders is not None:
         tables["orders"] = crossings(orders)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)
@@ -74,7 +74,7 @@ def write_response(
         folder,
         "response",
         title,
-        f"Steady response, {first.damping} losses; tables of {label(first)}.",
+        f"Steady response, {first.damping} losses; tables of {first.label}.",
         [*told, train_tables.facts(train, shown)],
         {"title": title, "responses": peaks, **notes},
         lines=tables,
@@ -132,7 +132,7 @@ def write_receptance(
         folder,
         "receptance",
         title,
-        f"Steady motion for a unit force, {first.damping} losses; table of {label(first)}.",
+        f"Steady motion for a unit force, {first.damping} losses; table of {first.label}.",
         [
             train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
             train_tables.facts(train, shown),

@@ -4,22 +4,20 @@ self-contained page, ``train.html`` filled.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report import input_tables, train_tables
-from solidgear.report.folder import clear, held
+from solidgear.report.folder import begun
 from solidgear.report.order_chart import order_chart
 from solidgear.report.page_parts import data_uri, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
-from solidgear.report.sheet_files import write_charts
+from solidgear.report.sheet_files import write_charts, write_json
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.train_chart import response_chart
 from solidgear.report.train_files import crossings, over_frequency
@@ -78,36 +76,22 @@ def write_train(
         ),
         "orders": partial(order_chart, orders, train["title"], teeth, chosen),
     }
-    with held(out) as folder:
-        try:
-            # Nothing of an earlier run must stand beside the numbers of this one.
-            clear(folder)
-            (folder / "report.html").unlink(missing_ok=True)
-            files = ["report.html", "response.csv", "orders.csv"]
-            files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
-            # Numbers first: whatever happens to pictures, they are there.
-            _write_json(folder / "results.json", {**results, "files": files})
-            over_frequency(responses[0], teeth).write(folder / "response.csv")
-            crossings(orders).write(folder / "orders.csv")
-            for name, make in charts.items():
-                write_charts(folder / name, make)
-            results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
-            files += results["pictures"].values()
-            _write_json(folder / "results.json", {**results, "files": files})
-            page = _page(results, charts, folder, chosen, viewer)
-            with whole(folder / "report.html") as half:
-                half.write_text(page, encoding="utf-8")
-        except OSError as error:
-            raise SolidgearError(
-                f"--out {out}: writing stopped ({error.strerror or error}); "
-                "files already there are whole"
-            ) from error
+    with begun(out) as folder:
+        files = ["report.html", "response.csv", "orders.csv"]
+        files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+        # Numbers first: whatever happens to pictures, they are there.
+        write_json(folder / "results.json", {**results, "files": files})
+        over_frequency(responses[0], teeth).write(folder / "response.csv")
+        crossings(orders).write(folder / "orders.csv")
+        for name, make in charts.items():
+            write_charts(folder / name, make)
+        results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
+        files += results["pictures"].values()
+        write_json(folder / "results.json", {**results, "files": files})
+        page = _page(results, charts, folder, chosen, viewer)
+        with whole(folder / "report.html") as half:
+            half.write_text(page, encoding="utf-8")
         return folder / "report.html"
-
-
-def _write_json(path: Path, results: Mapping[str, Any]) -> None:
-    with whole(path) as half:
-        half.write_text(json.dumps(results, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _page(

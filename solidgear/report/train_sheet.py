@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from solidgear.machine.whole_file import write_page
@@ -12,7 +13,7 @@ from solidgear.report.table import Table
 
 #: what charts say in words, by how their names begin
 WORDS = {
-    "response": "Dynamic mesh force and transmission error of every model drawn.",
+    "response": "Dynamic mesh force and transmission error of all that is drawn.",
     "orders": (
         "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
         "frequencies they meet. Colour: the mesh force along an order that the transmission "
@@ -30,19 +31,43 @@ WORDS = {
         "of both."
     ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
+    "shares": "Strain energy of every mode by what it is in.",
 }
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page, with a heading that the contents point to.
+
+    Attributes
+    ----------
+    anchor, title, words : str
+    charts : mapping of str to callable
+        By names of letters and underscores, each of no other chart of the page; those in ``WORDS``
+        say what is written there, others the title.
+    tables : sequence of Table
+        Those without rows are left out.
+    """
+
+    anchor: str
+    title: str
+    words: str = ""
+    charts: Mapping[str, Make] = field(default_factory=dict)
+    tables: Sequence[Table] = ()
 
 
 def write_sheet(
     path: Path,
     title: str,
     lead: str,
-    tables: Iterable[Table],
+    tables: Iterable[Table] = (),
     *,
     charts: Mapping[str, Make] | None = None,
     viewer: str = "",
     notes: Sequence[str] = (),
     cautions: Sequence[str] = (),
+    verdict: Sequence[str] = (),
+    sections: Sequence[Section] = (),
 ) -> Path:
     """Write a page that needs no network and no other file.
 
@@ -57,6 +82,10 @@ def write_sheet(
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
     notes, cautions : sequence of str
+    verdict : sequence of str
+        Conclusions, which come first.
+    sections : sequence of Section
+        After all else but the notes.
 
     Raises
     ------
@@ -65,18 +94,32 @@ def write_sheet(
     """
     from markupsafe import Markup
 
-    drawn = {name: page_svg(name, make) for name, make in (charts or {}).items()}
+    shown = [
+        (s, [table for table in s.tables if table], _drawn(s.charts, s.title)) for s in sections
+    ]
     page = template("train_sheet.html").render(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=[(Markup(svg.decode()), _words(name)) for name, svg in drawn.items() if svg],
+        charts=_drawn(charts or {}, title),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
+        verdict=verdict,
+        sections=[part for part in shown if part[0].words or part[1] or part[2]],
     )
     return write_page(path, page)
 
 
+def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+    """Charts as they stand in the page, and their words; what has nothing to draw is left out."""
+    from markupsafe import Markup
+
+    drawn = {name: page_svg(name, make) for name, make in charts.items()}
+    return [
+        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+    ]
+
+
 def _words(name: str) -> str:
-    return next(words for start, words in WORDS.items() if name.startswith(start))
+    return next((words for start, words in WORDS.items() if name.startswith(start)), "")

@@ -15,7 +15,7 @@ SIDES = ("pinion", "gear")
 ROUNDING = 1e-12
 
 
-def facts(train: Mapping[str, Any], units: Units = ENGINEERING) -> Table:
+def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
     """The train in a few lines, each value with where it comes from."""
     status = train["statuses"]
     pinion, gear = (train[side] for side in SIDES)
@@ -46,7 +46,7 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING) -> Table:
         word("status", lambda row: mark(status.get(row[2], ""))),
     ]
     note = "Status says where a value comes from: published, measured, identified or assumed."
-    return Table("Train", columns, rows, note, style="facts")
+    return Table(title, columns, rows, note, style="facts")
 
 
 _MESH = ("mesh.stiffness", "mesh.transmission_error")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
-from solidgear.report.folder import clear, held, prepare
+from solidgear.report.folder import begun, prepare
 from solidgear.report.outputs import OUTPUTS
 from solidgear.report.reading import model_name
 
@@ -47,45 +47,35 @@ def write_all(
     record = comparison.record
     record.left_out = []
     shapes = comparison.solutions if record.complete else {}
-    with held(out) as folder:
-        try:
-            # Nothing of an earlier run must stand beside the numbers of this one, should it end
-            # early.
-            clear(folder)
-            (folder / "report.html").unlink(missing_ok=True)
-            # Numbers first: whatever happens to pictures, they are there.  What is about to be
-            # written is listed before it is.
-            record.files = [
-                "report.html",
-                *(output.name(m) for m in shapes for output in OUTPUTS),
-                *(f"mode_{m}.png" for m in shapes if renders),
-                *([TURNED] if shapes and renders else []),
-            ]
-            _write_json(folder / "results.json", record)
-            if renders and shapes:
-                progress("renders")
-            jobs = _jobs(comparison, folder) if renders else {}
-            # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
-            with Drawing(jobs.values()) as drawing:
-                for model, solution in shapes.items():
-                    for output in OUTPUTS:
-                        what, target = f"{output.what} of {model}", folder / output.name(model)
-                        _try(record, what, output.write, solution, target)
-                progress("report")
-                drawn = drawn_charts(record, folder)
-                _note(record, jobs, drawing.results())
-            if renders and shapes:
-                _try(record, "viewer of mode shapes", _write_turned, comparison, folder)
-            record.files = [
-                name for name in record.files if name == "report.html" or (folder / name).exists()
-            ]
-            _write_json(folder / "results.json", record)
-            write_report(record, folder, drawn=drawn)
-        except OSError as error:
-            raise SolidgearError(
-                f"--out {out}: writing stopped ({error.strerror or error}); "
-                "files already there are whole"
-            ) from error
+    with begun(out) as folder:
+        # Numbers first: whatever happens to pictures, they are there.  What is about to be
+        # written is listed before it is.
+        record.files = [
+            "report.html",
+            *(output.name(m) for m in shapes for output in OUTPUTS),
+            *(f"mode_{m}.png" for m in shapes if renders),
+            *([TURNED] if shapes and renders else []),
+        ]
+        _write_json(folder / "results.json", record)
+        if renders and shapes:
+            progress("renders")
+        jobs = _jobs(comparison, folder) if renders else {}
+        # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
+        with Drawing(jobs.values()) as drawing:
+            for model, solution in shapes.items():
+                for output in OUTPUTS:
+                    what, target = f"{output.what} of {model}", folder / output.name(model)
+                    _try(record, what, output.write, solution, target)
+            progress("report")
+            drawn = drawn_charts(record, folder)
+            _note(record, jobs, drawing.results())
+        if renders and shapes:
+            _try(record, "viewer of mode shapes", _write_turned, comparison, folder)
+        record.files = [
+            name for name in record.files if name == "report.html" or (folder / name).exists()
+        ]
+        _write_json(folder / "results.json", record)
+        write_report(record, folder, drawn=drawn)
     return folder
 
 

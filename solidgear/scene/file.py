@@ -135,7 +135,7 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:
-        return _Reading(raw, where, part_of).scene()
+        return of_tables(raw, where, part_of)
     except SceneError as error:
         found = error.problems
         if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
@@ -146,6 +146,11 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
         order = _FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
+
+
+def of_tables(raw: Mapping[str, Any], where: str, part_of: Reader = unread) -> Scene:
+    """Scene of the tables of a file; problems name no file, and ports as those of a list."""
+    return _Reading(dict(raw), where, part_of).scene()
 
 
 def _drop_tag(path: tuple) -> tuple:

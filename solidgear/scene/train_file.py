@@ -61,7 +61,6 @@ def load_train(
     """
     where = os.fspath(path)
     raw = parse(where)
-    folder = Path(where).parent
     try:
         if "segment" in raw:
             raise SceneError(
@@ -70,21 +69,30 @@ def load_train(
                 "geometry/axle_overhung.toml",
                 path=("segment",),
             )
-        data, alone = {**raw}, "operation" not in raw
-        for side in SIDES:
-            if isinstance(raw.get(side), Mapping):
-                data[side] = _with_scene(raw[side], folder, side, lambda p: shaft(p, alone))
-        if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
-            data["mesh"] = _with_cells(raw["mesh"], folder)
-        for rotor in ("engine", "load"):
-            _whole_rotor(raw, rotor)
-        return Train(**{"name": name_of(where)} | data)
+        return of_tables(raw, where, shaft)
     except SceneError as error:
         if error.where:
             raise
         if isinstance(raw.get("operation"), Mapping):
             error = _of_one_table(error, "operation")
         raise error.located(raw, where=where) from None
+
+
+def of_tables(
+    raw: Mapping[str, Any],
+    where: str,
+    shaft: Callable[[str | os.PathLike, bool], Scene] = _as_written,
+) -> Train:
+    """Train of the tables of a file; problems of its own keys name no file."""
+    data, alone, folder = {**raw}, "operation" not in raw, Path(where).parent
+    for side in SIDES:
+        if isinstance(raw.get(side), Mapping):
+            data[side] = _with_scene(raw[side], folder, side, lambda p: shaft(p, alone))
+    if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
+        data["mesh"] = _with_cells(raw["mesh"], folder)
+    for rotor in ("engine", "load"):
+        _whole_rotor(raw, rotor)
+    return Train(**{"name": name_of(where)} | data)
 
 
 def _of_one_table(error: SceneError, key: str) -> SceneError:

@@ -17,10 +17,14 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 from scipy.optimize import linear_sum_assignment
 
 import solidgear as sg
 from solidgear.reduction.effective_mass import synthesise
+from solidgear.report.plot import Make
+from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.words import capital
 from solidgear.scene import Scene
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
@@ -28,7 +32,7 @@ from solidgear.studies.train.pairing import mac, seen_modes
 from solidgear.studies.train.respond import Drive, respond
 from solidgear.system.steady import peaks
 from validation.common import ROOT, markdown, results_folder, show, write_rows
-from validation.thesis.lumped_pair import diagonal_mass
+from validation.thesis.lumped_pair import COMPONENTS, PairModes, diagonal_mass
 from validation.thesis.pair import CASES, DATA, gear_support, geared_pair
 
 CONFIRMED, CAVEAT = "confirmed", "confirmed with a caveat"
@@ -47,6 +51,9 @@ STIFF = 1e12
 AXES = {"mesh force": 1e4, "x": 6e-6, "z": 6e-6, "thx": 1e-4, "thz": 1e-4}
 ERROR = 10e-6
 PAGE = Path(__file__).with_name("claims.md")
+TITLE = "Claims of Hua (2010), chapters 2 and 3"
+#: px; width of a picture of a curve
+SMALL = 620.0
 
 
 @dataclass(frozen=True)
@@ -220,20 +227,24 @@ def peak_at_800() -> Claim:
     return Claim("3.7", says, verdict, "; ".join(words), numbers)
 
 
+def solved_pair(case: str, way: str) -> PairModes:
+    """Modes of the fourteen degrees of freedom with the strain energies of figure 3.8."""
+    mass, inertia, mesh = WAYS[way]
+    values = {"pinion mass": mass, "pinion bending inertia": inertia, "mesh stiffness": mesh}
+    spring = train().engine.spring.stiffness, train().load.spring.stiffness
+    values |= {"pinion torsion": spring[0], "gear torsion": spring[1]}
+    return geared_pair(values, case, gear_support()).solve()
+
+
 def bending_leaves() -> Claim:
     """Figure 3.8: strain energy of the pinion's bending in modes below 1 kHz."""
     numbers, words, ok = {}, [], []
-    stiffness = gear_support()
-    for way, (mass, inertia, mesh) in WAYS.items():
+    for way in WAYS:
         share = []
         for case in CASES:
-            values = {"pinion mass": mass, "pinion bending inertia": inertia}
-            spring = train().engine.spring.stiffness, train().load.spring.stiffness
-            values |= {"pinion torsion": spring[0], "gear torsion": spring[1]}
-            values["mesh stiffness"] = mesh
-            pair = geared_pair(values, case, stiffness).solve()
+            pair = solved_pair(case, way)
             low = (pair.frequency_hz > 0) & (pair.frequency_hz < 1000.0)
-            share.append(float(pair.energy[low][:, 4].sum()))
+            share.append(float(pair.energy[low][:, COMPONENTS.index("pinion bending")].sum()))
         ok.append(share[1] < 0.5 * share[0])
         words.append(
             f"{way}: sum of its shares {share[0]:.2f} with two bearings, {share[1]:.2f} with three"
@@ -311,16 +322,21 @@ def amplitude() -> Claim:
     return Claim("3.7, 3.10", says, OPEN, f"the axes of the figures allow at most {words}", numbers)
 
 
-def mesh_stiffness() -> Claim:
-    """Figures 3.23 and 3.24."""
+def softer() -> Workshop:
+    """The 2-bearing rotor with half the mesh stiffness."""
     drive = fourteen(CASES[0], "identified")
     whole = drive.workshop.train
-    softer = whole.mesh.with_changes(stiffness=0.5 * drive.stiffness)
-    shop = Workshop(whole.with_changes(mesh=softer))
+    mesh = whole.mesh.with_changes(stiffness=0.5 * drive.stiffness)
+    shop = Workshop(whole.with_changes(mesh=mesh))
     for side in ("pinion", "gear"):
         shop.put(side, "thesis", drive.workshop.shaft(side, "thesis").part, like="euler")
-    hz = np.linspace(100.0, 4000.0, 3901)
-    ratio = np.abs(Drive(shop, "thesis", "thesis").mesh(hz)[1] / drive.mesh(hz)[1])
+    return shop
+
+
+def mesh_stiffness() -> Claim:
+    """Figures 3.23 and 3.24."""
+    drive, hz = fourteen(CASES[0], "identified"), np.linspace(100.0, 4000.0, 3901)
+    ratio = np.abs(Drive(softer(), "thesis", "thesis").mesh(hz)[1] / drive.mesh(hz)[1])
     rms = float(np.sqrt(np.mean((20 * np.log10(ratio)) ** 2)))
     found = (
         f"half the mesh stiffness moves the mesh force by {rms:.1f} dB rms from 100 to 4000 Hz; how "
@@ -367,32 +383,56 @@ CLAIMS: tuple[Callable[[], Claim], ...] = (
 
 
 def main() -> None:
-    """Judge every claim, show the table, and write ``claims.md`` beside this file."""
-    rows = []
-    for claim in CLAIMS:
-        found = claim()
+    """Judge every claim, show the table, and write ``claims.md`` beside this file with the curve of
+    each, and all of it as one page in which they are read.
+    """
+    from validation.thesis.curves import CURVES
+
+    folder, rows, sections = results_folder("thesis_claims"), [], []
+    for k, claim in enumerate(CLAIMS, start=1):
+        found, curve = claim(), CURVES[claim.__name__]
         row = {"figure": found.place, "claim": found.says, "verdict": found.verdict}
         rows.append({**row, "found": found.found})
-    write_rows(results_folder("thesis_claims") / "claims.csv", rows)
+        title = f"{capital(found.says)} ({found.place}): {found.verdict}"
+        words = f"{capital(found.found)}."
+        sections.append(Section(f"claim-{k}", title, words, {claim.__name__: curve}))
+        picture(curve, PAGE.with_name(f"claim_{k}.png"))
+    write_rows(folder / "claims.csv", rows)
     show("Claims of chapters 2 and 3", rows)
     PAGE.write_text(page(rows), encoding="utf-8")
+    lead = f"{taken().replace('*', '')}. A: {CASES[0]}, B: {CASES[1]}."
+    print(write_sheet(folder / "claims.html", TITLE, lead, sections=sections))
 
 
-def page(rows: list[dict]) -> str:
-    """The table as a page."""
+def picture(curve: Make, file: Path) -> None:
+    """A curve as a small picture."""
+    chart = curve(SMALL)
+    assert chart is not None
+    with Image.open(chart.write(file)) as drawn:
+        drawn.convert("RGB").quantize(32).save(file, optimize=True)
+
+
+def taken() -> str:
+    """What is not settled, and how it is taken."""
     ways = "; ".join(
         f"*{name}*: pinion {m:g} kg, {i:g} kg m^2, mesh {k:.2g} N/m"
         for name, (m, i, k) in WAYS.items()
     )
-    lines = [
-        "# Claims of Hua (2010), chapters 2 and 3",
-        "",
-        "Written by `python -m validation.thesis.claims`. What is not settled is taken in more than "
-        f"one way: {ways}.",
-        "",
+    return f"What is not settled is taken in more than one way: {ways}"
+
+
+def page(rows: list[dict]) -> str:
+    """The table as a page, every verdict with the curve it rests on."""
+    lines = [f"# {TITLE}", "", f"Written by `python -m validation.thesis.claims`. {taken()}.", ""]
+    cells = [
+        (r["figure"], r["claim"], f"**{r['verdict']}**", f"[curve {k}](#claim-{k})", r["found"])
+        for k, r in enumerate(rows, start=1)
     ]
-    cells = [(r["figure"], r["claim"], f"**{r['verdict']}**", r["found"]) for r in rows]
-    lines += markdown(("figure", "claim", "verdict", "found"), cells)
+    lines += markdown(("figure", "claim", "verdict", "rests on", "found"), cells)
+    lines += ["", f"A: {CASES[0]}, B: {CASES[1]}, where both are drawn."]
+    for k, r in enumerate(rows, start=1):
+        words = f"{r['figure']}: {r['claim']}"
+        lines += ["", f"## Claim {k}", "", f"{words}.", "", f"![{words}](claim_{k}.png)"]
     return "\n".join(lines) + "\n"
 
 

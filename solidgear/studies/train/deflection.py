@@ -227,7 +227,7 @@ def deflect_train(
         progress(model)
         found.append(deflection(workshop, point, model, model))
     progress("what the data of bearings leave open")
-    found[-1] = _with_ranges(workshop, found[-1])
+    found[-1] = with_ranges(workshop, found[-1])
     standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
     points: list[TrainDeflection] = []
     if every:
@@ -328,7 +328,7 @@ def _told(
     )
 
 
-def _with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
+def with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     """The same with the ranges of its misalignment over estimated insides and clearance classes."""
     values = [[m.value for m in found.misalignment]]
     _, choices = left_open(workshop.train.member(side).scene for side in SIDES)

@@ -14,6 +14,7 @@ import numpy as np
 from solidgear.body import FURTHER
 from solidgear.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.bounds.safety import LOCAL
+from solidgear.machine.threads import pinned
 from solidgear.scene.coned import coned
 from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
@@ -27,6 +28,7 @@ ABOVE = 6
 RESOLVED = 1e-3
 
 
+@pinned
 def mesh_bars(
     workshop: Workshop, system: System, rungs: Mapping[str, str], n: int
 ) -> np.ndarray | None:

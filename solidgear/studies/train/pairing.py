@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
@@ -17,7 +19,9 @@ APART, MOST = 0.05, 4.0
 BEYOND = 1.7
 
 
-def seen_modes(workshop: Workshop, system: System, highest: float):
+def seen_modes(
+    workshop: Workshop, system: System, highest: float, ends: Sequence[str] | None = None
+):
     """Modes up to a frequency, and how they are seen at the ports.
 
     Parameters
@@ -26,26 +30,34 @@ def seen_modes(workshop: Workshop, system: System, highest: float):
     system : System
     highest : float
         Hz; the first elastic mode is always there.
+    ends : sequence of str, optional
+        Ports that are looked at, as ``side.port``; by default all of both shafts.
 
     Returns
     -------
     SystemModes
     (m, n) ndarray
-        Motions of all ports in the n elastic ones, rotations times the length of the shaft.
+        Motions of these ports in the n elastic ones, rotations times the length of the shaft, and
+        rotations of engine and load.
     """
     count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
     found = system.modes(count)
     elastic = found.shapes[:, found.rigid :]
-    rows = []
-    for side in SIDES:
-        scene = workshop.scenes[side]
-        scale = np.array([1.0] * 3 + [scene.length] * 3)[:, None]
-        rows += [scale * (system.motion(f"{side}.{s.name}") @ elastic) for s in scene.stations]
+    scale = {
+        side: np.array([1.0] * 3 + [workshop.scenes[side].length] * 3)[:, None] for side in SIDES
+    }
+    ends = ports_of(workshop) if ends is None else ends
+    rows = [scale[end.partition(".")[0]] * (system.motion(end) @ elastic) for end in ends]
     rows += [
         workshop.scenes[side].length * (system.motion(name)[4:5] @ elastic)
         for side, name in zip(SIDES, ("engine", "load"))
     ]
     return found, np.vstack(rows)
+
+
+def ports_of(workshop: Workshop) -> list[str]:
+    """Ports of both shafts, the lumped point of each before its others."""
+    return [f"{side}.{s.name}" for side in SIDES for s in workshop.scenes[side].stations]
 
 
 def partners(

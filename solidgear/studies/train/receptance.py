@@ -51,6 +51,11 @@ class TrainReceptance:
     value: np.ndarray
     peaks: tuple[tuple[float, float, str], ...]
 
+    @property
+    def label(self) -> str:
+        """What a legend calls it: the models of both shafts."""
+        return f"pinion {self.pinion}, gear {self.gear}"
+
 
 def receptance(
     workshop: Workshop,

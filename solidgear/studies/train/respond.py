@@ -84,6 +84,8 @@ class TrainResponse:
     cautions : tuple of str
     seconds : float
         To build and reduce both shafts.
+    name : str
+        Of the train, where it is shown beside another one.
     """
 
     pinion: str
@@ -94,6 +96,12 @@ class TrainResponse:
     peaks: tuple[Peak, ...]
     cautions: tuple[str, ...]
     seconds: float
+    name: str = ""
+
+    @property
+    def label(self) -> str:
+        """What a legend calls it: the train, or the models of its shafts."""
+        return self.name or f"pinion {self.pinion}, gear {self.gear}"
 
     @property
     def force(self) -> np.ndarray:

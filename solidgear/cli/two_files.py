@@ -1,0 +1,112 @@
+"""The command compare on two files."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+from solidgear.cli.app import caution, say
+from solidgear.cli.shared import FIDELITY, Shown
+from solidgear.cli.train import Reduced, refuse_given
+from solidgear.errors import SolidgearError
+
+
+def compare_two(
+    files: list[Path],
+    out: Path,
+    models: tuple[str | None, str | None],
+    run: Shown,
+    given: dict[str, bool],
+) -> None:
+    """Two trains beside each other.
+
+    Parameters
+    ----------
+    files : list of Path
+        Two; more are refused.
+    out : Path
+    models : (str or None, str or None)
+        Of pinion and gear of both trains.
+    run : Shown
+    given : dict of str to bool
+        Options of compare that speak of one shaft, and whether they were given.
+
+    Raises
+    ------
+    SolidgearError
+        For more than two files, files that are not both trains, or such an option.
+    """
+    from solidgear.scene.toml_file import is_train
+
+    if len(files) > 2:
+        raise SolidgearError(f"compare takes one file, or two trains; {len(files)} are given")
+    a, b = map(str, files)
+    trains = is_train(a), is_train(b)
+    if trains[0] != trains[1]:
+        one, other = (a, b) if trains[0] else (b, a)
+        raise SolidgearError(
+            f"{one} is a train and {other} one shaft: compare takes two trains, or either file alone"
+        )
+    if not trains[0]:
+        raise SolidgearError(
+            f"{a} and {b} are scenes of one shaft each: two files are compared if they are trains; "
+            "run solidgear compare on each"
+        )
+    instead = "of two trains --pinion and --gear choose the models"
+    refuse_given(given, files[0], instead)
+    if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
+        _say_same(a, b, run)
+        return
+    _two_trains(a, b, out, (models[0] or FIDELITY, models[1] or FIDELITY), run)
+
+
+def _say_same(a: str, b: str, run: Shown) -> None:
+    from solidgear.studies.train.two_trains_told import same_file
+
+    sentence = same_file(a, b)
+    if run.as_json:
+        print(json.dumps({"kind": "two trains", "differences": [], "sentences": [sentence]}))
+    else:
+        say(sentence)
+
+
+def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) -> None:
+    from solidgear.report import two_trains_tables as tables
+    from solidgear.report.folder import held
+    from solidgear.report.two_trains_page import write_two_trains
+    from solidgear.report.units import in_ascii, units_named
+    from solidgear.scene.differences import differences
+    from solidgear.studies.train.shaft import checked_rung
+    from solidgear.studies.train.two_trains import two_trains
+    from solidgear.studies.train.two_trains_told import results, sentences
+
+    for model in models:
+        checked_rung(model)
+    shops = [Reduced().workshop(Path(path)) for path in (a, b)]
+    shown, names = units_named(run.units), _names(a, b)
+    with held(out), run.progress() as progress:
+        found = two_trains(shops, names, differences(a, b), *models, progress=progress)
+        told, words = results(found), sentences(found, shown)
+        progress("report")
+        write_two_trains(found, told, words, out, shown)
+    if run.as_json:
+        print(json.dumps(told, allow_nan=False))
+        return
+    say(
+        *(f"{one.label}, {one.workshop.train.called}" for one in found.both),
+        tables.inputs(found, tables.SHORT),
+        tables.modes(found),
+        tables.peaks(found, shown),
+        *map(in_ascii, words),
+        *told["unpublished_lines"],
+        *map(caution, found.cautions),
+        f"Report: {out / 'report.html'}",
+        soft_wrap=False,
+    )
+
+
+def _names(a: str, b: str) -> tuple[str, str]:
+    """Names of two files: those without folder and ending, unless they are the same."""
+    short = Path(a).stem, Path(b).stem
+    return short if short[0] != short[1] else (a, b)

@@ -1,0 +1,217 @@
+"""Everything that two trains beside each other leave in a folder: numbers, curves, charts, and one
+self-contained page.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solidgear.report import train_tables
+from solidgear.report import two_trains_tables as tables
+from solidgear.report.folder import begun
+from solidgear.report.plot import Make
+from solidgear.report.run_tables import pairs_of
+from solidgear.report.shares_chart import Bar, shares_chart
+from solidgear.report.sheet_files import write_charts, write_json
+from solidgear.report.table import Table
+from solidgear.report.train_chart import columns_chart, response_chart
+from solidgear.report.train_files import over_frequency
+from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.units import ENGINEERING, Units, units_named
+from solidgear.report.words import seconds
+
+#: a reaction is drawn if it has this share of the largest of its unit in either train
+LARGE = 0.2
+#: panels of a chart: more do not fit a sheet of paper
+MOST_PANELS = 8
+SIDES = ("pinion", "gear")
+#: charts that are files as well; those of many panels are read on the page
+FILED = ("response", "shares")
+SAME = "Nothing differs between the two files."
+EXCITED = "Steady response to the transmission error of each file."
+REACTIONS = (
+    f"Those of {100 * LARGE:g} % of the largest of their kind or more, and the largest of every "
+    "bearing. All are in results.json and in the tables response_a.csv and response_b.csv."
+)
+MOTIONS = "In the axes of each shaft's own file: y along the shaft, x and z across it."
+
+
+def write_two_trains(
+    found: Any,
+    results: Mapping[str, Any],
+    sentences: Sequence[str],
+    out: str | os.PathLike,
+    units: str | Units = ENGINEERING,
+) -> Path:
+    """Write results.json, the responses as tables, the charts and report.html.
+
+    Parameters
+    ----------
+    found : TwoTrains
+    results : mapping
+        The same as plain data, as of ``two_trains_told.results``.
+    sentences : sequence of str
+        Its conclusions.
+    out : path
+    units : str or Units
+        Of tables and charts; all else is SI.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    SolidgearError
+        If the folder cannot be written.
+    """
+    shown = units_named(units)
+    charts = charts_of(found, shown)
+    files = ["report.html", *(f"response_{key}.csv" for key in "ab")]
+    files += [f"{name}.{kind}" for name in FILED for kind in ("png", "svg")]
+    with begun(out) as folder:
+        # Numbers first: whatever happens to charts, they are there.
+        write_json(folder / "results.json", {**results, "files": files})
+        for key, one in zip("ab", found.both):
+            teeth = one.workshop.train.pinion.teeth
+            over_frequency(one.response, teeth).write(folder / f"response_{key}.csv")
+        for name in FILED:
+            write_charts(folder / name, charts[name])
+        return write_sheet(
+            folder / "report.html",
+            _title(results),
+            f"solidgear report on two trains: {tables.who(found)}.",
+            verdict=sentences,
+            cautions=found.cautions,
+            sections=_sections(found, results, charts, shown),
+            notes=[f"Whole run: {seconds(found.seconds)} s."],
+        )
+
+
+def _title(results: Mapping[str, Any]) -> str:
+    titles = [train["title"] for train in results["trains"].values()]
+    return titles[0] if len(set(titles)) == 1 else f"{titles[0]} beside {titles[1]}"
+
+
+def charts_of(found: Any, units: Units) -> dict[str, Make]:
+    """Charts by their names: response, shares, and those of reactions and motions, numbered."""
+    both = [one.response for one in found.both]
+    teeth = {one.workshop.train.pinion.teeth for one in found.both}
+    shared = teeth.pop() if len(teeth) == 1 else None
+    charts: dict[str, Make] = {
+        "response": partial(response_chart, both, "", shared, None, {}, units),
+        "shares": partial(shares_chart, _bars(found)),
+    }
+    forces, moved = _pages(reactions(found), ("[N]", "[N m]")), _pages(motions(found), SIDES)
+    for name, pages in (("reactions", forces), ("motions", moved)):
+        for k, own in enumerate(pages):
+            charts[f"{name}_{k}"] = partial(columns_chart, both, own, shared, units)
+    return charts
+
+
+def reactions(found: Any) -> list[tuple[str, str]]:
+    """Columns of bearing reactions that are large, or the largest of their bearing, and what they are
+    called; forces before moments, the pinion's before the gear's.
+    """
+    out: list[tuple[str, str]] = []
+    for unit in ("[N]", "[N m]"):
+        sizes: dict[tuple[str, str], float] = {}
+        for column in found.columns:
+            bearing, _, dof = column.removesuffix(f" {unit}").rpartition(" ")
+            if " bearing " in column and column.endswith(unit):
+                tops = [one.largest(column) for one in found.both]
+                sizes[bearing, dof] = max(top[1] for top in tops if top is not None)
+        largest = max(sizes.values(), default=0.0)
+        by_bearing = sorted(
+            sizes.items(), key=lambda one: (SIDES.index(one[0][0].split()[0]), one[0][0])
+        )
+        for (bearing, dof), size in by_bearing:
+            own = max(other for (name, _), other in sizes.items() if name == bearing)
+            if size > 0 and (size == own or size >= LARGE * largest):
+                out.append((f"{bearing} {dof} {unit}", f"{bearing}, {dof}"))
+    return out
+
+
+def _pages(
+    columns: list[tuple[str, str]], groups: Sequence[str]
+) -> Iterator[list[tuple[str, str]]]:
+    """Columns that share a chart: those of a unit or a shaft, and no more than a sheet takes."""
+    for group in groups:
+        own = [c for c in columns if c[0].startswith(f"{group} ") or c[0].endswith(f" {group}")]
+        yield from (own[k : k + MOST_PANELS] for k in range(0, len(own), MOST_PANELS))
+
+
+def motions(found: Any) -> list[tuple[str, str]]:
+    """Columns of the motions of both lumped points, and what they are called."""
+    return [
+        (column, f"{column.partition(' ')[0]}, {column.partition(' [')[0].rpartition(' ')[2]}")
+        for column in found.columns
+        if column.partition(" ")[0] in SIDES and " bearing " not in column
+    ]
+
+
+def _bars(found: Any) -> list[tuple[str, Sequence[Bar]]]:
+    out: list[tuple[str, Sequence[Bar]]] = []
+    for pair in found.modes:
+        bars = [
+            Bar(letter, one.name, one.frequency_hz, one.shares)
+            for letter, one in (("A", pair.a), ("B", pair.b))
+            if one is not None
+        ]
+        out.append((bars[0].name, bars))
+    return out
+
+
+def _sections(
+    found: Any,
+    results: Mapping[str, Any],
+    charts: Mapping[str, Make],
+    units: Units,
+) -> list[Section]:
+    loaded = [one for one in found.both if found.misalignment()]
+    points = [
+        f"{one.letter} at {one.loaded.point.label}: {units.text(one.loaded.mesh_force, 'N', 4)} "
+        "along the line of action."
+        for one in loaded
+    ]
+    facts = [
+        train_tables.facts(train, units, f"Train {one.label}")
+        for train, one in zip(results["trains"].values(), found.both)
+    ]
+    machine = pairs_of(results["environment"], "Environment of the run")
+
+    def section(name: str, title: str, words: str, *told: Table) -> Section:
+        own = {key: make for key, make in charts.items() if key.partition("_")[0] == name}
+        return Section(name, title, words, own, told)
+
+    return [
+        section("input", "Input", "" if found.inputs else SAME, tables.inputs(found)),
+        section("response", "Mesh force", EXCITED, tables.peaks(found, units)),
+        section("modes", "Modes", "", tables.modes(found)),
+        section(
+            "reactions",
+            "Bearing reactions",
+            REACTIONS,
+            *tables.largest(found, reactions(found), units),
+        ),
+        section(
+            "motions",
+            "Motions of the lumped points",
+            MOTIONS,
+            *tables.largest(found, motions(found), units),
+        ),
+        section("shares", "Strain energy", "", tables.shares(found)),
+        section(
+            "rest",
+            "Under torque",
+            " ".join(points),
+            *([tables.misalignment(found, units)] if loaded else []),
+            *([tables.bearing_loads(found, units)] if loaded else []),
+        ),
+        section("trains", "Both trains", " ".join(results["unpublished_lines"]), *facts, machine),
+    ]

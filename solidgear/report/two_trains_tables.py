@@ -1,0 +1,234 @@
+"""Tables of two trains beside each other, for the page and for terminals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from math import degrees
+from typing import Any
+
+from solidgear.report.table import Cell, Column, Table, quantity, text, word
+from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import DASH, hertz, percent
+
+#: letters of an entry of a file on a page and in a terminal
+LONG, SHORT = 60, 34
+#: of a share that is shown: less is no place of a mode
+LEAST_SHARE = 0.0005
+
+
+def who(found: Any) -> str:
+    """Both letters and what they stand for."""
+    return "; ".join(one.label for one in found.both)
+
+
+def inputs(found: Any, width: int = LONG) -> Table:
+    """Entries in which the files differ, each in at most so many letters."""
+    columns = [text("entry"), text("A"), text("B")]
+    rows = [[one.path, *one.written(width)] for one in found.inputs]
+    note = "A dash: not in that file, where something else holds without it."
+    if any(str(cell).endswith("...") for row in rows for cell in row):
+        note += " What ends in dots is whole in results.json."
+    return Table("Input that differs", columns, rows, note, style="ruled")
+
+
+def modes(found: Any) -> Table:
+    """Natural frequencies side by side, with what of their differences is resolved."""
+    columns = [
+        text("mode", _name),
+        Column("A, Hz", lambda p: _of(p.a, "frequency_hz"), hertz),
+        Column("B, Hz", lambda p: _of(p.b, "frequency_hz"), hertz),
+        Column("difference", lambda p: _difference(p.change)),
+    ]
+    note = f"Paired {found.pairing}. "
+    if any(p.change is not None and p.change.band is not None for p in found.modes):
+        columns.append(Column("both bars", lambda p: _band(p.change)))
+        columns.append(word("", lambda p: None if p.change is None else p.change.verdict))
+        note += (
+            "Both bars: the sum of the error bars of both frequencies, relative to A; a difference "
+            "below it is not resolved, which is not agreement. "
+        )
+    columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
+    note += "MAC: how alike the motions of both are; a dash: paired by name, or without a partner."
+    return Table("Natural frequencies", columns, found.modes, note, style="ruled")
+
+
+def _of(one: Any, key: str) -> Any:
+    return None if one is None else getattr(one, key)
+
+
+def _name(pair: Any) -> str:
+    """A mode as A calls it, and as B does where that is another name."""
+    names = [one.name for one in (pair.a, pair.b) if one is not None]
+    return names[0] if len(set(names)) == 1 else f"{names[0]} (B: {names[1]})"
+
+
+def _difference(change: Any) -> str | Cell | None:
+    if change is None:
+        return None
+    told = percent(change.relative) if change.relative is not None else DASH
+    return Cell(told, "unresolved") if change.verdict == "not resolved" else told
+
+
+def _band(change: Any) -> str | None:
+    if change is None or change.band is None or not change.a:
+        return None
+    return percent(change.band / abs(change.a), signed=False)
+
+
+def peaks(found: Any, units: Units = ENGINEERING) -> Table:
+    """Peaks of the mesh force side by side."""
+    columns = [
+        text("mode that makes it", _of_peaks),
+        Column("A, Hz", lambda p: _of(p.a, "frequency_hz"), hertz),
+        Column("B, Hz", lambda p: _of(p.b, "frequency_hz"), hertz),
+        Column("difference", _shift),
+        quantity("A", "N", units, lambda p: _of(p.a, "force"), 4),
+        quantity("B", "N", units, lambda p: _of(p.b, "force"), 4),
+        Column("B over A", lambda p: _decibels(p.decibels)),
+    ]
+    note = "Peaks of one mode stand in one row. A dash: no peak there in the other train."
+    return Table("Peaks of the mesh force", columns, found.peaks, note, style="ruled")
+
+
+def _of_peaks(pair: Any) -> str:
+    names = [one.mode for one in (pair.a, pair.b) if one is not None]
+    return names[0] if len(set(names)) == 1 else f"{names[0]} (B: {names[1]})"
+
+
+def _shift(pair: Any) -> str | None:
+    if pair.a is None or pair.b is None:
+        return None
+    return percent(pair.b.frequency_hz / pair.a.frequency_hz - 1)
+
+
+def _decibels(value: float | None) -> str | None:
+    return None if value is None else f"{value:+.1f} dB"
+
+
+def largest(
+    found: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
+) -> list[Table]:
+    """Largest amplitudes of columns of the responses, a table for every unit.
+
+    Parameters
+    ----------
+    found : TwoTrains
+    columns : sequence of (str, str)
+        Name with its unit, and what it is called.
+    units : Units, optional
+    """
+    out = []
+    for si, title in (("N", "forces"), ("N m", "moments"), ("m", "motions"), ("rad", "rotations")):
+        shown = f"{si} moved" if si in ("m", "rad") else si
+        rows = [
+            (name, *(one.largest(column) for one in found.both), found.decibels(column))
+            for column, name in columns
+            if column.endswith(f" [{si}]")
+        ]
+        heads: list[Column] = [text("", lambda row: row[0])]
+        for k, letter in ((1, "A"), (2, "B")):
+            heads.append(quantity(letter, shown, units, partial(_top, k, 1), 4))
+            heads.append(Column(f"{letter}, at Hz", partial(_top, k, 0), hertz))
+        heads.append(Column("B over A", lambda row: _decibels(row[3])))
+        out.append(Table(f"Largest {title} over frequency", heads, rows))
+    return [table for table in out if table]
+
+
+def _top(k: int, i: int, row: Any) -> float | None:
+    return None if row[k] is None else row[k][i]
+
+
+def shares(found: Any) -> Table:
+    """Strain energy of every mode by what it is in, A and B in turn."""
+    rows = [
+        (pair, one, letter)
+        for pair in found.modes
+        for letter, one in (("A", pair.a), ("B", pair.b))
+        if one is not None
+    ]
+    places = list(dict.fromkeys(place for _, one, _ in rows for place in one.shares))
+    columns = [
+        text("mode", lambda row: f"{row[2]}: {row[1].name}"),
+        Column("Hz", lambda row: row[1].frequency_hz, hertz),
+        *(Column(f"{place}, %", partial(_share, place)) for place in places),
+    ]
+    return Table("Strain energy", columns, rows)
+
+
+def _share(place: str, row: Any) -> str | None:
+    share = row[1].shares.get(place, 0.0)
+    return f"{100 * share:.1f}" if share >= LEAST_SHARE else None
+
+
+def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
+    """Misalignment of both trains at rest under load."""
+    opens = [{m.name: m.open for m in one.loaded.misalignment} for one in found.both]
+    columns = [
+        word("of the axes", lambda row: f"{row[0]}, {units.unit(row[1])}"),
+        *(Column(letter, partial(_value, key, units)) for letter, key in (("A", "a"), ("B", "b"))),
+        Column("difference", lambda row: _apart(row, units)),
+    ]
+    told = found.misalignment()
+    meant = "; ".join(f"{name}: {meaning}" for name, _, meaning, _ in told)
+    note = f"{meant}."
+    if any(change.band is not None for *_, change in told):
+        columns.append(Column("both bars", lambda row: _band(row[3])))
+        columns.append(word("", lambda row: row[3].verdict))
+        note += " Both bars: the sum of what the meshes of both leave, relative to A."
+    for letter, ranges in zip("AB", opens):
+        if any(ranges[row[0]] is not None for row in told):
+            columns.append(Column(f"left open, {letter}", partial(_range, ranges, units)))
+    if any(ranges[row[0]] is not None for row in told for ranges in opens):
+        note += (
+            " Left open: by estimated insides and classes of clearance of bearings, which both trains "
+            "may share."
+        )
+    return Table("Misalignment", columns, told, note)
+
+
+def _value(key: str, units: Units, row: Any) -> str:
+    return units.number(getattr(row[3], key), row[1], 3)
+
+
+def _apart(row: Any, units: Units) -> str | Cell:
+    told = units.number(row[3].difference, row[1], 3)
+    return Cell(told, "unresolved") if row[3].verdict == "not resolved" else told
+
+
+def _range(ranges: Any, units: Units, row: Any) -> str | None:
+    if ranges[row[0]] is None:
+        return None
+    low, high = (units.number(v, row[1], 3) for v in ranges[row[0]])
+    return f"{low} to {high}"
+
+
+def bearing_loads(found: Any, units: Units = ENGINEERING) -> Table:
+    """Loads of all bearings of both trains at rest under load."""
+    loads = [
+        {f"{s.name}.{b.name}": b for s in one.loaded.shafts for b in s.bearings}
+        for one in found.both
+    ]
+    columns = [word("bearing", lambda name: name)]
+    for what, si, of in (
+        ("radial", "N", lambda b: b.radial),
+        ("axial", "N", lambda b: float(b.load[1])),
+        ("moment", "N m", lambda b: b.moment),
+    ):
+        for letter, own in zip("AB", loads):
+            columns.append(quantity(f"{what} {letter}", si, units, partial(_load, own, of), 4))
+    for letter, own in zip("AB", loads):
+        columns.append(Column(f"radial {letter} at, deg", partial(_azimuth, own)))
+    note = (
+        "Load of the shaft on the bearing; radial loads act at an angle from x towards z. They have "
+        "no error bar."
+    )
+    return Table("Bearing loads", columns, list(dict.fromkeys([*loads[0], *loads[1]])), note)
+
+
+def _load(own: dict[str, Any], of: Callable[[Any], float], name: str) -> float | None:
+    return of(own[name]) if name in own else None
+
+
+def _azimuth(own: dict[str, Any], name: str) -> str | None:
+    return f"{degrees(own[name].azimuth):.0f}" if name in own else None

@@ -1,0 +1,202 @@
+"""Entries in which two files differ, each by its path and as it is written.
+
+Entries of lists belong together by their names, and by their numbers where they have none.  Files
+that an entry names, such as the scene of a shaft, are looked into.  Two entries are alike if they
+mean the same: a quantity in other units, and a key that says what holds without it, differ from
+nothing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isclose
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SceneError, show
+from solidgear.scene import file, train_file
+from solidgear.scene.toml_file import describes_train, parse
+from solidgear.scene.train import SIDES
+from solidgear.scene.units import DIMENSIONS, quantity
+
+#: relative; an angle in degrees and the same in radians differ by rounding
+ROUNDING = 1e-12
+#: tables that stand for a list of one
+ONE_OR_MORE = ("port", "operation")
+#: keys of words about numbers, which are none
+WORDS = ("title", "source", "note", "status", "scene")
+#: keys that name a file whose numbers count, and not its name alone
+FILES = ("contact_cells", "step", "mesh")
+
+
+@dataclass(frozen=True)
+class Difference:
+    """An entry that two files do not have alike.
+
+    Attributes
+    ----------
+    path : str
+        Such as ``pinion.scene.bearing "0".position``.
+    a, b : object
+        As written; None where a file does not have it.
+    """
+
+    path: str
+    a: Any
+    b: Any
+
+    @property
+    def in_words(self) -> bool:
+        """True where it moves no number: a title, a source, the name of a file that is looked into."""
+        return self.path.rpartition(".")[2] in WORDS
+
+    def written(self, width: int) -> tuple[str | None, str | None]:
+        """Both entries in at most so many letters: texts without quotes, and all else as in a file.
+
+        Examples
+        --------
+        >>> Difference("mesh.stiffness", "2.5e8 N/m", None).written(70)
+        ('2.5e8 N/m', None)
+        >>> Difference("losses", {"mesh": 0.12}, "a long text").written(8)
+        ('{"mes...', 'a lon...')
+        """
+        return _written(self.a, width), _written(self.b, width)
+
+
+def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference, ...]:
+    """Entries in which two files differ, in the order of the first.
+
+    Parameters
+    ----------
+    a, b : str or path
+        TOML files of the same kind, trains or scenes. What is asked of the shafts of a train alone
+        is left out.
+
+    Raises
+    ------
+    SceneError
+        For a file that cannot be read.
+
+    Examples
+    --------
+    >>> found = differences("geometry/axle_overhung.toml", "geometry/axle_straddle.toml")
+    >>> [one.path for one in found][:3]
+    ['title', 'pinion.scene', 'pinion.scene.title']
+    >>> found[1].a, found[1].b
+    ('pinion_overhung.toml', 'pinion_straddle.toml')
+    """
+    return tuple(_Files(os.fspath(a), os.fspath(b)).found())
+
+
+class _Files:
+    """Two files of the same kind, and where they stand in the files that name them."""
+
+    def __init__(self, a: str, b: str, prefix: str = ""):
+        self.files, self.prefix = (a, b), prefix
+        self.raw = [parse(path) for path in self.files]
+        for key in ONE_OR_MORE:
+            for raw in self.raw:
+                if isinstance(raw.get(key), Mapping):
+                    raw[key] = [raw[key]]
+        self.meant = [self._meaning(k) for k in range(2)]
+
+    def found(self) -> Iterator[Difference]:
+        """Their differences."""
+        a, b = self.raw
+        yield from self._tables("", a, b, left_out=("ask",) if self.prefix else ())
+
+    def _meaning(self, k: int) -> Any:
+        """What a file says, whatever it leaves out; None where it cannot be read alone."""
+        of_tables = train_file.of_tables if describes_train(self.raw[k]) else file.of_tables
+        try:
+            return of_tables(self.raw[k], self.files[k])
+        except SceneError:
+            return None
+
+    def _tables(
+        self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()
+    ) -> Iterator[Difference]:
+        for key in dict.fromkeys([*a, *b]):
+            if key not in left_out and not self._holds_anyway(a, b, key):
+                own = f"{path}.{key}" if path else key
+                yield from self._entries(own, key, a.get(key), b.get(key))
+
+    def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
+        """True for a key that one file has alone, and that would change nothing in the other."""
+        if key in a and key in b:
+            return False
+        k, without, value = (1, b, a[key]) if key in a else (0, a, b[key])
+        without[key] = value
+        same = self.meant[k] is not None and self._meaning(k) == self.meant[k]
+        del without[key]
+        return same
+
+    def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
+        if isinstance(a, dict) and isinstance(b, dict):
+            yield from self._tables(path, a, b)
+        elif _are_tables(a) and _are_tables(b):
+            yield from self._lists(path, a, b)
+        elif not _alike(a, b) or self._other_file(key, a, b):
+            yield Difference(self.prefix + path, a, b)
+        if path in [f"{side}.scene" for side in SIDES]:
+            yield from _Files(*self._beside(a, b), f"{self.prefix}{path}.").found()
+
+    def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
+        """Differences of lists of tables, by names or numbers."""
+        names = _names(a), _names(b)
+        keys = names if all(names) else (range(len(a)), range(len(b)))
+        mine, its = dict(zip(keys[0], a)), dict(zip(keys[1], b))
+        for key in dict.fromkeys([*mine, *its]):
+            own = f"{path}[{key + 1}]" if isinstance(key, int) else f'{path} "{key}"'
+            yield from self._entries(own, "", mine.get(key), its.get(key))
+
+    def _beside(self, a: str, b: str) -> tuple[str, str]:
+        """Files that both name."""
+        mine, its = (str(Path(own).parent / name) for own, name in zip(self.files, (a, b)))
+        return mine, its
+
+    def _other_file(self, key: str, a: Any, b: Any) -> bool:
+        """True for a name that means two files which hold something else."""
+        if key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
+            return False
+        files = [Path(path) for path in self._beside(a, b)]
+        return all(f.is_file() for f in files) and files[0].read_bytes() != files[1].read_bytes()
+
+
+def _written(value: Any, width: int) -> str | None:
+    if value is None or not isinstance(value, str):
+        return None if value is None else show(value, width)
+    return value if len(value) <= width else f"{value[: width - 3]}..."
+
+
+def _are_tables(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(entry, dict) for entry in value)
+
+
+def _names(entries: list[dict]) -> list[str]:
+    """Names of the tables of a list; none unless each has one of its own."""
+    names = [entry.get("name") for entry in entries]
+    own = [name for name in dict.fromkeys(names) if isinstance(name, str)]
+    return own if len(own) == len(names) else []
+
+
+def _alike(a: Any, b: Any) -> bool:
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_alike, a, b))
+    one, other = _in_si(a), _in_si(b)
+    if one is None or other is None:
+        return bool(a == b)
+    return isclose(one, other, rel_tol=ROUNDING)
+
+
+def _in_si(value: Any) -> float | None:
+    """A number, or a text of a number and a unit, whatever it is of; None for what is neither."""
+    for dimension in DIMENSIONS:
+        if dimension != "dimensionless":
+            try:
+                return quantity(value, dimension)
+            except SceneError:
+                continue
+    return None

@@ -1,0 +1,59 @@
+"""A number in two files: what it changes by, and whether that is more than its error bars."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solidgear.judge.deviations import resolution
+
+
+@dataclass(frozen=True)
+class Change:
+    """A number of one thing beside that of another, in SI.
+
+    Attributes
+    ----------
+    a, b : float
+    bar_a, bar_b : float or None
+        Error bars of both, in the unit of the number; None of one that has none.
+
+    Examples
+    --------
+    >>> one = Change(100.0, 101.0, 0.2, 0.3)
+    >>> one.difference, one.band, one.verdict
+    (1.0, 0.5, 'resolved')
+    >>> Change(100.0, 100.4, 0.2, 0.3).verdict, Change(100.0, 101.0).verdict
+    ('not resolved', 'no band')
+    """
+
+    a: float
+    b: float
+    bar_a: float | None = None
+    bar_b: float | None = None
+
+    @property
+    def difference(self) -> float:
+        """`b` less `a`."""
+        return self.b - self.a
+
+    @property
+    def relative(self) -> float | None:
+        """Of the size of `a`; None where that is zero."""
+        return self.difference / abs(self.a) if self.a else None
+
+    @property
+    def band(self) -> float | None:
+        """Sum of both bars; None unless both are known."""
+        return None if self.bar_a is None or self.bar_b is None else self.bar_a + self.bar_b
+
+    @property
+    def verdict(self) -> str:
+        """``resolved``, ``not resolved`` or ``no band``."""
+        return resolution(abs(self.difference), self.band)
+
+    def as_dict(self) -> dict:
+        """Plain data that JSON can hold."""
+        told = {name: getattr(self, name) for name in ("a", "b", "bar_a", "bar_b")}
+        return told | {
+            name: getattr(self, name) for name in ("difference", "relative", "band", "verdict")
+        }

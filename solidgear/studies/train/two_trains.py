@@ -1,0 +1,282 @@
+"""Two trains beside each other: what differs in their files, and what that does to their numbers.
+
+Modes are paired by shape (:mod:`solidgear.studies.train.mode_pairs`); a peak of the mesh force
+belongs to the peak of the partner of its mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+import numpy as np
+
+from solidgear.machine.threads import pinned
+from solidgear.scene.differences import Difference
+from solidgear.scene.train import SIDES
+from solidgear.studies.change import Change
+from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
+from solidgear.studies.train.local import local_lines
+from solidgear.studies.train.mode_pairs import (
+    ModePair,
+    SeenMode,
+    mode_pairs,
+    shared_ports,
+    told_modes,
+)
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.pairing import BEYOND, ports_of, seen_modes
+from solidgear.studies.train.respond import Peak, TrainResponse, respond
+from solidgear.studies.train.shaft import JUDGE, LUMPED
+from solidgear.studies.train.slips import slips
+
+
+@dataclass(frozen=True, eq=False)
+class OneTrain:
+    """One of the two, by one model of each shaft.
+
+    Attributes
+    ----------
+    letter, name : str
+        ``A`` or ``B``, and what its file is called.
+    workshop : Workshop
+    response : TrainResponse
+        Named by the label.
+    modes : tuple of SeenMode
+        Elastic ones, also some above the highest frequency, where partners may lie.
+    loaded : TrainDeflection or None
+        At its operating point.
+    cautions : tuple of str
+    """
+
+    letter: str
+    name: str
+    workshop: Workshop
+    response: TrainResponse
+    modes: tuple[SeenMode, ...]
+    loaded: TrainDeflection | None
+    cautions: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """Letter and name, as in legends."""
+        return f"{self.letter}: {self.name}"
+
+    def largest(self, column: str) -> tuple[float, float] | None:
+        """Hz and size of the largest amplitude of a column of the response; None without it."""
+        if column not in self.response.columns:
+            return None
+        size = np.abs(self.response.columns[column])
+        k = int(np.nanargmax(size))
+        return float(self.response.frequency_hz[k]), float(size[k])
+
+
+@dataclass(frozen=True)
+class PeakPair:
+    """A peak of the mesh force of one train and its partner; either may be missing."""
+
+    a: Peak | None
+    b: Peak | None
+
+    @property
+    def decibels(self) -> float | None:
+        """Of the second force over the first; None for a peak alone."""
+        return None if self.a is None or self.b is None else decibels(self.a.force, self.b.force)
+
+
+@dataclass(frozen=True, eq=False)
+class TwoTrains:
+    """Two trains beside each other.
+
+    Attributes
+    ----------
+    a, b : OneTrain
+    pinion, gear : str
+        Models of both.
+    highest_hz : float
+    inputs : tuple of Difference
+        Of their files.
+    modes : tuple of ModePair
+        By frequency; one of each pair at least lies in the range.
+    peaks : tuple of PeakPair
+        Of the mesh force, by frequency.
+    pairing : str
+        How modes belong together, in words.
+    seconds : float
+    """
+
+    a: OneTrain
+    b: OneTrain
+    pinion: str
+    gear: str
+    highest_hz: float
+    inputs: tuple[Difference, ...]
+    modes: tuple[ModePair, ...]
+    peaks: tuple[PeakPair, ...]
+    pairing: str
+    seconds: float
+
+    @property
+    def both(self) -> tuple[OneTrain, OneTrain]:
+        """Both trains."""
+        return self.a, self.b
+
+    @property
+    def columns(self) -> list[str]:
+        """Columns of both responses, by name and unit."""
+        return list(dict.fromkeys([*self.a.response.columns, *self.b.response.columns]))
+
+    def decibels(self, column: str) -> float | None:
+        """Of the largest amplitude of a column, B over A; None where one has none."""
+        tops = [one.largest(column) for one in self.both]
+        return None if tops[0] is None or tops[1] is None else decibels(tops[0][1], tops[1][1])
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of both trains, each with whose it is unless it is of both."""
+        alike = [text for text in self.a.cautions if text in self.b.cautions]
+        own = [f"{one.letter}: {t}" for one in self.both for t in one.cautions if t not in alike]
+        return [*alike, *own]
+
+    @property
+    def unpublished(self) -> dict[str, str]:
+        """Values that no source gives, in either train; where they differ, assumed ones."""
+        first, other = (one.workshop.train.unpublished() for one in self.both)
+        return {**first, **{k: s for k, s in other.items() if s == "assumed" or k not in first}}
+
+    def misalignment(self) -> list[tuple[str, str, str, Change]]:
+        """Name, unit, meaning and change of what the misalignment of both is told by; empty unless
+        both have an operating point.
+        """
+        if self.a.loaded is None or self.b.loaded is None:
+            return []
+        its = {m.name: m for m in self.b.loaded.misalignment}
+        return [
+            (m.name, m.unit, m.meaning, Change(m.value, i.value, m.bar, i.bar))
+            for m in self.a.loaded.misalignment
+            if (i := its.get(m.name)) is not None
+        ]
+
+
+def decibels(one: float, other: float) -> float | None:
+    """Of an amplitude over another; None where either is zero."""
+    return float(20 * np.log10(other / one)) if one > 0 and other > 0 else None
+
+
+@pinned
+def two_trains(
+    workshops: Sequence[Workshop],
+    names: Sequence[str],
+    inputs: Sequence[Difference] = (),
+    pinion: str = JUDGE,
+    gear: str = JUDGE,
+    highest_hz: float | None = None,
+    progress: Callable[[str], None] = lambda text: None,
+) -> TwoTrains:
+    """Two trains beside each other, by the same model of each shaft.
+
+    Parameters
+    ----------
+    workshops : sequence of Workshop
+        Of both.
+    names : sequence of str
+        Of their files.
+    inputs : sequence of Difference
+        Of their files.
+    pinion, gear : str
+        Models.
+    highest_hz : float, optional
+        The lower of those that both ask for by default.
+    progress : callable, optional
+        Told of every stage.
+
+    Raises
+    ------
+    SolidgearError
+        For a frequency beyond what a reduction resolves, or unknown models.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> files = "geometry/axle_overhung.toml", "geometry/axle_straddle.toml"
+    >>> shops = [Workshop(sg.load_train(file)) for file in files]
+    >>> found = two_trains(shops, ("overhung", "straddle"), (), "euler", "euler", 1000.0)
+    >>> [pair.a.name for pair in found.modes][:2], found.modes[0].change.verdict
+    (['load torsion 1', 'gear torsion 1'], 'no band')
+    """
+    start = perf_counter()
+    first, other = workshops
+    highest = highest_hz or min(shop.train.ask.max_frequency for shop in workshops)
+    ends = shared_ports(first, other)
+    trains, seen = [], []
+    for letter, name, shop, own in zip("AB", names, workshops, ends):
+        progress(f"{letter}: pinion {pinion}, gear {gear}")
+        one, motions = _one_train(letter, name, shop, (pinion, gear), highest, own, progress)
+        trains.append(one)
+        seen.append(motions)
+    mirrored = _mirrored(first, other)
+    pairs = mode_pairs([one.modes for one in trains], seen, highest, by_shape=not mirrored)
+    left_out = sorted({*ports_of(first), *ports_of(other)} - {*ends[0], *ends[1]})
+    told = "by the motions of the ports that both trains have"
+    told += f" (all but {', '.join(left_out)})" * bool(left_out)
+    if mirrored:
+        told = "by the motion that names them: hands or apexes differ, which mirrors shapes"
+    return TwoTrains(
+        trains[0],
+        trains[1],
+        pinion,
+        gear,
+        highest,
+        tuple(inputs),
+        tuple(p for p in pairs if p.within(highest)),
+        _peak_pairs(trains[0].response.peaks, trains[1].response.peaks, pairs),
+        told,
+        perf_counter() - start,
+    )
+
+
+def _mirrored(one: Workshop, other: Workshop) -> bool:
+    """True where the shafts of two trains are not in the same axes."""
+    members = [[shop.train.member(side) for side in SIDES] for shop in (one, other)]
+    return any(a.apex != b.apex or a.hand != b.hand for a, b in zip(*members))
+
+
+def _one_train(
+    letter: str,
+    name: str,
+    shop: Workshop,
+    rungs: tuple[str, str],
+    highest: float,
+    ends: list[str],
+    progress: Callable[[str], None],
+) -> tuple[OneTrain, np.ndarray]:
+    """One of the trains, and what its modes move at some ports."""
+    response = replace(respond(shop, *rungs, highest), name=f"{letter}: {name}")
+    system = shop.system(*rungs)
+    found, seen = seen_modes(shop, system, highest * BEYOND, ends)
+    progress(f"{letter}: how sure its frequencies are")
+    modes = told_modes(shop, system, found, dict(zip(SIDES, rungs)))
+    loaded = None
+    at_rest = all(rung.partition("/")[0] not in LUMPED for rung in rungs)
+    if shop.train.point is not None and at_rest:
+        progress(f"{letter}: at {shop.train.point.label}")
+        loaded = with_ranges(shop, deflection(shop, shop.train.point, *rungs))
+    cautions = (*slips(shop), *shop.cautions, *local_lines(shop, system))
+    own = tuple(dict.fromkeys(cautions))
+    return OneTrain(letter, name, shop, response, modes, loaded, own), seen
+
+
+def _peak_pairs(
+    first: Sequence[Peak], other: Sequence[Peak], pairs: Sequence[ModePair]
+) -> tuple[PeakPair, ...]:
+    partner = {p.a.name: p.b.name for p in pairs if p.a is not None and p.b is not None}
+    left = list(other)
+    out = []
+    for peak in first:
+        its = next((p for p in left if p.mode == partner.get(peak.mode)), None)
+        if its is not None:
+            left.remove(its)
+        out.append(PeakPair(peak, its))
+    out += [PeakPair(None, peak) for peak in left]
+    return tuple(sorted(out, key=lambda p: (p.a or p.b).frequency_hz))  # type: ignore[union-attr]  # never both

@@ -1,0 +1,285 @@
+"""What the comparison of two trains says: conclusions in sentences, and all of it as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.environment import environment
+from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import hertz, percent
+from solidgear.scene.train import SIDES
+from solidgear.studies.change import Change
+from solidgear.studies.train.comparison import described
+from solidgear.studies.train.mode_pairs import ModePair
+from solidgear.studies.train.modes import unpublished_lines
+from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains, decibels
+
+#: peaks that a verdict tells, the loudest in either train
+LOUDEST = 3
+#: column of the mesh force
+FORCE = "mesh force [N]"
+
+
+def same_file(a: str, b: str) -> str:
+    """Sentence on one file that is given twice."""
+    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
+    return f"{what}: nothing differs, and nothing was solved."
+
+
+def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
+    """Conclusions: what the change does, what of it is resolved, and by which models.
+
+    Parameters
+    ----------
+    found : TwoTrains
+    units : Units, optional
+        Of forces.
+    """
+    return [
+        _inputs(found),
+        _models(found),
+        *_largest_force(found, units),
+        *_loudest(found, units),
+        *_modes(found),
+        *_largest_reactions(found, units),
+        *_at_rest(found, units),
+        _sure(found),
+    ]
+
+
+def _inputs(found: TwoTrains) -> str:
+    numbers = [d for d in found.inputs if not d.in_words]
+    if not found.inputs:
+        return "Nothing differs between the two files."
+    if not numbers:
+        return "The two files differ in words alone (titles, sources): no number can."
+    paths = [d.path for d in numbers[:LOUDEST]]
+    more = f" and {len(numbers) - LOUDEST} more" if len(numbers) > LOUDEST else ""
+    one = len(numbers) == 1
+    return f"{len(numbers)} entr{'y' if one else 'ies'} of the input differ{'s' * one}: {', '.join(paths)}{more}."
+
+
+def _models(found: TwoTrains) -> str:
+    names = found.pinion, found.gear
+    titles = [LADDER[name].title if name in LADDER.bodies else name for name in names]
+    words = f"pinion {titles[0]}, gear {titles[1]}"
+    if len(set(names)) == 1:
+        words = f"both shafts as {titles[0]}s" if names[0] in LADDER.bodies else f"both {titles[0]}"
+    damping = found.a.response.damping
+    asked = {one.workshop.train.ask.max_frequency for one in found.both}
+    lower = " (the lower of what both files ask for)" * (len(asked) > 1)
+    return (
+        f"Models of both trains: {words}, {damping} losses, up to {found.highest_hz:g} Hz{lower}."
+    )
+
+
+def _largest_force(found: TwoTrains, units: Units) -> Iterator[str]:
+    tops = [_top(one, FORCE) for one in found.both]
+    told = [
+        f"{units.text(size, 'N', 4)} at {hertz(hz)} Hz in {one.letter}{_of_mode(one, hz)}"
+        for one, (hz, size) in zip(found.both, tops)
+    ]
+    yield f"Largest mesh force: {' and '.join(told)}{_in_decibels(tops)}."
+
+
+def _top(one: OneTrain, column: str) -> tuple[float, float]:
+    """Hz and size of the largest amplitude of a column that there is."""
+    top = one.largest(column)
+    assert top is not None
+    return top
+
+
+def _of_mode(one: OneTrain, hz: float) -> str:
+    """The mode that makes a peak, in brackets; the end of a range is told as such."""
+    mode = next((p.mode for p in one.response.peaks if p.frequency_hz == hz), "")
+    if hz == one.response.frequency_hz[-1]:
+        mode = "the end of the range"
+    return f" ({mode})" if mode else ""
+
+
+def _in_decibels(tops: Sequence[Any]) -> str:
+    change = decibels(tops[0][1], tops[1][1])
+    return "" if change is None else f", {change:+.1f} dB"
+
+
+def _loudest(found: TwoTrains, units: Units) -> Iterator[str]:
+    def size(pair: PeakPair) -> float:
+        return max(p.force for p in (pair.a, pair.b) if p is not None)
+
+    loud = sorted(found.peaks, key=size, reverse=True)[:LOUDEST]
+    for pair in [p for p in found.peaks if p in loud]:
+        if pair.a is None or pair.b is None:
+            one, peak = (found.a, pair.a) if pair.a is not None else (found.b, pair.b)
+            assert peak is not None
+            force = units.text(peak.force, "N", 4)
+            yield f"A peak of {one.letter} alone: {peak.mode}, {hertz(peak.frequency_hz)} Hz, {force}."
+            continue
+        a, b = pair.a, pair.b
+        shift = percent(b.frequency_hz / a.frequency_hz - 1)
+        forces = f"{units.number(a.force, 'N', 4)} to {units.text(b.force, 'N', 4)}"
+        yield (
+            f"The peak of {both_names(a.mode, b.mode)} moves from {hertz(a.frequency_hz)} to "
+            f"{hertz(b.frequency_hz)} Hz ({shift}), its mesh force from {forces} "
+            f"({pair.decibels:+.1f} dB)."
+        )
+
+
+def both_names(a: str, b: str) -> str:
+    """A mode by its name, or by both of its names."""
+    return a if a == b else f"{a} (in B {b})"
+
+
+def _modes(found: TwoTrains) -> Iterator[str]:
+    pairs = [(p, p.change) for p in found.modes if p.change is not None]
+    verdicts = [change.verdict for _, change in pairs]
+    count, sure = len(pairs), verdicts.count("resolved")
+    if "no band" not in verdicts:
+        many = {0: "none", count: "all"}.get(sure, str(sure))
+        differ = "differs" if sure == 1 else "differ"
+        rest = ", the rest do not" if 0 < sure < count else ""
+        yield f"Of {count} pairs of modes {many} {differ} by more than both bars (resolved){rest}."
+    moved = max(pairs, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
+    if moved is not None and moved[1].verdict != "not resolved":
+        yield f"Moves most: {_moved(*moved)}."
+    for letter, alone in (
+        ("A", [p.a for p in found.modes if p.b is None]),
+        ("B", [p.b for p in found.modes if p.a is None]),
+    ):
+        told = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
+        if told:
+            yield f"Without a partner in the other train, of {letter}: {', '.join(told)}."
+
+
+def _moved(pair: ModePair, change: Change) -> str:
+    assert pair.a is not None and pair.b is not None
+    name = both_names(pair.a.name, pair.b.name)
+    return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
+
+
+def _largest_reactions(found: TwoTrains, units: Units) -> Iterator[str]:
+    told, tops = [], []
+    for one in found.both:
+        forces = [c for c in one.response.columns if " bearing " in c and c.endswith(" [N]")]
+        if not forces:
+            return
+        column = max(forces, key=lambda c: _top(one, c)[1])
+        hz, size = _top(one, column)
+        tops.append((hz, size))
+        place = column.removesuffix(" [N]")
+        told.append(f"{place}, {units.text(size, 'N', 4)} at {hertz(hz)} Hz in {one.letter}")
+    yield f"Largest dynamic force on a bearing: {'; '.join(told)}{_in_decibels(tops)}."
+
+
+def _at_rest(found: TwoTrains, units: Units) -> Iterator[str]:
+    points = [one.workshop.train.point for one in found.both]
+    if points[0] is None and points[1] is None:
+        return
+    if points[0] is None or points[1] is None:
+        alone = found.b if points[0] is None else found.a
+        yield f"Under torque nothing is compared: {alone.letter} alone has an operating point."
+        return
+    changes = found.misalignment()
+    if not changes:
+        yield "Under torque nothing is compared: lumped shafts have no bearings of their own."
+        return
+    told = [
+        f"{name} {units.number(c.a, unit, 3)} to {units.text(c.b, unit, 3)}"
+        + f" ({c.verdict})" * (c.band is not None)
+        for name, unit, _, c in changes
+    ]
+    label = points[0].label
+    where = label if label == points[1].label else f"{label} (A) and {points[1].label} (B)"
+    yield f"Misalignment at {where}: {'; '.join(told)}."
+    opened = [
+        f"{m.name} of {one.letter} {units.number(m.open[0], m.unit, 3)} to "
+        f"{units.text(m.open[1], m.unit, 3)}"
+        for one in found.both
+        if one.loaded is not None
+        for m in one.loaded.misalignment
+        if m.open is not None
+    ]
+    if opened:
+        yield f"Data of bearings leave open, alike in both: {'; '.join(opened)}."
+
+
+def _sure(found: TwoTrains) -> str:
+    bars = [m.bar for p in found.modes for m in (p.a, p.b) if m is not None and m.bar is not None]
+    hang = "amplitudes have none, and hang on losses and transmission error as both files give them"
+    if not bars:
+        return (
+            "No error bars: without a harmonic shaft there are none, so that no difference is "
+            f"called resolved; {hang}."
+        )
+    stations = [b for one in found.both for s in SIDES for b in one.workshop.scenes[s].bearings]
+    catalogued = any(getattr(b, "catalogue", None) is not None for b in stations)
+    left_out = ", not what data of catalogue bearings leave open" * catalogued
+    return (
+        f"Error bars are those of frequencies, {percent(max(bars), signed=False)} at most (meshes of "
+        f"harmonic shafts, reduction{left_out}); {hang}."
+    )
+
+
+def results(found: TwoTrains) -> dict[str, Any]:
+    """Plain data that JSON can hold, SI: all numbers of the page and the curves of its charts."""
+    both = dict(zip("ab", found.both))
+    loaded = {key: one.loaded.as_dict() for key, one in both.items() if one.loaded is not None}
+    return {
+        "kind": "two trains",
+        "trains": {key: {"file": one.name, **described(one.workshop)} for key, one in both.items()},
+        "models": {"pinion": found.pinion, "gear": found.gear},
+        "highest_hz": found.highest_hz,
+        "differences": [asdict(one) for one in found.inputs],
+        "sentences": sentences(found),
+        "paired": found.pairing,
+        "modes": [_pair(pair) for pair in found.modes],
+        "peaks": [
+            {
+                "a": None if pair.a is None else asdict(pair.a),
+                "b": None if pair.b is None else asdict(pair.b),
+                "decibels": pair.decibels,
+            }
+            for pair in found.peaks
+        ],
+        "largest": {column: _largest(found, column) for column in found.columns},
+        "responses": {key: _curves(one) for key, one in both.items()},
+        "misalignment": {
+            name: {"unit": unit.split()[0], **change.as_dict()}
+            for name, unit, _, change in found.misalignment()
+        },
+        "at_rest": loaded,
+        "cautions": found.cautions,
+        "unpublished": found.unpublished,
+        "unpublished_lines": unpublished_lines(found.unpublished),
+        "environment": environment(),
+        "seconds_total": found.seconds,
+    }
+
+
+def _pair(pair: ModePair) -> dict[str, Any]:
+    own = {key: None if m is None else asdict(m) for key, m in (("a", pair.a), ("b", pair.b))}
+    change = pair.change
+    return {**own, "mac": pair.mac, "frequency": None if change is None else change.as_dict()}
+
+
+def _largest(found: TwoTrains, column: str) -> dict[str, Any]:
+    tops = [one.largest(column) for one in found.both]
+    told: dict[str, Any] = {
+        key: None if top is None else dict(zip(("frequency_hz", "size"), top))
+        for key, top in zip("ab", tops)
+    }
+    return told | {"decibels": found.decibels(column)}
+
+
+def _curves(one: OneTrain) -> dict[str, Any]:
+    def numbers(values: np.ndarray) -> list[float | None]:
+        return [value if np.isfinite(value) else None for value in np.abs(values).tolist()]
+
+    return {
+        "frequency_hz": one.response.frequency_hz.tolist(),
+        "amplitude": {name: numbers(values) for name, values in one.response.columns.items()},
+    }
