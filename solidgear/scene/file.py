@@ -79,6 +79,10 @@ class _File(Model):
     ask: _Ask = _Ask()
 
 
+#: keys and tables of a file
+KEYS = tuple(_File.model_fields)
+
+
 class _PartFile(_File):
     """A scene file with a part from another file in place of segments."""
 
@@ -128,7 +132,11 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     (['1', '2'], 'pinion')
     """
     where = os.fspath(path)
-    raw = parse(where)
+    return scene_of(parse(where), where, part_of)
+
+
+def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
+    """Resolve the tables of a scene file; what it names lies relative to `where`, its path."""
     if describes_train(raw):
         raise SceneError(
             "describes a train of two shafts and not a shaft; run solidgear compare, check, "
