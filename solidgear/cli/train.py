@@ -60,6 +60,27 @@ class Reduced(Group):
         ),
     ] = None
 
+    @property
+    def given(self) -> dict[str, bool]:
+        """Options, and whether they are other than usual."""
+        usual = vars(Reduced())
+        return {f"--{k.replace('_', '-')}": v != usual[k] for k, v in vars(self).items()}
+
+    def checked(self) -> Reduced:
+        """The same, once these options are sound."""
+        if not 1 <= self.kept <= MOST_KEPT:
+            raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
+        if self.max_frequency is not None and not self.max_frequency > 0:
+            raise SolidgearError(
+                f"--max-frequency {self.max_frequency:g}: must be greater than zero, in Hz"
+            )
+        return self
+
+    @property
+    def harmonics(self) -> tuple[int, ...]:
+        """Those of ``--local-harmonics``; none where the file says."""
+        return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
+
     def workshop(
         self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
     ) -> Workshop:
@@ -68,19 +89,14 @@ class Reduced(Group):
         from solidgear.studies.loading import load_train
         from solidgear.studies.train.models import Workshop
 
-        if not 1 <= self.kept <= MOST_KEPT:
-            raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
-        if self.max_frequency is not None and not self.max_frequency > 0:
-            raise SolidgearError(
-                f"--max-frequency {self.max_frequency:g}: must be greater than zero, in Hz"
-            )
+        self.checked()
         loaded = load_train(path)
         if self.point is not None:
             from solidgear.studies.train.operation import at_point
 
             loaded = at_point(loaded, self.point)
-        if self.local_harmonics is not None:
-            mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(self.local_harmonics))
+        if self.harmonics:
+            mesh = loaded.mesh.with_changes(local_harmonics=self.harmonics)
             loaded = loaded.with_changes(mesh=mesh)
         try:
             return Workshop(loaded, self.reduction, self.kept, settings or {})
@@ -89,7 +105,7 @@ class Reduced(Group):
 
 
 @dataclass(frozen=True)
-class Mix(Group):
+class Pair(Group):
     """Models of the two shafts."""
 
     pinion: Annotated[
@@ -98,6 +114,12 @@ class Mix(Group):
     gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
         FIDELITY
     )
+
+
+@dataclass(frozen=True)
+class Mix(Pair):
+    """The same with their builder options."""
+
     settings: ShaftSettings = None
 
     @property

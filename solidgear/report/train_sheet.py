@@ -25,6 +25,7 @@ WORDS = {
         "The measured spectrum with the orders that its peaks are at this speed, above the computed "
         "mesh force over the same frequencies. Grey lines: natural frequencies."
     ),
+    "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
 }
 

@@ -43,20 +43,19 @@ def keys_of(path: str, tables: Tables) -> Keys:
     rest = path
     while rest:
         if isinstance(here, list):
-            key, rest = _place_in(here, rest, ".".join(map(str, keys)))
-        elif isinstance(here, Mapping):
-            if keys and _is_own(here, rest):
-                rest = _after(rest, _word(rest))
-                continue
-            key = _first(rest, here) or _word(rest)
-            rest = _after(rest, key)
+            place, rest = _place_in(here, rest, ".".join(map(str, keys)))
+            keys.append(place)
+        elif isinstance(here, Mapping) and keys and _is_own(here, rest):
+            rest = _after(rest, _word(rest))
+            continue
+        elif isinstance(here, Mapping) or here is None:
+            word = _first(rest, here or {}) or _word(rest)
+            rest = _after(rest, word)
+            keys.append(word)
         else:
-            key = _word(rest)
-            rest = _after(rest, key)
-            if here is not None:
-                raise SceneError(f"is no table with a {key}", field=label_of(tuple(keys), tables))
-        keys.append(key)
-        here = _child(here, key)
+            said = f"is no table with a {_word(rest)}"
+            raise SceneError(said, field=label_of(tuple(keys), tables))
+        here = _child(here, keys[-1])
     if isinstance(here, list) and len(here) == 1 and isinstance(here[0], Mapping):
         here = here[0]
     if isinstance(here, (Mapping, list)):

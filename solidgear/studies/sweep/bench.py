@@ -39,26 +39,23 @@ class Bench:
         self._trains: OrderedDict[Hashable, Operating] = OrderedDict()
         self.made = 0
 
-    def workshop(self, train: Train, *models: str) -> Workshop:
-        """Workshop of a train that has the bodies of its shafts by two models, those of the pinion
-        and of the gear.
-        """
+    def workshop(self, train: Train, pinion: str, gear: str) -> Workshop:
+        """Workshop of a train that has the bodies of its shafts by two models."""
         shop = Workshop(train, *self._how)
-        for side, model in zip(SIDES, models):
+        for side, model in zip(SIDES, (pinion, gear)):
             kind, base = checked_rung(model)
             shop.keep(self._shaft(shop, side, base or kind))
         return shop
 
-    def operating(self, key: Hashable, train: Train, *models: str) -> Operating:
+    def operating(self, key: Hashable, train: Train, pinion: str, gear: str) -> Operating:
         """A train to be put at rest, its shafts by two models; the key is alike for trains that
         differ in operating points alone.
         """
-        found = _recalled(
-            self._trains,
-            (key, models),
-            TRAINS,
-            lambda: Operating(self.workshop(train, *models), *models),
-        )
+
+        def make() -> Operating:
+            return Operating(self.workshop(train, pinion, gear), pinion, gear)
+
+        found = _recalled(self._trains, (key, pinion, gear), TRAINS, make)
         return found.with_points(train)
 
     def _shaft(self, shop: Workshop, side: str, model: str) -> ShaftModel:

@@ -57,6 +57,12 @@ class Entry(Span):
         return f"{number!r} {self.unit}" if self.unit else number
 
     @property
+    def shown_in(self) -> str:
+        """Unit that its numbers are read in, as the user wrote it; empty for SI."""
+        units = {amount[2] if (amount := _amount(word)) else "" for word in self.words}
+        return self.unit or (units.pop() if len(units) == 1 else "")
+
+    @property
     def numeric(self) -> bool:
         """True where every value is a number."""
         return all(in_si(word) is not None for word in self.words)
@@ -143,7 +149,7 @@ def in_si(value: str | float | bool) -> float | None:
         return None
     if not isinstance(value, str):
         return float(value)
-    if not (found := _NUMBER.fullmatch(value.strip())) or not found[2]:
+    if not (found := _amount(value)) or not found[2]:
         return None
     for dimension in DIMENSIONS:
         try:
@@ -151,6 +157,11 @@ def in_si(value: str | float | bool) -> float | None:
         except SceneError:
             continue
     return None
+
+
+def _amount(word: object) -> re.Match[str] | None:
+    """Number and unit of a text."""
+    return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
 
 
 def _range(spec: str) -> dict:

@@ -81,7 +81,7 @@ class TrainTask:
         if train.operation:
             out |= {"torque": float, "mesh_force": float}
         if train.operation and DEFLECTION in self.ask:
-            out |= dict.fromkeys(map(_misaligned, measured_names(train)), float)
+            out |= dict.fromkeys(map(misaligned, measured_names(train)), float)
             out |= dict.fromkeys(_loads(train), float)
         if train.operation:
             out["unloaded"] = str
@@ -104,7 +104,7 @@ class TrainTask:
         try:
             train = self.variants.train(index)
             point = self.variants.at(index, train)
-            at, found = train, {}
+            at, found = train, dict[str, Any]()
             if point is not None:
                 at, found = self._at_rest(index, train, point)
             if {MODES, RESPONSE} & {*self.ask}:
@@ -132,7 +132,7 @@ class TrainTask:
             told = state if models == (SHAFT, SHAFT) else operating.at(point)
             shop = operating.workshop.on_flank(point.coast)
             out |= {
-                _misaligned(one.name): float(one.row @ told.coordinates)
+                misaligned(one.name): float(one.row @ told.coordinates)
                 for one in misalignment(shop, told.system)
             }
             out |= _carried(told)
@@ -175,7 +175,8 @@ def statics_of(model: str) -> str:
     return base if kind in LUMPED else model
 
 
-def _misaligned(name: str) -> str:
+def misaligned(name: str) -> str:
+    """Column of a number of the misalignment."""
     return f"misalignment_{name.replace(' ', '_')}"
 
 
@@ -193,7 +194,7 @@ def _bearings(scene: Scene) -> list[str]:
 
 def _carried(state: OperatingState) -> dict[str, float]:
     """What every bearing carries: across the shaft, along it and against tilting."""
-    out = {}
+    out: dict[str, float] = {}
     for end, load in state.equilibrium.load.items():
         values = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
         out |= {f"{end}.{what}": float(value) for what, value in zip(CARRIED, values)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene import Scene
 from solidgear.scene.file import KEYS, scene_of
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.paths import Tables
+from solidgear.scene.paths import Keys, Tables, changed
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SIDES, Train
 from solidgear.scene.train_file import train_of
@@ -130,23 +130,34 @@ class TrainVariants:
         if first is not None:
             raise SolidgearError(f"--vary {one.label}: {hinted(first, one.label, self.files)}")
 
-    def _read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
-        def tables(name: str, of: Tables) -> Tables:
-            own = [p for p in zip(varied, row) if p[0].file == name and p[0].label != POINT]
-            return put_in(of, *zip(*own)) if own else of
+    def with_entry(self, file: str, keys: Keys, value: Any) -> TrainVariants:
+        """The same with an entry of a file replaced in all of them."""
+        files = {**self.files, file: changed(self.files[file], keys, value)}
+        return replace(self, files=files, _scenes={})
 
+    def tables(self, index: int) -> dict[str, Tables]:
+        """Tables of all files of one variant, by their names."""
+        row = self.values[index].tolist()
+        return {name: self._put(name, self.files[name], self.entries, row) for name in self.files}
+
+    @staticmethod
+    def _put(name: str, tables: Tables, varied: Sequence[Entry], row: Sequence[float]) -> Tables:
+        own = [p for p in zip(varied, row) if p[0].file == name and p[0].label != POINT]
+        return put_in(tables, *zip(*own)) if own else tables
+
+    def _read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
         def of_side(side: str, path: Path, alone: bool) -> Scene:
-            values = (value for one, value in zip(varied, row) if one.file == side)
-            key = (side, str(path), alone, *values)
+            key = (side, str(path), alone, *(v for one, v in zip(varied, row) if one.file == side))
             if key not in self._scenes:
                 if len(self._scenes) >= KEPT:
                     self._scenes.clear()
                 usual = path == self.path.parent / str(self.files[OWN][side]["scene"])
-                changed = tables(side, self.files[side] if usual else parse(str(path)))
-                self._scenes[key] = _scene(changed, str(path), alone)
+                tables = self.files[side] if usual else parse(str(path))
+                self._scenes[key] = _scene(self._put(side, tables, varied, row), str(path), alone)
             return self._scenes[key]
 
-        return train_of(tables(OWN, self.files[OWN]), str(self.path), of_side)
+        own = self._put(OWN, self.files[OWN], varied, row)
+        return train_of(own, str(self.path), of_side)
 
 
 def train_variants(
@@ -223,8 +234,15 @@ def _every_point(own: Tables, varied: Sequence[Entry], point: str | None) -> Ent
     if len(set(names)) < len(names):
         names = [str(k) for k in range(1, len(points) + 1)]
     values = tuple(map(float, range(len(points))))
-    told = {"label": POINT, "file": OWN, "path": OPERATION, "keys": (OPERATION,)}
-    return Entry(**told, values=values, spacing="list", words=tuple(names))
+    return Entry(
+        label=POINT,
+        file=OWN,
+        path=OPERATION,
+        keys=(OPERATION,),
+        values=values,
+        spacing="list",
+        words=tuple(names),
+    )
 
 
 def _varied_point(own: Tables, varied: Sequence[Entry]) -> str | None:
