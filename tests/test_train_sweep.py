@@ -118,15 +118,18 @@ def test_the_bound_of_a_row_is_the_largest_of_its_frequencies(tmp_path):
 
 
 def test_every_operating_point_has_a_row_that_is_the_train_at_that_point(tmp_path):
-    _, rows = swept(GEARBOX, [], tmp_path / "rows.csv", every_point=True, ask=MODES)
+    _, rows = swept(GEARBOX, [], tmp_path / "rows.csv", every_point=True, ask=MODES + AT_REST)
     assert [(row["point"], row["torque"]) for row in rows] == [("full", 115.0), ("coast", -30.0)]
     train = at_point(sg.load_train(GEARBOX), "coast")
-    modes = train_modes(Workshop(train), *BEAMS.values(), 1500.0).modes
+    shop = Workshop(train)
+    modes = train_modes(shop, *BEAMS.values(), 1500.0).modes
     own = [mode.frequency_hz for mode in modes if mode.frequency_hz > 0]
     np.testing.assert_allclose(
         [rows[1][f"f{k}_hz"] for k in range(1, len(own) + 1)], own, rtol=1e-8
     )
     assert rows[0]["f3_hz"] != pytest.approx(rows[1]["f3_hz"], rel=1e-3)
+    in_plane = deflection(shop, train.operation[0], *BEAMS.values()).misalignment[0].value
+    assert rows[1]["misalignment_in_plane"] == pytest.approx(in_plane, rel=1e-6)
 
 
 def test_the_point_that_varies_is_the_one_that_is_looked_at(tmp_path):
@@ -138,6 +141,17 @@ def test_the_point_that_varies_is_the_one_that_is_looked_at(tmp_path):
     both = [*vary, "operation.full.torque=1,2"]
     with pytest.raises(SolidgearError, match="several operating points; say by --point"):
         swept(GEARBOX, both, tmp_path / "c.csv")
+
+
+def test_a_range_has_the_unit_of_its_first_end_in_curves_and_si_in_rows(tmp_path):
+    vary = ["pinion.bearing.2.position=140 mm:0.15 m:3"]
+    found, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES)
+    assert [row["pinion.bearing.2.position"] for row in rows] == [0.14, 0.145, 0.15]
+    curves = found.curves
+    assert (curves.over, curves.unit) == ("pinion.bearing.2.position", "mm")
+    assert curves.x.tolist() == [140.0, 145.0, 150.0]
+    assert curves.frequencies[0].values.tolist() == [row["f1_hz"] for row in rows]
+    assert [*curves.frequencies[0].words] == [row["mode1"] for row in rows]
 
 
 def test_words_vary_as_numbers_do(tmp_path):

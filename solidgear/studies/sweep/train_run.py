@@ -276,7 +276,6 @@ def _plan(
         "point": variants.point,
         "sample": None if sample is None else {"points": sample, "seed": seed},
         "models": [task.pinion, task.gear],
-        "ask": list(task.ask),
         "n": task.n,
         "max_frequency": task.max_frequency,
         "reduction": [task.reduction, task.kept],
