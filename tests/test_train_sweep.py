@@ -273,6 +273,7 @@ def test_a_variant_without_equilibrium_is_refused_as_well(tmp_path):
         ("mesh=1", "mesh: is no single entry; add one of shaft_angle"),
         ("mesh.stiffness.kxx=1", "mesh.stiffness: is no table with a kxx"),
         ("mesh.stiffness", "write PATH=VALUES"),
+        ("bearing.1.position=1,2", "pinion.bearing.1.position or gear.bearing.1.position"),
         ("gear.teeth=44.5", "gear.teeth = 44.5: must be a whole number"),
     ],
 )

@@ -373,10 +373,6 @@ class Body(Displayed):
         (6, 6) ndarray
             kg, kg m, kg m^2.
         """
-        return self._rigid_mass.copy()
-
-    @cached_property
-    def _rigid_mass(self) -> np.ndarray:
         out = np.zeros((6, 6))
         for block in self.blocks:
             c = list(block.components)

@@ -15,9 +15,8 @@ from solidgear.cli.settled import ended, over_the_sweep
 from solidgear.cli.shared import AUTO, FIDELITY, Chosen, Run, options
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
 from solidgear.cli.sweep_train import Told, sweep_train
-from solidgear.cli.train import Pair, Reduced, refuse_given
+from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.errors import SolidgearError
-from solidgear.scene.toml_file import is_train
 
 #: relative, of frequencies of a shaft
 TOLERANCE = 1e-6
@@ -60,6 +59,8 @@ def sweep(
     run: Run,
 ) -> None:
     """Thousands of bearing sets on one body, or of variants of a train, as rows of a file."""
+    from solidgear.scene.toml_file import is_train
+
     if is_train(scene):
         of_shaft = {
             "--model": model.fidelity != AUTO,

@@ -13,7 +13,7 @@ from solidgear.cli.app import Group, caution, say
 from solidgear.cli.shaft_settings import of_shafts
 from solidgear.cli.shared import Run
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
-from solidgear.cli.train import Pair, Reduced
+from solidgear.cli.train_options import Pair, Reduced
 
 if TYPE_CHECKING:
     from solidgear.studies.sweep.train_run import TrainSummary

@@ -212,9 +212,14 @@ def _side(path: Path, own: Tables, side: str) -> Tables:
 
 def _owner(path: str) -> tuple[str, str]:
     """The scene of a side owns the keys of scenes, the train file all others."""
-    side, _, within = path.partition(".")
-    if side in SIDES and within.partition(".")[0] in KEYS:
-        return side, within
+    first, _, within = path.partition(".")
+    if first in SIDES and within.partition(".")[0] in KEYS:
+        return first, within
+    if first in KEYS and first not in Train.model_fields:
+        raise SolidgearError(
+            f"--vary {path}: is of the scene of a shaft; say of which: "
+            + " or ".join(f"{side}.{path}" for side in SIDES)
+        )
     return OWN, path
 
 
