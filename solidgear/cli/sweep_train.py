@@ -94,13 +94,15 @@ def sweep_train(
             tell=tell,
             **rows.how,
         )
-    written = [] if told.chart is None else [f"Chart: {_drawn(found, pair, told.chart)}"]
+    curves, written = found.curves, []
+    if told.chart is not None:
+        nothing = curves is None or curves.empty
+        written = [f"Chart: {'none' if nothing else _drawn(found, pair, told.chart)}"]
     if run.as_json:
         print(json.dumps({k: v for k, v in vars(found).items() if k != "curves"}, default=str))
         _ended(found)
         return
     say(f"{found.title}: pinion {pair.pinion}, gear {pair.gear}")
-    curves = found.curves
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
         from solidgear.report.sweep_chart import sweep_table
 

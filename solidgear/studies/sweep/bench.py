@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Hashable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Hashable, Mapping
+from typing import Any
 
 from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
@@ -12,9 +12,10 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating
 from solidgear.studies.train.shaft import ShaftModel, checked_rung
 
-T = TypeVar("T")
-#: models of shafts that are kept, and trains at rest; a harmonic solid holds some 50 MB
-MODELS, TRAINS = 12, 4
+#: unknowns of the bodies that are kept, about 1 kB each
+UNKNOWNS = 300_000
+#: trains at rest that are kept: one by the model that bearings settle on, one by those asked for
+TRAINS = 2
 
 
 class Bench:
@@ -52,20 +53,32 @@ class Bench:
         differ in operating points alone.
         """
 
-        def make() -> Operating:
-            return Operating(self.workshop(train, pinion, gear), pinion, gear)
-
-        found = _recalled(self._trains, (key, pinion, gear), TRAINS, make)
-        return found.with_points(train)
+        key = key, pinion, gear
+        if key not in self._trains:
+            if len(self._trains) >= TRAINS:
+                self._trains.popitem(last=False)
+            self._trains[key] = Operating(self.workshop(train, pinion, gear), pinion, gear)
+        self._trains.move_to_end(key)
+        return self._trains[key].with_points(train)
 
     def _shaft(self, shop: Workshop, side: str, model: str) -> ShaftModel:
-        def make() -> ShaftModel:
+        key = side, model, surface(shop.scenes[side])
+        if key not in self._models:
+            self._make_room(side, model)
             self.made += 1
             found = shop.shaft(side, model)
             found.body.cache.clear()  # its factors, which nothing asks for again
-            return found
+            self._models[key] = found
+        self._models.move_to_end(key)
+        return self._models[key]
 
-        return _recalled(self._models, (side, model, surface(shop.scenes[side])), MODELS, make)
+    def _make_room(self, side: str, model: str) -> None:
+        """Let go of what was asked for longest ago, for another like the last of its kind."""
+        like = [m.unknowns for m in self._models.values() if (m.side, m.rung) == (side, model)]
+        sizes = [one.unknowns for one in self._models.values()]
+        while sizes and sum(sizes) + sum(like[-1:]) > UNKNOWNS:
+            self._models.popitem(last=False)
+            sizes.pop(0)
 
 
 def surface(scene: Scene) -> Hashable:
@@ -75,13 +88,3 @@ def surface(scene: Scene) -> Hashable:
         for s in scene.stations
     )
     return scene.segments, scene.features, scene.body, scene.blends, tuple(stations)
-
-
-def _recalled(kept: OrderedDict[Hashable, T], key: Hashable, most: int, make: Callable[[], T]) -> T:
-    """The thing of a key, made where it is not kept; the one that was asked for longest ago goes."""
-    if key not in kept:
-        while len(kept) >= most:
-            kept.popitem(last=False)
-        kept[key] = make()
-    kept.move_to_end(key)
-    return kept[key]

@@ -74,6 +74,12 @@ class Curves:
     peak_hz: list[Curve]
     peak_force: list[Curve]
 
+    @property
+    def empty(self) -> bool:
+        """True where no variant could be solved."""
+        lists = self.frequencies, self.misalignment, self.radial, self.axial, self.peak_force
+        return not any(lists)
+
 
 def varied_number(varied: Sequence[Entry]) -> Entry:
     """The one entry whose values curves go over.

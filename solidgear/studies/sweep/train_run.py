@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,7 @@ class TrainSummary:
     ----------
     path : Path
     total, skipped, refused : int
-        Variants; of these: rows that were there before, and refused ones of this run.
+        Variants; of these: rows that were there before, and refused ones.
     why : str
         Why the first of the refused ones is none; empty if none is refused.
     bodies : int or None
@@ -175,6 +176,10 @@ def sweep_train(
         variants = variants.with_entry(OWN, ("mesh", "local_harmonics"), list(local_harmonics))
     if charted:
         varied_number(variants.entries)
+        if len(variants) > MOST_CURVED:
+            raise SolidgearError(
+                f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
+            )
     how = reduction, kept, dict(settings or {})
     task = TrainTask(variants, pinion, gear, asked, n, max_frequency, *how)
     team = workers(jobs, dask)
@@ -190,40 +195,20 @@ def sweep_train(
 
     total = len(variants)
     with RowFile(Path(out), columns, plan, total, overwrite, mended) as file:
-        title = usual.title or usual.name
-        found = TrainSummary(
-            file.path, total, len(file.done), title=title, cautions=_cautions(usual)
-        )
+        found = TrainSummary(file.path, total, len(file.done), title=usual.title or usual.name)
+        found = replace(found, cautions=contact(usual).cautions)
         todo = variants.in_turn(k for k in range(total) if k not in file.done)
         progress(len(file.done), total, "solving")
         size = 1 if jobs == 1 and dask is None else max(1, min(SENT, len(todo) // (4 * jobs)))
         parts = [todo[k : k + size] for k in range(0, len(todo), size)]
         for rows in team(lambda: task, parts):
             file.append(rows)
-            found = _counted(found, rows, task)
             progress(len(file.done), total, "solving")
         file.finish()
-        found = replace(found, curves=_curves(file, variants, usual))
+        found = _counted(found, file.by_column(), task, usual)
     bodies = task.bench.made if jobs == 1 and dask is None else None
     seconds = time.perf_counter() - start
     return replace(found, bodies=bodies, seconds=seconds, repairs=tuple(repairs))
-
-
-def _cautions(usual: Train) -> tuple[str, ...]:
-    """Cautions of a train; none of one whose teeth do not meet, which its rows say."""
-    try:
-        return contact(usual).cautions
-    except SolidgearError:
-        return ()
-
-
-def _curves(file: RowFile, variants: TrainVariants, usual: Train) -> Curves | None:
-    """Curves over the number that varies; None where there is none, or too many rows to look at."""
-    try:
-        one = varied_number(variants.entries)
-    except SolidgearError:
-        return None
-    return curves(file.by_column(), one, usual) if len(variants) <= MOST_CURVED else None
 
 
 def _asked(ask: Iterable[str]) -> tuple[str, ...]:
@@ -240,16 +225,18 @@ def _asked(ask: Iterable[str]) -> tuple[str, ...]:
     return tuple(word for word in ASKED if word in given)
 
 
-def _counted(found: TrainSummary, rows: list[dict[str, Any]], task: TrainTask) -> TrainSummary:
-    """The account with some more rows."""
-    whys = [row["status"] for row in rows if row["status"] != "ok"]
-    cut = max((row.get("modes", 0) - (task.n or MOST_MODES) for row in rows), default=0)
-    return replace(
-        found,
-        refused=found.refused + len(whys),
-        why=found.why or next(iter(whys), ""),
-        cut=max(found.cut, cut),
-    )
+def _counted(
+    found: TrainSummary, columns: dict[str, list[Any]], task: TrainTask, usual: Train
+) -> TrainSummary:
+    """The account of all rows, and their curves where one number varies."""
+    whys = [status for status in columns["status"] if status != "ok"]
+    widest = max((count for count in columns.get("modes", []) if count), default=0)
+    drawn = None
+    if found.total <= MOST_CURVED:
+        with suppress(SolidgearError):
+            drawn = curves(columns, varied_number(task.variants.entries), usual)
+    cut = max(0, widest - MOST_MODES) if task.n is None else 0
+    return replace(found, refused=len(whys), why=next(iter(whys), ""), cut=cut, curves=drawn)
 
 
 def _plan(

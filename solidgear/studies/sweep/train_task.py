@@ -110,7 +110,8 @@ class TrainTask:
             if {MODES, RESPONSE} & {*self.ask}:
                 found |= self._moving(at)
         except SolidgearError as error:
-            return row | {"status": " ".join(str(error).split())}
+            told = str(self.variants.located(error, index))
+            return row | {"status": " ".join(told.split())}
         return row | {"status": "ok"} | found
 
     # ------------------------------------------------------------------------------ at rest

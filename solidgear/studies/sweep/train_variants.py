@@ -21,6 +21,7 @@ from solidgear.scene.train_file import train_of
 from solidgear.studies.loading import explained, part_of, shaft
 from solidgear.studies.sweep.entries import Entry, entries_of, hinted, put_in
 from solidgear.studies.sweep.vary import product, sample
+from solidgear.studies.train.contact import contact
 from solidgear.studies.train.operation import named_point
 
 #: name of the train's own file among those of its shafts
@@ -65,8 +66,8 @@ class TrainVariants:
         return {one.label: one.told(v) for one, v in zip(self.entries, self.values[index].tolist())}
 
     def train(self, index: int) -> Train:
-        """Train of one variant as it would be read from files: bearings that settle with it have no
-        stiffness yet.
+        """Train of one variant as it would be read from its files: bearings that settle with it have
+        no stiffness yet.
 
         Raises
         ------
@@ -108,10 +109,12 @@ class TrainVariants:
         refusal: Exception | None = None
         for index in dict.fromkeys(np.linspace(0, len(self) - 1, LOOKED).astype(int).tolist()):
             try:
-                self.at(index, self.train(index))
+                train = self.train(index)
+                self.at(index, train)
+                contact(train)
                 return index
             except SolidgearError as error:
-                refusal = refusal or error
+                refusal = refusal or self.located(error, index)
         for one in self.entries:
             self._refuse_whatever_its_value(one)
         raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
@@ -134,6 +137,12 @@ class TrainVariants:
         """The same with an entry of a file replaced in all of them."""
         files = {**self.files, file: changed(self.files[file], keys, value)}
         return replace(self, files=files, _scenes={})
+
+    def located(self, error: SolidgearError, index: int) -> SolidgearError:
+        """An error of one variant told with the key and the value of the train's file."""
+        if not isinstance(error, SceneError) or error.where:
+            return error
+        return error.located(self.tables(index)[OWN], where=str(self.path))
 
     def tables(self, index: int) -> dict[str, Tables]:
         """Tables of all files of one variant, by their names."""
