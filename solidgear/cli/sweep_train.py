@@ -107,7 +107,7 @@ def sweep_train(
         from solidgear.report.sweep_chart import sweep_table
 
         say(sweep_table(curves))
-    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told), *written)
+    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, pair), *written)
     say(*map(caution, found.cautions))
     _ended(found)
 
@@ -130,9 +130,10 @@ def _work(found: TrainSummary) -> list[str]:
     ]
 
 
-def _limits(found: TrainSummary, told: Told) -> list[str]:
+def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
     """Sentences on what rows do not tell."""
     from solidgear.studies.sweep.train_task import MODES, MOST_MODES
+    from solidgear.studies.train.shaft import JUDGE
 
     lines = []
     if found.cut > 0:
@@ -141,10 +142,9 @@ def _limits(found: TrainSummary, told: Told) -> list[str]:
             f"{MOST_MODES}: give -n {MOST_MODES + found.cut} for all."
         )
     if MODES in (told.ask or (MODES,)):
-        lines.append(
-            "Column error_bound: what the reduction leaves, proven; what the meshes of the shafts "
-            "leave is told by solidgear system-modes, of one variant."
-        )
+        meshed = JUDGE in (pair.pinion, pair.gear)
+        meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
+        lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
     return lines
 
 
