@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from solidgear.cli import app
 from solidgear.cli.app import command
 from solidgear.cli.shared import Run
-from solidgear.cli.train import Reduced
+from solidgear.cli.train_options import Reduced
 
 SCENE = Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml"
 

@@ -91,7 +91,6 @@ def test_an_earlier_run_of_a_shaft_leaves_nothing_beside_a_train(tmp_path):
         ["answer"],
         ["render"],
         ["chart"],
-        ["sweep", "--vary", "bearing.1.k_zz=1e8,2e8", "--out", "rows.csv"],
     ],
     ids=lambda a: a[0],
 )

@@ -83,12 +83,12 @@ def test_what_means_the_same_is_no_difference(tmp_path):
 
 def test_scenes_of_both_shafts_are_looked_into_by_the_names_in_them():
     found = {d.path: (d.a, d.b) for d in differences(OVERHUNG, STRADDLE) if not d.in_words}
-    assert found.pop('pinion.scene.bearing "0"')[0] is None
-    assert found.pop('pinion.scene.segment "pilot"')[1]["length"] == "56.75 mm"
+    assert found.pop("pinion.bearing.0")[0] is None
+    assert found.pop("pinion.segment.pilot")[1]["length"] == "56.75 mm"
     assert found == {
-        'pinion.scene.segment "shaft".length': ("208 mm", "173 mm"),
-        'pinion.scene.bearing "2".position': ("150 mm", "115 mm"),
-        "pinion.scene.housing": (None, {"axial": "7.71e9 N/m"}),
+        "pinion.segment.shaft.length": ("208 mm", "173 mm"),
+        "pinion.bearing.2.position": ("150 mm", "115 mm"),
+        "pinion.housing": (None, {"axial": "7.71e9 N/m"}),
     }
 
 

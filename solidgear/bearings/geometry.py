@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from solidgear.bearings.rating import RATED_CONFORMITY, rated, static_roller_rating
@@ -109,6 +110,7 @@ class Geometry(NamedTuple):
     estimated: tuple[str, ...]
 
 
+@lru_cache(maxsize=1024)
 def inner_geometry(data: Catalogue) -> Geometry:
     """Inner geometry of a bearing by its catalogue data.
 
@@ -218,8 +220,10 @@ def _ball_for(inside: Inside, rating: float, data: Catalogue) -> float:
     diameter = inside.diameter
     widest = 0.48 * (data.outer_diameter - data.bore)
     for _ in range(40):
-        own = rated(data, replace(inside, diameter=diameter))
+        before, own = diameter, rated(data, replace(inside, diameter=diameter))
         diameter = min(diameter * (rating / own) ** (1 / 1.8), widest)
+        if diameter == before:
+            break
     return diameter
 
 

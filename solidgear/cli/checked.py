@@ -53,7 +53,7 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """
-    from solidgear.cli.train import Reduced, refuse_given
+    from solidgear.cli.train_options import Reduced, refuse_given
     from solidgear.scene.train import SIDES
     from solidgear.studies.train.check import check_train as run
 

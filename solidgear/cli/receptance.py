@@ -9,7 +9,8 @@ import typer
 
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.shared import Shown
-from solidgear.cli.train import Driven, Reduced, TrainFile, end_of, print_peaks
+from solidgear.cli.train import end_of, print_peaks
+from solidgear.cli.train_options import Driven, Reduced, TrainFile
 
 END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
 

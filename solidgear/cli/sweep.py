@@ -1,4 +1,4 @@
-"""Command ``sweep``: one body, many bearing sets."""
+"""Command ``sweep``: one body, many bearing sets; or a train, many variants of its file."""
 
 from __future__ import annotations
 
@@ -12,73 +12,80 @@ import typer
 from solidgear.cli.app import Progress as Steps
 from solidgear.cli.app import command
 from solidgear.cli.settled import ended, over_the_sweep
-from solidgear.cli.shared import Chosen, Run, SceneFile, options
+from solidgear.cli.shared import AUTO, FIDELITY, Chosen, Run, options
+from solidgear.cli.sweep_rows import Rows, refusals, rows_there
+from solidgear.cli.sweep_train import Told, sweep_train
+from solidgear.cli.train_options import Pair, Reduced, refuse_given
+from solidgear.errors import SolidgearError
+
+#: relative, of frequencies of a shaft
+TOLERANCE = 1e-6
 
 
 @command
 def sweep(
-    scene: SceneFile,
-    *,
-    vary: Annotated[
-        list[str],
-        typer.Option(
-            "--vary",
-            help="bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), scale, "
-            "or an entry such as kxx or kx_thz. "
-            "bearing.NAME.housing.FIELD and housing.FIELD vary what the scene gives a housing. "
-            'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
+    scene: Annotated[
+        Path,
+        typer.Argument(
+            help="Scene or train file (TOML), such as geometry/pinion_overhung.toml; - for standard "
+            "input."
         ),
     ],
-    out: Annotated[
-        Path,
+    *,
+    vary: Annotated[
+        list[str] | None,
         typer.Option(
-            "--out",
-            "-o",
-            help="Rows, as .csv or .parquet; run again to go on where it stopped. They are kept in "
-            "a database beside it (rows.csv.sqlite), from which the file is written in one step.",
+            "--vary",
+            help="Of a scene bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), "
+            "scale, or an entry such as kxx or kx_thz. "
+            "bearing.NAME.housing.FIELD and housing.FIELD vary what the scene gives a housing. "
+            "Of a train PATH=VALUES: any entry of its file or of a side's scene, such as "
+            "mesh.stiffness, operation.torque, pinion.bearing.2.position. "
+            'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
-    ] = Path("rows.csv"),
+    ] = None,
+    rows: Rows,
     model: Chosen,
-    n: Annotated[
-        int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
-    ] = None,
-    sample: Annotated[
-        int | None,
-        typer.Option(
-            "--sample", help="Draw so many points (Latin hypercube) instead of all combinations."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Of the random sample.")] = 0,
     tolerance: Annotated[
         float,
         typer.Option(
             "--tolerance",
             help="Relative error of frequencies; checked by a bound for every variant.",
         ),
-    ] = 1e-6,
-    jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes on this machine.")] = 1,
-    dask: Annotated[
-        str | None,
-        typer.Option(
-            "--dask", help="Address of a running Dask scheduler, such as tcp://host:8786."
-        ),
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Discard rows that are there.")
-    ] = False,
+    ] = TOLERANCE,
+    pair: Pair,
+    told: Told,
+    reduced: Reduced,
     run: Run,
 ) -> None:
-    """Stiffness and first modes of thousands of bearing sets on one body."""
-    from dataclasses import asdict
+    """Thousands of bearing sets on one body, or of variants of a train, as rows of a file."""
+    from solidgear.scene.toml_file import is_train
 
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeRemainingColumn,
-    )
+    if is_train(scene):
+        of_shaft = {
+            "--model": model.fidelity != AUTO,
+            "--tol": model.tol is not None,
+            "--tolerance": tolerance != TOLERANCE,
+        }
+        refuse_given(of_shaft, scene, "its models are those of --pinion and --gear")
+        sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
+        return
+    of_train = {
+        "--pinion": pair.pinion != FIDELITY,
+        "--gear": pair.gear != FIDELITY,
+        **told.given,
+        **reduced.given,
+    }
+    for option, there in of_train.items():
+        if there:
+            raise SolidgearError(f"{option} is for a train, and {scene} is the scene of one shaft")
+    _sweep_shaft(scene, vary or [], rows, model, tolerance, run)
+
+
+def _sweep_shaft(
+    scene: Path, vary: list[str], rows: Rows, model: Chosen, tolerance: float, run: Run
+) -> None:
+    from dataclasses import asdict
 
     from solidgear.cli.reading import load
     from solidgear.ladder import build
@@ -93,57 +100,24 @@ def sweep(
     if model.automatic():
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(
-                loaded, vary, model.tol, sample=sample, seed=seed, progress=steps
+                loaded, vary, model.tol, sample=rows.sample, seed=rows.seed, progress=steps
             )
         name, given = settled.rung, settled.options
     else:
         name = str(model.fidelity)
         given = LADDER[name].checked(options(model.pairs))
-    terminal = Console(stderr=True, highlight=False)
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-        console=terminal,
-        disable=run.as_json or not terminal.is_terminal,
-    )
-    reached = [0, 0]
-    try:
-        with bar:
-            line = bar.add_task("reading", total=None)
-
-            def show(done: int, total: int, text: str) -> None:
-                reached[:] = done, total
-                bar.update(line, completed=done, total=total, description=text)
-
-            def tell(text: str) -> None:
-                terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
-
-            found = swept(
-                loaded,
-                vary,
-                out,
-                fidelity=name,
-                options=given,
-                n=n,
-                sample=sample,
-                seed=seed,
-                tolerance=tolerance,
-                jobs=jobs,
-                dask=dask,
-                overwrite=overwrite,
-                build=build,
-                progress=show,
-                tell=tell,
-            )
-    except KeyboardInterrupt:
-        if reached[0]:
-            print(
-                f"solidgear: {reached[0]} of {reached[1]} rows are kept; the same command goes on from there",
-                file=sys.stderr,
-            )
-        raise
+    with rows.counted(run.as_json) as (show, tell):
+        found = swept(
+            loaded,
+            vary,
+            fidelity=name,
+            options=given,
+            tolerance=tolerance,
+            build=build,
+            progress=show,
+            tell=tell,
+            **rows.how,
+        )
     if run.as_json:
         record = asdict(found)
         if settled is not None:
@@ -154,17 +128,15 @@ def sweep(
     for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), name):
         print(f"caution: {sentence}", file=sys.stderr)
     new = found.total - found.skipped
-    path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
-    print(f"{path}: {found.total} rows, {found.skipped} of them there before.")
+    print(rows_there(found))
     if new:
         print(
             f"{found.unknowns} unknowns with {found.seats} seats solved once in "
             f"{found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
         )
-        if found.why:
-            others = "; others say theirs" if found.refused > 1 else ""
-            print(f"Refused: {found.why} (column status{others}).")
+    for sentence in refusals(found):
+        print(sentence)
     if found.settling:
         print(found.settling)
     for sentence in over_the_sweep(settled):

@@ -3,176 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-from solidgear.cli.app import Group, caution, command, say
+from solidgear.cli.app import caution, command, say
 from solidgear.cli.at_speed import Speed, say_at_speed
-from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
-from solidgear.cli.shared import FIDELITY, UNITS, Shown
-from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.ladder.registry import LADDER
-
-if TYPE_CHECKING:
-    from solidgear.studies.train.models import Workshop
-
-TrainFile = Annotated[
-    Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
-]
-MODELS = (
-    f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
-    "lumped-old; a lumped one may name its body, lumped/euler."
-)
-MOST_KEPT = 200
-
-
-@dataclass(frozen=True)
-class Reduced(Group):
-    """Options of every command on a train: how its shafts are reduced, and up to which frequency."""
-
-    max_frequency: Annotated[
-        float | None, typer.Option(help="Hz; as the file says by default.")
-    ] = None
-    reduction: Annotated[
-        str,
-        typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton."),
-    ] = "rubin"
-    kept: Annotated[
-        int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")
-    ] = 24
-    local_harmonics: Annotated[
-        str | None,
-        typer.Option(
-            "--local-harmonics",
-            help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
-            "2,3; by default as local_harmonics in the table mesh of the file says.",
-        ),
-    ] = None
-    point: Annotated[
-        str | None,
-        typer.Option(
-            "--point",
-            help="Operating point, by its name or number in the file; the first by default.",
-        ),
-    ] = None
-
-    def workshop(
-        self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
-    ) -> Workshop:
-        """Workshop of a train, once these options are sound, with builder options by side and model."""
-        from solidgear.scene.toml_file import parse
-        from solidgear.studies.loading import load_train
-        from solidgear.studies.train.models import Workshop
-
-        if not 1 <= self.kept <= MOST_KEPT:
-            raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
-        if self.max_frequency is not None and not self.max_frequency > 0:
-            raise SolidgearError(
-                f"--max-frequency {self.max_frequency:g}: must be greater than zero, in Hz"
-            )
-        loaded = load_train(path)
-        if self.point is not None:
-            from solidgear.studies.train.operation import at_point
-
-            loaded = at_point(loaded, self.point)
-        if self.local_harmonics is not None:
-            mesh = loaded.mesh.with_changes(local_harmonics=_harmonics(self.local_harmonics))
-            loaded = loaded.with_changes(mesh=mesh)
-        try:
-            return Workshop(loaded, self.reduction, self.kept, settings or {})
-        except SceneError as error:  # what the mesh of a sound file cannot be
-            raise error.located(parse(str(path)), where=str(path)) from None
-
-
-@dataclass(frozen=True)
-class Mix(Group):
-    """Models of the two shafts."""
-
-    pinion: Annotated[
-        str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
-    ] = FIDELITY
-    gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
-        FIDELITY
-    )
-    settings: ShaftSettings = None
-
-    @property
-    def of_shafts(self) -> dict[str | tuple[str, str], dict[str, Any]]:
-        """Builder options by side and model."""
-        return of_shafts(self.settings, self.pinion, self.gear)
-
-
-@dataclass(frozen=True)
-class Driven(Mix):
-    """Options of every command on steady motion: losses, and models to draw as well."""
-
-    against: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--against",
-            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
-        ),
-    ] = None
-    damping: Annotated[
-        str,
-        typer.Option(
-            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
-        ),
-    ] = "hysteretic"
-    matched_at: Annotated[
-        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
-    ] = None
-
-    @property
-    def mixes(self) -> list[tuple[str, str]]:
-        """Models of pinion and gear, the first those that are told."""
-        return [(self.pinion, self.gear), *map(mix, self.against or [])]
-
-    @property
-    def losses(self) -> tuple[str, float]:
-        """Their kind, and the Hz at which viscous ones match."""
-        return self.damping, self.matched_at or 0.0
-
-
-def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
-    """Refuse options that speak of one shaft.
-
-    Parameters
-    ----------
-    given : dict of str to bool
-        Such options, and whether they were given.
-    train : Path
-    instead : str
-        What to do for a train, in words.
-
-    Raises
-    ------
-    SolidgearError
-    """
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(f"{option} is for one shaft, and {train} is a train: {instead}")
-
-
-def _harmonics(text: str) -> tuple[int, ...]:
-    """Numbers of waves from a text such as ``2,3``."""
-    from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
-
-    try:
-        found = tuple(int(word) for word in text.split(",") if word.strip())
-    except ValueError:
-        found = ()
-    sound = all(FIRST_HARMONIC <= n <= LAST_HARMONIC for n in found)
-    if not found or not sound or len(set(found)) < len(found):
-        raise SolidgearError(
-            f"--local-harmonics {show(text, 40)}: write whole numbers from {FIRST_HARMONIC} to "
-            f"{LAST_HARMONIC}, each once, such as 2,3"
-        )
-    return found
+from solidgear.cli.shared import UNITS, Shown
+from solidgear.cli.train_options import Driven, Mix, Reduced, TrainFile
+from solidgear.errors import SolidgearError, show
 
 
 @command
@@ -327,13 +167,6 @@ def response(
         say_at_speed(there)
     say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
-
-
-def mix(text: str) -> tuple[str, str]:
-    pinion, plus, gear = text.partition("+")
-    if not plus:
-        raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
-    return pinion.strip(), gear.strip()
 
 
 def _forces(texts: list[str] | None) -> dict:

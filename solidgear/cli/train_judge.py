@@ -12,7 +12,7 @@ import typer
 
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.shared import Shown
-from solidgear.cli.train import Reduced, TrainFile, mix, refuse_given
+from solidgear.cli.train_options import Reduced, TrainFile, mix, refuse_given
 
 
 @command

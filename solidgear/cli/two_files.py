@@ -8,7 +8,7 @@ from pathlib import Path
 
 from solidgear.cli.app import caution, say
 from solidgear.cli.shared import FIDELITY, Shown
-from solidgear.cli.train import Reduced, refuse_given
+from solidgear.cli.train_options import Reduced, refuse_given
 from solidgear.errors import SolidgearError
 
 

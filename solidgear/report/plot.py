@@ -170,7 +170,7 @@ def _compact(svg: str, name: str) -> str:
     return re.sub(r"<[a-z][^>]*>", tag, svg)
 
 
-def check_ending(file: Path) -> str:
+def check_ending(file: Path, known: Sequence[str] = FORMATS) -> str:
     """The ending of a picture's name.
 
     Raises
@@ -184,8 +184,8 @@ def check_ending(file: Path) -> str:
     '.png'
     """
     ending = file.suffix.lower()
-    if ending not in FORMATS:
-        raise SolidgearError(f"{file}: no picture ends like that; use {' or '.join(FORMATS)}")
+    if ending not in known:
+        raise SolidgearError(f"{file}: no picture ends like that; use {' or '.join(known)}")
     return ending
 
 

@@ -297,10 +297,11 @@ def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
 
 
 def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
-    """Characters of the widest cell or part of the head; of texts a few."""
+    """Characters of the widest cell or part of the head; of texts those of a word, or a few."""
     from rich.cells import cell_len
 
-    told = heads if column.kind == TEXT else [*heads, *cells]
+    words = [word for cell in cells for word in cell.split()] if column.kind == TEXT else cells
+    told = [*heads, *words]
     widest = max((cell_len(in_ascii(one)) for one in told), default=0)
     return max(widest, LEAST_TEXT) if column.kind == TEXT else widest
 

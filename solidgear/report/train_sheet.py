@@ -30,6 +30,7 @@ WORDS = {
         "Section forces along the shaft; where two components are drawn, the dashed line is the size "
         "of both."
     ),
+    "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shares": "Strain energy of every mode by what it is in.",
 }

@@ -38,7 +38,7 @@ class Difference:
     Attributes
     ----------
     path : str
-        Such as ``pinion.scene.bearing "0".position``.
+        Such as ``pinion.bearing.0.position``, as :mod:`solidgear.scene.paths` has it.
     a, b : object
         As written; None where a file does not have it.
     """
@@ -83,7 +83,7 @@ def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference,
     --------
     >>> found = differences("geometry/axle_overhung.toml", "geometry/axle_straddle.toml")
     >>> [one.path for one in found][:3]
-    ['title', 'pinion.scene', 'pinion.scene.title']
+    ['title', 'pinion.scene', 'pinion.title']
     >>> found[1].a, found[1].b
     ('pinion_overhung.toml', 'pinion_straddle.toml')
     """
@@ -109,9 +109,9 @@ class _Files:
 
     def _meaning(self, k: int) -> Any:
         """What a file says, whatever it leaves out; None where it cannot be read alone."""
-        of_tables = train_file.of_tables if describes_train(self.raw[k]) else file.of_tables
+        read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
         try:
-            return of_tables(self.raw[k], self.files[k])
+            return read(self.raw[k], self.files[k])
         except SceneError:
             return None
 
@@ -141,7 +141,8 @@ class _Files:
         elif not _alike(a, b) or self._other_file(key, a, b):
             yield Difference(self.prefix + path, a, b)
         if path in [f"{side}.scene" for side in SIDES]:
-            yield from _Files(*self._beside(a, b), f"{self.prefix}{path}.").found()
+            side = path.removesuffix("scene")
+            yield from _Files(*self._beside(a, b), self.prefix + side).found()
 
     def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
         """Differences of lists of tables, by names or numbers."""
@@ -149,7 +150,7 @@ class _Files:
         keys = names if all(names) else (range(len(a)), range(len(b)))
         mine, its = dict(zip(keys[0], a)), dict(zip(keys[1], b))
         for key in dict.fromkeys([*mine, *its]):
-            own = f"{path}[{key + 1}]" if isinstance(key, int) else f'{path} "{key}"'
+            own = f"{path}.{key + 1 if isinstance(key, int) else key}"
             yield from self._entries(own, "", mine.get(key), its.get(key))
 
     def _beside(self, a: str, b: str) -> tuple[str, str]:

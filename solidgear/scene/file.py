@@ -79,6 +79,10 @@ class _File(Model):
     ask: _Ask = _Ask()
 
 
+#: keys and tables of a file
+KEYS = tuple(_File.model_fields)
+
+
 class _PartFile(_File):
     """A scene file with a part from another file in place of segments."""
 
@@ -128,14 +132,18 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     (['1', '2'], 'pinion')
     """
     where = os.fspath(path)
-    raw = parse(where)
+    return scene_of(parse(where), where, part_of)
+
+
+def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
+    """Resolve the tables of a scene file; what it names lies relative to `where`, its path."""
     if describes_train(raw):
         raise SceneError(
             "describes a train of two shafts and not a shaft; run solidgear compare, check, "
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:
-        return of_tables(raw, where, part_of)
+        return _Reading(dict(raw), where, part_of).scene()
     except SceneError as error:
         found = error.problems
         if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
@@ -146,11 +154,6 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
         order = _FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
-
-
-def of_tables(raw: Mapping[str, Any], where: str, part_of: Reader = unread) -> Scene:
-    """Scene of the tables of a file; problems name no file, and ports as those of a list."""
-    return _Reading(dict(raw), where, part_of).scene()
 
 
 def _drop_tag(path: tuple) -> tuple:

@@ -18,19 +18,20 @@ from solidgear.scene.model import Scene
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SIDES, Train
 
+#: reads the scene of a side from a file, told whether the shaft stands alone.
+ReadShaft = Callable[[str, Path, bool], Scene]
+
 CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
 #: a normal typed with four digits has a length off by this; it is brought to unit length
 NORMAL_TYPED = 1e-3
 MOST_CELLS = 100_000
 
 
-def _as_written(path: str | os.PathLike, alone: bool) -> Scene:
+def _as_written(side: str, path: Path, alone: bool) -> Scene:
     return load(path)
 
 
-def load_train(
-    path: str | os.PathLike, shaft: Callable[[str | os.PathLike, bool], Scene] = _as_written
-) -> Train:
+def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
     """Read a train file; the shafts it names lie relative to it.
 
     Parameters
@@ -38,9 +39,9 @@ def load_train(
     path : str or path
         A TOML file; ``geometry/axle_overhung.toml`` describes the format.
     shaft : callable, optional
-        Reads the scene of a shaft from its file, and is told whether it stands alone: bearings of a
-        shaft whose train has an [operation] settle with the train. By default scenes are read as
-        they are written, without a stiffness of catalogue bearings, which
+        Reads the scene of a side from its file, and is told whether the shaft stands alone:
+        bearings of a shaft whose train has an [operation] settle with the train. By default scenes
+        are read as they are written, without a stiffness of catalogue bearings, which
         :func:`solidgear.load_train` works out.
 
     Returns
@@ -60,7 +61,12 @@ def load_train(
     ['0', '1', '2']
     """
     where = os.fspath(path)
-    raw = parse(where)
+    return train_of(parse(where), where, shaft)
+
+
+def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written) -> Train:
+    """Resolve the tables of a train file; what it names lies relative to `where`, its path."""
+    folder = Path(where).parent
     try:
         if "segment" in raw:
             raise SceneError(
@@ -69,30 +75,21 @@ def load_train(
                 "geometry/axle_overhung.toml",
                 path=("segment",),
             )
-        return of_tables(raw, where, shaft)
+        data, alone = {**raw}, "operation" not in raw
+        for side in SIDES:
+            if isinstance(raw.get(side), Mapping):
+                data[side] = _with_scene(raw[side], folder, side, alone, shaft)
+        if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
+            data["mesh"] = _with_cells(raw["mesh"], folder)
+        for rotor in ("engine", "load"):
+            _whole_rotor(raw, rotor)
+        return Train(**{"name": name_of(where)} | data)
     except SceneError as error:
         if error.where:
             raise
         if isinstance(raw.get("operation"), Mapping):
             error = _of_one_table(error, "operation")
         raise error.located(raw, where=where) from None
-
-
-def of_tables(
-    raw: Mapping[str, Any],
-    where: str,
-    shaft: Callable[[str | os.PathLike, bool], Scene] = _as_written,
-) -> Train:
-    """Train of the tables of a file; problems of its own keys name no file."""
-    data, alone, folder = {**raw}, "operation" not in raw, Path(where).parent
-    for side in SIDES:
-        if isinstance(raw.get(side), Mapping):
-            data[side] = _with_scene(raw[side], folder, side, lambda p: shaft(p, alone))
-    if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
-        data["mesh"] = _with_cells(raw["mesh"], folder)
-    for rotor in ("engine", "load"):
-        _whole_rotor(raw, rotor)
-    return Train(**{"name": name_of(where)} | data)
 
 
 def _of_one_table(error: SceneError, key: str) -> SceneError:
@@ -103,12 +100,14 @@ def _of_one_table(error: SceneError, key: str) -> SceneError:
     )
 
 
-def _with_scene(table: Mapping[str, Any], folder: Path, side: str, shaft) -> dict[str, Any]:
+def _with_scene(
+    table: Mapping[str, Any], folder: Path, side: str, alone: bool, shaft: ReadShaft
+) -> dict[str, Any]:
     name = table.get("scene")
     if not isinstance(name, str):
         reason = 'names the file of the shaft, such as "gear_shaft.toml"'
         raise SceneError(reason, path=(side, "scene"))
-    return {**table, "scene": shaft(folder / name)}
+    return {**table, "scene": shaft(side, folder / name, alone)}
 
 
 def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:

@@ -7,10 +7,10 @@ data mean is worked out here, once, so that all that follows sees a 6x6 like any
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene import file
@@ -58,7 +58,7 @@ def load(path: str | os.PathLike) -> Scene:
     >>> [bearing.name for bearing in scene.bearings], scene.port.name
     (['1', '2'], 'pinion')
     """
-    scene = file.load(path, _part)
+    scene = file.load(path, part_of)
     if all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
     return read(path, scene).scene
@@ -94,9 +94,9 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
     """
     from solidgear.scene import train_file
 
-    def shaft(of: str | os.PathLike, alone: bool) -> Scene:
+    def shaft(side: str, of: Path, alone: bool) -> Scene:
         """Scene of a shaft: settled by itself, or to be settled with its train."""
-        return load(of) if alone and point is None else file.load(of, _part)
+        return load(of) if alone and point is None else file.load(of, part_of)
 
     train = train_file.load_train(path, shaft)
     if point is None and not train.operation:
@@ -127,12 +127,12 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
     """
     from solidgear.bearings.solved import solved
 
-    scene = file.load(path, _part) if scene is None else scene
+    scene = file.load(path, part_of) if scene is None else scene
     with explained(path):
         return solved(scene, shaft(scene))
 
 
-def _part(table: BodyTable, folder: Path) -> Recognised:
+def part_of(table: BodyTable, folder: Path) -> Recognised:
     """The part that a scene file names; read apart from scenes that have none."""
     from solidgear.meshing.part import recognise
 
@@ -140,13 +140,15 @@ def _part(table: BodyTable, folder: Path) -> Recognised:
 
 
 @contextmanager
-def explained(path: str | os.PathLike) -> Iterator[None]:
-    """Errors of bearings told with the file, the key and the value they come from."""
+def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Errors of bearings told with the file, the key and the value they come from; tables are those
+    of the file where some of them have been changed.
+    """
     try:
         yield
     except SceneError as error:
         where = os.fspath(path)
-        raise error.located(parse(where), where=place_of(where)) from None
+        raise error.located(tables or parse(where), where=place_of(where)) from None
     except SolidgearError as error:
         raise SceneError(str(error), where=place_of(os.fspath(path))) from None
 

@@ -132,13 +132,18 @@ class SteadyState:
         return common_loss(self.system, self.loss) if self.kind == "hysteretic" else None
 
     @cached_property
+    def _flexible(self) -> np.ndarray:
+        """(m, m) complex flexibility in elastic modes."""
+        soft = 1 / self.system.elastic[0]
+        damped = np.eye(len(soft)) + 1j * soft[:, None] * self._lost * soft
+        flexible = soft[:, None] * np.linalg.solve(damped, np.diag(soft))
+        return (flexible + flexible.T) / 2
+
+    @cached_property
     def _complex(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """mu (m,), shapes (N, m) and what a load does on them (m, N)."""
-        omega, elastic = self.system.elastic
-        soft = 1 / omega
-        damped = np.eye(len(omega)) + 1j * soft[:, None] * self._lost * soft
-        flexible = soft[:, None] * np.linalg.solve(damped, np.diag(soft))
-        value, turn = np.linalg.eig((flexible + flexible.T) / 2)
+        elastic = self.system.elastic[1]
+        value, turn = np.linalg.eig(self._flexible)
         return 1 / value, elastic @ turn, np.linalg.solve(turn, elastic.T)
 
     @cached_property
@@ -150,7 +155,9 @@ class SteadyState:
             lost = np.diag(self._lost) / omega**2 * hz / self.matched_hz
             # overcritical motions have no peak; their place does no harm
             return hz, np.maximum(lost / 2, SHARPEST) * hz
-        value = self._complex[0]
+        # where real modes do, nobody asks for the shapes, which are half of the work
+        alone = self._common is not None
+        value = 1 / np.linalg.eigvals(self._flexible) if alone else self._complex[0]
         hz = np.sqrt(np.abs(value.real)) / (2 * np.pi)
         order = np.argsort(hz)
         width = np.maximum(np.abs(value.imag / value.real) / 2, SHARPEST)

@@ -252,7 +252,7 @@ class System:
         return omega[::-1], shapes[:, ::-1]
 
     @pinned
-    def modes(self, n: int | None = None) -> SystemModes:
+    def modes(self, n: int | None = None, *, bounded: int | None = None) -> SystemModes:
         """Lowest modes.
 
         Parameters
@@ -261,6 +261,8 @@ class System:
             Elastic modes wanted; rigid motions come on top, at 0 Hz.  Without it, as many as there
             are coordinates: the highest of reduced parts are no modes of their bodies, and their
             bound says so.
+        bounded : int, optional
+            So many of them get their bound, all by default; of the others nothing is promised.
 
         Returns
         -------
@@ -270,7 +272,9 @@ class System:
             raise SolidgearError(f"n = {n} is not a number of modes; ask for 1 or more")
         omega, elastic = self.elastic
         count = len(omega) if n is None else min(n, len(omega))
-        bound = frequency_bound(omega, elastic, self.truncation, count)
+        bound = np.full(count, np.inf)
+        sure = count if bounded is None else min(bounded, count)
+        bound[:sure] = frequency_bound(omega, elastic, self.truncation, sure)
         zero = self.free.shape[1]
         shapes = self.signed(np.hstack([self.free, elastic[:, :count]]))
         omega = np.r_[np.zeros(zero), omega[:count]]

@@ -212,12 +212,19 @@ class RowFile:
     def _write_parquet(self, partial: Path) -> None:
         arrow = _pyarrow()
         types = {int: arrow.int64(), float: arrow.float64(), str: arrow.string()}
-        table = list(csv.reader(self._store.lines()))
-        data = {}
-        for k, (name, kind) in enumerate(self.columns.items()):
-            values = [kind(row[k]) if row[k] else None for row in table]
-            data[name] = arrow.array(values, types[kind])
+        data = {
+            name: arrow.array(values, types[self.columns[name]])
+            for name, values in self.by_column().items()
+        }
         arrow.parquet.write_table(arrow.table(data), partial)
+
+    def by_column(self) -> dict[str, list[Any]]:
+        """Values of all rows that are there, in their order; None where a row has none."""
+        table = list(csv.reader(self._store.lines()))
+        return {
+            name: [kind(row[k]) if row[k] else None for row in table]
+            for k, (name, kind) in enumerate(self.columns.items())
+        }
 
     def _line(self, row: Mapping[str, Any]) -> str:
         return _csv_line(_text(row.get(name)) for name in self.columns)

@@ -16,7 +16,7 @@ or a plain SI number.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,9 +36,42 @@ HOUSING = "housing"
 MOST = 10_000_000
 
 
-@dataclass(frozen=True)
-class Axis:
-    """One varied quantity.
+@dataclass(frozen=True, kw_only=True)
+class Span:
+    """Values of something that varies.
+
+    Attributes
+    ----------
+    label : str
+        Name of its column, such as ``bearing.2.kxx``.
+    values : tuple of float
+    spacing : {'linear', 'log', 'list'}
+        How values between the listed ones are drawn: along a line, along its logarithm, or not at
+        all.
+    """
+
+    label: str
+    values: tuple[float, ...]
+    spacing: str
+
+    @property
+    def only_listed(self) -> bool:
+        """True where no values but the listed ones are drawn."""
+        return self.spacing == "list"
+
+    def draw(self, u: np.ndarray) -> np.ndarray:
+        """Values for numbers between 0 and 1."""
+        if self.only_listed:
+            return np.array(self.values)[
+                np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
+            ]
+        a, b = self.values[0], self.values[-1]
+        return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis(Span):
+    """One varied quantity of bearings or housings, in SI.
 
     Attributes
     ----------
@@ -48,21 +81,11 @@ class Axis:
         Whether it is of a housing: that of the bearing, or of all.
     field : str
         One of `FIELDS`, or ``axial`` of the housing of all.
-    label : str
-        Name of its column, such as ``bearing.2.kxx``.
-    values : tuple of float
-        SI.
-    spacing : {'linear', 'log', 'list'}
-        How values between the listed ones are drawn: along a line, along its logarithm, or not at
-        all.
     """
 
     bearing: int | None
     housed: bool
     field: str
-    label: str
-    values: tuple[float, ...]
-    spacing: str
 
     @property
     def place(self) -> tuple[int | None, bool]:
@@ -76,17 +99,10 @@ class Axis:
             raise TypeError(f"{self.label} is of no bearing")
         return self.bearing
 
-    def draw(self, u: np.ndarray) -> np.ndarray:
-        """Values for numbers between 0 and 1.
-
-        A position is drawn among its listed values, because every seat is meshed.
-        """
-        if self.spacing == "list" or self.field == "position":
-            return np.array(self.values)[
-                np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
-            ]
-        a, b = self.values[0], self.values[-1]
-        return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
+    @property
+    def only_listed(self) -> bool:
+        """Positions as well, because every seat is meshed."""
+        return super().only_listed or self.field == "position"
 
 
 def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
@@ -113,7 +129,7 @@ def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
     return tuple(out)
 
 
-def product(axes: Sequence[Axis]) -> np.ndarray:
+def product(axes: Sequence[Span]) -> np.ndarray:
     """(variants, axes) all combinations, the last axis running fastest."""
     total = int(np.prod([float(len(a.values)) for a in axes]))
     if total > MOST:
@@ -123,7 +139,7 @@ def product(axes: Sequence[Axis]) -> np.ndarray:
     return np.array(list(itertools.product(*(a.values for a in axes))), float)
 
 
-def sample(axes: Sequence[Axis], count: int, seed: int) -> np.ndarray:
+def sample(axes: Sequence[Span], count: int, seed: int) -> np.ndarray:
     """(count, axes) a Latin hypercube over the ranges of the axes."""
     if not 1 <= count <= MOST:
         raise SolidgearError(f"--sample {count}: give a whole number from 1 to {MOST}")
@@ -221,31 +237,51 @@ def _read(text: str, place: tuple[int | None, bool], field: str, label: str, spe
         values, spacing = _values(field, spec)
     except SceneError as error:
         raise SolidgearError(f"--vary {text}: {error}") from None
-    return Axis(*place, field, label, values, spacing)
+    bearing, housed = place
+    return Axis(
+        label=label, values=values, spacing=spacing, bearing=bearing, housed=housed, field=field
+    )
 
 
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
     of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
     dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
+    values, spacing = spread(spec, lambda text: _number(text, dimension))
+    if field == "position":
+        values = [round(v, POSITION_DECIMALS) + 0.0 for v in values]
+    # the same value twice would be the same row twice
+    return tuple(dict.fromkeys(values)), spacing
+
+
+def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
+    """Values of a text ``a:b:n``, ``log:a:b:n`` or ``a,b,c``, and their spacing.
+
+    Parameters
+    ----------
+    spec : str
+    read : callable
+        Value of one number.
+
+    Raises
+    ------
+    SceneError
+        For another text; as `read`.
+    """
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
         spacing, parts = "log", parts[1:]
     if len(parts) == 1 and spacing == "linear":
-        values, spacing = [_number(part, dimension) for part in spec.split(",")], "list"
-    elif len(parts) == 3:
-        a, b = (_number(part, dimension) for part in parts[:2])
-        if not parts[2].isdecimal() or not 2 <= int(parts[2]) <= MOST:
-            raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
-        if spacing == "log" and not a * b > 0:
-            raise SceneError("a logarithmic range needs both ends above zero")
-        n = int(parts[2])
-        values = (np.linspace if spacing == "linear" else np.geomspace)(a, b, n).tolist()
-    else:
+        return [float(read(part)) for part in spec.split(",")], "list"
+    if len(parts) != 3:
         raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
-    if field == "position":
-        values = [round(float(v), POSITION_DECIMALS) + 0.0 for v in values]
-    # the same value twice would be the same row twice
-    return tuple(dict.fromkeys(float(v) for v in values)), spacing
+    a, b = (read(part) for part in parts[:2])
+    if not parts[2].isdecimal() or not 2 <= int(parts[2]) <= MOST:
+        raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
+    if spacing == "log" and not a * b > 0:
+        raise SceneError("a logarithmic range needs both ends above zero")
+    return (np.linspace if spacing == "linear" else np.geomspace)(
+        a, b, int(parts[2])
+    ).tolist(), spacing
 
 
 def _number(text: str, dimension: str) -> float:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, Protocol
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import usable_cores
-from solidgear.studies.sweep.task import Task
 
 Rows = list[dict[str, Any]]
+
+
+class Task(Protocol):
+    """What turns variants into rows; sent to other processes."""
+
+    def rows(self, indices: Iterable[int]) -> Rows:
+        """Rows of some variants."""
+
+
 #: Takes a function that gives the current task, and lists of variants; yields their rows in order.
 Workers = Callable[[Callable[[], Task], Sequence[Sequence[int]]], Iterator[Rows]]
 
@@ -26,6 +34,10 @@ def workers(jobs: int = 1, dask: str | None = None) -> Workers:
     if dask:
         return _dask(dask)
     return _here if jobs == 1 else _joblib(jobs)
+
+
+def _rows(task: Task, part: Sequence[int]) -> Rows:
+    return task.rows(part)
 
 
 def _here(task, parts):
@@ -49,7 +61,7 @@ def _joblib(jobs: int) -> Workers:
     def run(task, parts):
         # Parts are sent as places fall free, so that later ones get a basis enlarged meanwhile.
         yield from Parallel(n_jobs=jobs, return_as="generator")(
-            delayed(Task.rows)(task(), part) for part in parts
+            delayed(_rows)(task(), part) for part in parts
         )
 
     return run
@@ -72,7 +84,7 @@ def _dask(address: str) -> Workers:
     def run(task, parts):
         with client:
             shared = client.scatter(task(), broadcast=True)
-            futures = [client.submit(Task.rows, shared, part, pure=False) for part in parts]
+            futures = [client.submit(_rows, shared, part, pure=False) for part in parts]
             try:
                 for future in futures:
                     yield future.result()

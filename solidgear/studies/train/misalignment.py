@@ -26,17 +26,20 @@ larger y of the pinion's scene.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import sin
 
 import numpy as np
 
 from solidgear.frames import cross_matrix
 from solidgear.reduction.superelement import PortMotion
-from solidgear.scene.train import SIDES
+from solidgear.scene.train import SIDES, Train
 from solidgear.studies.train.models import Workshop
 from solidgear.system.system import System
 
 #: axes whose angle has a sine below this are parallel
 PARALLEL = 1e-6
+#: names of what is told of each kind of pair
+BEVEL, PARALLELS = ("E", "P", "G", "shaft angle"), ("in plane", "across", "f_sh")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +61,20 @@ class Measure:
     unit: str
     meaning: str
     row: np.ndarray
+
+
+def measured_names(train: Train) -> tuple[str, ...]:
+    """Names of the numbers that :func:`misalignment` tells of a train.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> measured_names(sg.load_train("geometry/gearbox_train.toml"))
+    ('in plane', 'across', 'f_sh')
+    """
+    if abs(sin(train.mesh.shaft_angle)) >= PARALLEL:
+        return BEVEL
+    return PARALLELS if any(_widths(train)) else PARALLELS[:-1]
 
 
 def misalignment(workshop: Workshop, system: System) -> list[Measure]:
@@ -114,11 +131,12 @@ def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
     across = np.cross(along[0], along[1])
     across = across / np.linalg.norm(across)
     axial = np.linalg.pinv(np.column_stack([along[0], -along[1]])) @ moved
+    offset, along_pinion, along_gear, angle = BEVEL
     return [
-        Measure("E", "m moved", "offset of the axes", across @ moved),
-        Measure("P", "m moved", "pinion along its axis, away from the apex", axial[0]),
-        Measure("G", "m moved", "gear along its axis, away from the apex", axial[1]),
-        Measure("shaft angle", "rad moved", "growth of the angle of the axes", -across @ turned),
+        Measure(offset, "m moved", "offset of the axes", across @ moved),
+        Measure(along_pinion, "m moved", "pinion along its axis, away from the apex", axial[0]),
+        Measure(along_gear, "m moved", "gear along its axis, away from the apex", axial[1]),
+        Measure(angle, "rad moved", "growth of the angle of the axes", -across @ turned),
     ]
 
 
@@ -128,17 +146,19 @@ def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
     normal = normal / np.linalg.norm(normal)
     here, there = (_seen(port, ports[0].point) for port in ports)
     slope = -cross_matrix(axis) @ (here[3:] - there[3:])
+    in_plane, across, shear = PARALLELS
     out = [
-        Measure(
-            "in plane", "rad moved", "slope of the axes in the plane of action", normal @ slope
-        ),
-        Measure("across", "rad moved", "slope across it", np.cross(axis, normal) @ slope),
+        Measure(in_plane, "rad moved", "slope of the axes in the plane of action", normal @ slope),
+        Measure(across, "rad moved", "slope across it", np.cross(axis, normal) @ slope),
     ]
-    widths = [workshop.train.member(side).face_width for side in SIDES]
-    known = [width for width in widths if width is not None]
+    known = [width for width in _widths(workshop.train) if width is not None]
     if known:
         meaning = (
             f"equivalent misalignment over {1e3 * min(known):g} mm of face, in the plane of action"
         )
-        out.append(Measure("f_sh", "m moved", meaning, min(known) * out[0].row))
+        out.append(Measure(shear, "m moved", meaning, min(known) * out[0].row))
     return out
+
+
+def _widths(train: Train) -> list[float | None]:
+    return [train.member(side).face_width for side in SIDES]

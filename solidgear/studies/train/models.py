@@ -129,6 +129,10 @@ class Workshop:
         seconds = perf_counter() - start
         self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
 
+    def keep(self, model: ShaftModel) -> None:
+        """Take in the model of a shaft of another workshop that differs in its bearings alone."""
+        self._made[model.side, model.rung] = model
+
     def put(self, side: str, name: str, part: Part, like: str) -> None:
         """Take in a part of one's own as a further model of a shaft.
 

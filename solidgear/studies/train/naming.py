@@ -48,13 +48,13 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
             out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[places].sum(axis=0), 0.0)
             own = np.maximum(own - waving, 0.0)
         port = workshop.scenes[part].port
-        body = workshop.shaft(part, workshop_rung(workshop, part)).body
+        model = workshop.shaft(part, workshop_rung(workshop, part))
         back = shift([0.0, -port.y, 0.0])
-        mass = np.diag(back.T @ body.mass_matrix() @ back)
+        mass = np.diag(back.T @ model.rigid_mass @ back)
         energy = mass[:, None] * (system.motion(f"{part}.{port.name}") @ shapes) ** 2
         whole = energy.sum(axis=0)
         still = _still(workshop, system, part, mass, own, shapes)
-        around = _diameters(body, system, part, shapes, still)
+        around = _diameters(model.body, system, part, shapes, still)
         for n in sorted({*around[still]}):
             out[f"{part} {OVALISING} n={n}"] = np.where(still & (around == n), own, 0.0)
         for family, rows in FAMILIES.items():

@@ -14,6 +14,7 @@ tangential and the spiral part of a tooth force round and leaves the part of the
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -144,16 +145,23 @@ class Operating:
         return tuple(seats_of(side, self.workshop.scenes[side], self.made) for side in SIDES)
 
     @cached_property
-    def _flanks(self) -> dict[bool, tuple[Workshop, OnBearings]]:
+    def _flanks(self) -> dict[bool, OnBearings]:
         return {}
 
     def _on(self, coast: bool) -> tuple[Workshop, OnBearings]:
         """The train with the flank that carries, without its bearings, and what it rests on."""
+        shop = self.workshop.on_flank(coast)
         if coast not in self._flanks:
-            shop = self.workshop.on_flank(coast)
             system = shop.system(self.pinion, self.gear, bearings=False)
-            self._flanks[coast] = shop, OnBearings(system, self._seats)
-        return self._flanks[coast]
+            self._flanks[coast] = OnBearings(system, self._seats)
+        return shop, self._flanks[coast]
+
+    def with_points(self, train: Train) -> Operating:
+        """The same bearings on the same shafts, in a train that differs in operating points alone."""
+        _ = self._seats, self._flanks  # found once for all of them
+        out = copy(self)
+        out.workshop = self.workshop.with_train(train)
+        return out
 
     def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
         """The train at an operating point.

@@ -22,6 +22,7 @@ from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
+from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks
 from solidgear.system.system import System
 
@@ -139,6 +140,7 @@ class Drive:
             )
         self.workshop, self.rungs, self.damping = workshop, (pinion, gear), damping
         self.system: System = workshop.system(pinion, gear)
+        self._named: dict[int, tuple[SystemModes, list[str]]] = {}
         loss = workshop.losses()
         kind = damping
         if damping == "literal":
@@ -262,6 +264,19 @@ class Drive:
         """Peaks of the mesh force, each with the mode that makes it."""
         return tuple(Peak(*top) for top in self.tops(frequency_hz, np.abs(force), self.row))
 
+    def named_modes(self, n: int, bounded: int = 0) -> tuple[SystemModes, list[str]]:
+        """Lowest elastic modes of the train, some of them with a bound, and free motions, with their
+        names; found once.
+        """
+        if n not in self._named:
+            found = self.system.modes(n, bounded=bounded)
+            self._named[n] = found, mode_names(self.workshop, self.system, found)
+        return self._named[n]
+
+    def reach(self, highest_hz: float) -> int:
+        """Elastic modes that a response up to a frequency is named by."""
+        return max(1, int((self.system.elastic[0] <= 4 * np.pi * highest_hz).sum()))
+
     def tops(
         self, frequency_hz: np.ndarray, size: np.ndarray, row: np.ndarray
     ) -> list[tuple[float, float, str]]:
@@ -274,9 +289,9 @@ class Drive:
             Of the motion that is looked at.
         """
         omega, shapes = self.system.elastic
-        within = max(1, int((omega <= 4 * np.pi * frequency_hz[-1]).sum()))
-        found = self.system.modes(within)
-        names = mode_names(self.workshop, self.system, found)[found.rigid :]
+        within = self.reach(frequency_hz[-1])
+        found, every = self.named_modes(within)
+        names = every[found.rigid :]
         share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
         lost = np.array([self._loss_of(found, found.rigid + k) for k in range(within)])
         out = []

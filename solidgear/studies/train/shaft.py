@@ -13,6 +13,9 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError, nearest, show
@@ -72,3 +75,8 @@ class ShaftModel:
     body: Body
     unknowns: int
     seconds: float
+
+    @cached_property
+    def rigid_mass(self) -> np.ndarray:
+        """(6, 6) rigid mass of the body about the origin of its scene."""
+        return self.body.mass_matrix()

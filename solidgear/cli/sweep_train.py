@@ -1,0 +1,167 @@
+"""The command sweep on a train."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from solidgear.cli.app import Group, caution, say
+from solidgear.cli.shaft_settings import of_shafts
+from solidgear.cli.shared import Run
+from solidgear.cli.sweep_rows import Rows, refusals, rows_there
+from solidgear.cli.train_options import Pair, Reduced
+
+if TYPE_CHECKING:
+    from solidgear.studies.sweep.train_run import TrainSummary
+
+#: rows that are told on the terminal as well
+FEW = 40
+#: ending of a chart that is a page
+PAGE = ".html"
+
+
+@dataclass(frozen=True)
+class Told(Group):
+    """What rows of a train tell."""
+
+    ask: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--ask",
+            help="Of a train: what rows tell, system-modes, response or deflect; repeatable, all by "
+            "default.",
+        ),
+    ] = None
+    every_point: Annotated[
+        bool, typer.Option("--every-point", help="Of a train: a row for each operating point.")
+    ] = False
+    chart: Annotated[
+        Path | None,
+        typer.Option(
+            "--chart",
+            help="Of a train: curves over the number that varies, as .png, .svg or .html.",
+        ),
+    ] = None
+
+    @property
+    def given(self) -> dict[str, bool]:
+        """Options, and whether they were given."""
+        return {
+            "--ask": bool(self.ask),
+            "--every-point": self.every_point,
+            "--chart": self.chart is not None,
+        }
+
+
+def sweep_train(
+    train: Path,
+    vary: list[str],
+    rows: Rows,
+    pair: Pair,
+    settings: list[str],
+    told: Told,
+    reduced: Reduced,
+    run: Run,
+) -> None:
+    """Sweep a train and tell of it."""
+    from solidgear.report.plot import FORMATS, check_ending
+    from solidgear.studies.sweep.train_run import sweep_train as swept
+    from solidgear.studies.sweep.train_task import ASKED
+
+    if told.chart is not None:
+        check_ending(told.chart, (*FORMATS, PAGE))
+    reduced.checked()
+    with rows.counted(run.as_json) as (show, tell):
+        found = swept(
+            train,
+            vary,
+            pinion=pair.pinion,
+            gear=pair.gear,
+            settings=of_shafts(settings, pair.pinion, pair.gear),
+            ask=told.ask or ASKED,
+            every_point=told.every_point,
+            charted=told.chart is not None,
+            max_frequency=reduced.max_frequency,
+            point=reduced.point,
+            reduction=reduced.reduction,
+            kept=reduced.kept,
+            local_harmonics=reduced.harmonics,
+            progress=show,
+            tell=tell,
+            **rows.how,
+        )
+    curves, written = found.curves, []
+    if told.chart is not None:
+        nothing = curves is None or curves.empty
+        written = [f"Chart: {'none' if nothing else _drawn(found, pair, told.chart)}"]
+    if run.as_json:
+        print(json.dumps({k: v for k, v in vars(found).items() if k != "curves"}, default=str))
+        _ended(found)
+        return
+    say(f"{found.title}: pinion {pair.pinion}, gear {pair.gear}")
+    if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
+        from solidgear.report.sweep_chart import sweep_table
+
+        say(sweep_table(curves))
+    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, pair), *written)
+    say(*map(caution, found.cautions))
+    _ended(found)
+
+
+def _ended(found: TrainSummary) -> None:
+    """An exit code of its own where no variant could be solved."""
+    if found.refused == found.total:
+        raise typer.Exit(1)
+
+
+def _work(found: TrainSummary) -> list[str]:
+    """Sentence on what was done in this run."""
+    new = found.total - found.skipped
+    if not new:
+        return []
+    shafts = "" if found.bodies is None else f"{found.bodies} shafts meshed and reduced; "
+    return [
+        f"{shafts}{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
+        f"{found.refused} refused."
+    ]
+
+
+def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
+    """Sentences on what rows do not tell."""
+    from solidgear.studies.sweep.train_task import MODES, MOST_MODES
+    from solidgear.studies.train.shaft import JUDGE
+
+    lines = []
+    if found.cut > 0:
+        lines.append(
+            f"Rows have up to {MOST_MODES + found.cut} natural frequencies, and columns for "
+            f"{MOST_MODES}: give -n {MOST_MODES + found.cut} for all."
+        )
+    if MODES in (told.ask or (MODES,)):
+        meshed = JUDGE in (pair.pinion, pair.gear)
+        meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
+        lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
+    return lines
+
+
+def _drawn(found: TrainSummary, pair: Pair, file: Path) -> Path:
+    """Draw the curves into a picture or a page."""
+    from functools import partial
+
+    from solidgear.report.sweep_chart import sweep_chart, sweep_table
+    from solidgear.report.train_sheet import write_sheet
+    from solidgear.report.units import ENGINEERING
+
+    assert found.curves is not None  # or the sweep would have been refused
+    title = f"{found.title}: sweep over {found.curves.over}"
+    make = partial(sweep_chart, found.curves, title)
+    if file.suffix.lower() != PAGE:
+        return make().write(file)
+    lead = f"Pinion {pair.pinion}, gear {pair.gear}; rows in {found.path.name}."
+    told = [sweep_table(found.curves)]
+    charts = {"sweep": partial(sweep_chart, found.curves, "", ENGINEERING)}
+    return write_sheet(file, title, lead, told, charts=charts, cautions=found.cautions)

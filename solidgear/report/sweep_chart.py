@@ -1,0 +1,172 @@
+"""Curves of a sweep of a train over the number that varies, and their table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from solidgear.report.panel import Axis, Panel, Series, readout
+from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
+from solidgear.report.table import NUMBER, Column, Table, text
+from solidgear.report.train_chart import COLOURS
+from solidgear.report.units import ENGINEERING, Units, plain
+
+#: px; names at the right ends of curves, and the least distance of two
+NAMES, APART = 150.0, 13.0
+#: natural frequencies in the table of a train without operating points
+MOVING = 4
+#: of the largest value of a column
+ROUNDING = 1e-9
+#: colour of curves that their names tell apart
+LINE = "#00805e"
+
+
+def sweep_chart(found: Any, title: str, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
+    """Natural frequencies over the number that varies, and what else the rows tell.
+
+    Parameters
+    ----------
+    found : Curves
+    title : str
+    units : Units, optional
+    width : float
+        px.
+    """
+    lengths = [one for one in found.misalignment if one.unit == "m moved"]
+    angles = [one for one in found.misalignment if one.unit != "m moved"]
+    first = _panel(
+        found, found.frequencies, "natural frequency", units, 380.0, named=width > NARROW
+    )
+    others = [
+        _panel(found, found.peak_force, "largest mesh force", units),
+        _panel(found, lengths, "misalignment", units),
+        _panel(found, angles, "misalignment", units),
+        _panel(found, found.radial, "radial load of bearings", units),
+        _panel(found, found.axial, "axial load of bearings", units),
+    ]
+    panels = [panel for panel in others if panel is not None]
+    rows = [[first]] if first is not None else []
+    return Chart(rows + in_columns(panels, 2 if width > NARROW else 1), width, title)
+
+
+def sweep_table(found: Any, units: Units = ENGINEERING) -> Table:
+    """What the rows tell of the operating point and of the largest peak of the mesh force.
+
+    Parameters
+    ----------
+    found : Curves
+    units : Units, optional
+    """
+    columns = [text("point", lambda k: found.labels[k])] if found.labels else []
+    last = found.over.rpartition(".")[2]
+    columns.append(
+        Column(f"{last}\n{found.unit or 'SI'}", lambda k: f"{found.x[k]:.6g}", kind=NUMBER)
+    )
+    told = [*found.mesh_force, *found.misalignment] or _moving_most(found.frequencies)
+    columns += [_column(one.name, one, units) for one in told]
+    for hz, force in zip(found.peak_hz, found.peak_force):
+        peak = [_column("peak", hz, units), _column("peak", force, units)]
+        columns += [*peak, text("mode", partial(_said, hz))]
+    notes = ["Peak: largest of the mesh force."] if found.peak_hz else []
+    if told and told[0] in found.frequencies:
+        notes.append("f and a number: natural frequencies, those that change most.")
+    return Table(f"Over {found.over}", columns, range(len(found.x)), " ".join(notes), style="bare")
+
+
+def _moving_most(frequencies: Sequence[Any]) -> list[Any]:
+    """Natural frequencies that change most, in their order."""
+    change = [np.nanmax(one.values) / np.nanmin(one.values) for one in frequencies]
+    return [frequencies[k] for k in sorted(np.argsort(change)[::-1][:MOVING])]
+
+
+def _column(head: str, one: Any, units: Units) -> Column:
+    write = partial(units.number, si=one.unit, digits=4)
+    # what is next to nothing beside the others is rounding
+    least = ROUNDING * float(np.nanmax(np.abs(one.values)))
+    values = np.where(np.abs(one.values) < least, 0.0, one.values).tolist()
+    return Column(f"{head}\n{units.unit(one.unit)}", values.__getitem__, write)
+
+
+def _said(one: Any, k: int) -> str | None:
+    return one.words[k] or None
+
+
+def _over(found: Any) -> str:
+    return f"{found.over}, {found.unit}" if found.unit else found.over
+
+
+def _panel(
+    found: Any,
+    lines: Sequence[Any],
+    what: str,
+    units: Units,
+    height: float = 230.0,
+    named: bool = False,
+) -> Panel | None:
+    """Curves of one unit; None where there is none. Named ones have their words at their ends, the
+    others a legend where there are several.
+    """
+    if not lines:
+        return None
+    unit = units.unit(lines[0].unit)
+    if len(lines) == 1 and not lines[0].words:
+        what = f"{what} {lines[0].name}"
+    values = [units.values(one.values, one.unit) for one in lines]
+    several = len(lines) > 1 and not lines[0].words
+    series = {one.name: Series(COLOURS[k % len(COLOURS)]) for k, one in enumerate(lines)}
+    panel = Panel(
+        Axis(_over(found), _ends(found.x, 0.0, found.log), log=found.log),
+        Axis(f"{what} in {unit}", _ends(np.concatenate(values), 0.06)),
+        height,
+        series=series if several else {},
+        legend={"orient": "top", "columns": 4, "symbolType": "stroke", "symbolStrokeWidth": 3},
+        right=NAMES if named else 8.0,
+    )
+    for one, y in zip(lines, values):
+        look = {"name": one.name} if several else {}
+        colour = series[one.name].colour if several else LINE
+        line: dict[str, Any] = {"type": "line", "point": {"size": 14}}
+        line |= {} if several else {"color": LINE}
+        # a curve is broken where a variant was refused
+        parts = zip(found.x.tolist(), y.tolist(), np.cumsum(~np.isfinite(y)).tolist())
+        panel.draw(line, [{"x": a, "y": b, "detail": part, **look} for a, b, part in parts])
+        panel.read(_places(found, one, y, what, unit), colour)
+    if named:
+        _names(panel, found, lines, values)
+    return panel
+
+
+def _places(found: Any, one: Any, y: np.ndarray, what: str, unit: str) -> list[dict[str, Any]]:
+    """Words on every place of a curve."""
+    rows = []
+    for k, (a, b) in enumerate(zip(found.x.tolist(), y.tolist())):
+        named = found.labels[k] if found.labels else one.name
+        said = one.words[k] if one.words else one.name
+        facts = (found.over, f"{a:.6g}", found.unit), (what, plain(b, 5), unit), ("mode", "", "")
+        rows.append({"x": a, "y": b, "readout": readout(said or named, *facts)})
+    return rows
+
+
+def _names(panel: Panel, found: Any, lines: Sequence[Any], values: Sequence[np.ndarray]) -> None:
+    """Words of the last place of each curve beside it; one that would lie on another is left out."""
+    low, high = panel.y.ends
+    step = APART * (high - low) / panel.height
+    rows, last = [], -np.inf
+    for one, y in zip(lines, values):
+        if np.isfinite(y[-1]) and y[-1] >= last + step:
+            last = float(y[-1])
+            rows.append({"x": float(found.x[-1]), "y": last, "text": one.words[-1]})
+    look = {"type": "text", "align": "left", "baseline": "middle", "dx": 6, "fontSize": 10}
+    panel.draw(look, rows)
+
+
+def _ends(values: np.ndarray, room: float, log: bool = False) -> tuple[float, float]:
+    """Ends of an axis that holds all values."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    more = room * (high - low) if high > low else 0.5 * abs(high) or 1.0
+    if log:
+        return (low, high) if high > low else (low / 2, high * 2)
+    return (low - more if low < 0 else max(low - more, 0.0)), high + more

@@ -1,0 +1,174 @@
+"""Paths of entries of a scene or train file: ``bearing.A.seat_width``, ``mesh.stiffness``.
+
+A path names keys of tables with dots between. In a list of tables the name of one stands for it, or
+its number, counted from one; the only one of a list may go without. In a list of numbers a number
+stands for its place. A key that the file does not hold is one that the format may know: whoever
+reads the changed tables tells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from solidgear.errors import SceneError, listed, nearest
+
+Tables = Mapping[str, Any]
+#: keys and places from the root of a file to an entry
+Keys = tuple[str | int, ...]
+
+
+def keys_of(path: str, tables: Tables) -> Keys:
+    """Keys and places that a path stands for.
+
+    Parameters
+    ----------
+    path : str
+    tables : mapping
+        Of a file, as they are written.
+
+    Raises
+    ------
+    SceneError
+        For a name or number that a list does not have, or a path that ends at a table.
+
+    Examples
+    --------
+    >>> tables = {"bearing": [{"name": "A", "position": "15 mm"}, {"name": "B"}]}
+    >>> keys_of("bearing.A.position", tables), keys_of("bearing.2.seat_width", tables)
+    (('bearing', 0, 'position'), ('bearing', 1, 'seat_width'))
+    """
+    keys: list[str | int] = []
+    here: Any = tables
+    rest = path
+    while rest:
+        if isinstance(here, list):
+            place, rest = _place_in(here, rest, ".".join(map(str, keys)))
+            keys.append(place)
+        elif isinstance(here, Mapping) and keys and _is_own(here, rest):
+            rest = _after(rest, _word(rest))
+            continue
+        elif isinstance(here, Mapping) or here is None:
+            word = _first(rest, here or {}) or _word(rest)
+            rest = _after(rest, word)
+            keys.append(word)
+        else:
+            said = f"is no table with a {_word(rest)}"
+            raise SceneError(said, field=label_of(tuple(keys), tables))
+        here = _child(here, keys[-1])
+    if isinstance(here, list) and len(here) == 1 and isinstance(here[0], Mapping):
+        here = here[0]
+    if isinstance(here, (Mapping, list)):
+        within = here if isinstance(here, Mapping) else _names(here)
+        said = f"is no single entry; add one of {listed(within)}"
+        raise SceneError(said, field=label_of(tuple(keys), tables))
+    return tuple(keys)
+
+
+def label_of(keys: Keys, tables: Tables) -> str:
+    """The path of an entry with names where it has names.
+
+    Examples
+    --------
+    >>> label_of(("bearing", 0, "position"), {"bearing": [{"name": "A"}]})
+    'bearing.A.position'
+    """
+    out, here = [], tables
+    for key in keys:
+        here = _child(here, key)
+        name = _name(here) if isinstance(key, int) else key
+        out.append(name or str(int(key) + 1))
+    return ".".join(out)
+
+
+def entry(keys: Keys, tables: Tables) -> Any:
+    """What a file holds at an entry; None where it holds nothing."""
+    here: Any = tables
+    for key in keys:
+        here = _child(here, key)
+    return here
+
+
+def changed(tables: Any, keys: Keys, value: Any) -> Any:
+    """Tables with one entry replaced, and tables made on the way to it; those given stay as they
+    are.
+
+    Examples
+    --------
+    >>> changed({"losses": {"mesh": 0.1}}, ("losses", "shafts"), 0.02)
+    {'losses': {'mesh': 0.1, 'shafts': 0.02}}
+    """
+    if not keys:
+        return value
+    first, *rest = keys
+    if isinstance(first, int):
+        out = list(tables)
+        out[first] = changed(out[first], tuple(rest), value)
+        return out
+    table = tables if isinstance(tables, Mapping) else {}
+    return {**table, first: changed(table.get(first), tuple(rest), value)}
+
+
+def entries(tables: Any, before: Keys = ()) -> Iterator[Keys]:
+    """Keys of every entry of a file that is no table."""
+    if isinstance(tables, Mapping):
+        for key, value in tables.items():
+            yield from entries(value, (*before, key))
+    elif isinstance(tables, list):
+        for k, value in enumerate(tables):
+            yield from entries(value, (*before, k))
+    else:
+        yield before
+
+
+def _place_in(things: list, rest: str, where: str) -> tuple[int, str]:
+    """Place of a thing in a list, and what is left of the path."""
+    names = _names(things)
+    for k in sorted(range(len(names)), key=lambda k: -len(names[k])):
+        if _name(things[k]) and _begins(rest, names[k]):
+            return k, _after(rest, names[k])
+    word = _word(rest)
+    if word.isdecimal() and 1 <= int(word) <= len(things):
+        return int(word) - 1, _after(rest, word)
+    if len(things) == 1 and isinstance(things[0], Mapping):
+        return 0, rest
+    raise SceneError(f"there is no {where}.{word}{nearest(word, names)}; there are {listed(names)}")
+
+
+def _names(things: list) -> list[str]:
+    """Names of things in a list, or their numbers."""
+    return [_name(thing) or str(k) for k, thing in enumerate(things, start=1)]
+
+
+def _is_own(table: Mapping[str, Any], rest: str) -> bool:
+    """True where a path names a table that is alone as if it were one of a list."""
+    word = _word(rest)
+    return word not in table and word in (_name(table), "1") and rest != word
+
+
+def _first(rest: str, table: Mapping[str, Any]) -> str:
+    """The longest key of a table that a path begins with; empty for none."""
+    return max((key for key in table if _begins(rest, key)), key=len, default="")
+
+
+def _begins(rest: str, name: str) -> bool:
+    return rest == name or rest.startswith(f"{name}.")
+
+
+def _word(rest: str) -> str:
+    return rest.partition(".")[0]
+
+
+def _after(rest: str, word: str) -> str:
+    return rest[len(word) + 1 :]
+
+
+def _name(thing: Any) -> str:
+    name = thing.get("name") if isinstance(thing, Mapping) else None
+    return name if isinstance(name, str) else ""
+
+
+def _child(here: Any, key: str | int) -> Any:
+    if isinstance(here, Mapping):
+        return here.get(key)
+    return here[key] if isinstance(here, list) and isinstance(key, int) else None

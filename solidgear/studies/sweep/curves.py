@@ -1,0 +1,168 @@
+"""Rows of a sweep as curves over the one number that varies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from solidgear.errors import SolidgearError, listed
+from solidgear.scene.train import Train
+from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.train_task import misaligned
+from solidgear.studies.sweep.train_variants import POINT
+from solidgear.studies.train.misalignment import measured_names
+
+#: units of misalignment that are angles; the others are lengths
+UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One number of every row.
+
+    Attributes
+    ----------
+    name : str
+    unit : str
+        SI; ``m moved`` and ``rad moved`` are motions.
+    values : (n,) ndarray
+        Not a number where a row has none.
+    words : tuple of str
+        What is said of each value, such as the name of its mode; empty where nothing is.
+    """
+
+    name: str
+    unit: str
+    values: np.ndarray
+    words: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Curves over one number.
+
+    Attributes
+    ----------
+    over, unit : str
+        What varies, and in which unit it is told; an empty one is SI.
+    log : bool
+    x : (n,) ndarray
+        Ascending.
+    labels : tuple of str
+        Names of the rows where they have some, such as operating points.
+    frequencies, misalignment : list of Curve
+    radial, axial : list of Curve
+        Loads of bearings.
+    mesh_force, peak_hz, peak_force : list of Curve
+        One each, or none; of the largest peak of the mesh force.
+    """
+
+    over: str
+    unit: str
+    log: bool
+    x: np.ndarray
+    labels: tuple[str, ...]
+    frequencies: list[Curve]
+    mesh_force: list[Curve]
+    misalignment: list[Curve]
+    radial: list[Curve]
+    axial: list[Curve]
+    peak_hz: list[Curve]
+    peak_force: list[Curve]
+
+    @property
+    def empty(self) -> bool:
+        """True where no variant could be solved."""
+        lists = self.frequencies, self.misalignment, self.radial, self.axial, self.peak_force
+        return not any(lists)
+
+
+def varied_number(varied: Sequence[Entry]) -> Entry:
+    """The one entry whose values curves go over.
+
+    Raises
+    ------
+    SolidgearError
+        If there are several, or its values are words.
+    """
+    several = [one for one in varied if len(one.values) > 1]
+    if len(several) != 1:
+        named = listed(one.label for one in several) or "none"
+        raise SolidgearError(
+            f"a chart has curves over one number that varies, and here vary: {named}; leave --chart "
+            "out, or give one of them several values and the others one"
+        )
+    one = several[0]
+    if one.label != POINT and not one.numeric:
+        raise SolidgearError(f"a chart has curves over a number, and {one.label} varies by words")
+    return one
+
+
+def curves(columns: Mapping[str, list[Any]], one: Entry, train: Train) -> Curves:
+    """Curves of a finished sweep.
+
+    Parameters
+    ----------
+    columns : mapping of str to list
+        Values of all rows by the names of columns.
+    one : Entry
+        What varies; of operating points curves go over their torque.
+    train : Train
+        Any of its variants.
+    """
+    of_points = one.label == POINT
+    x = _numbers(columns["torque" if of_points else one.label])
+    order = np.argsort(x, kind="stable")
+    order = order[np.isfinite(x[order])]
+    unit = "N m" if of_points else one.shown_in
+    size = None if of_points or not unit else in_si(f"1 {unit}")
+
+    def told(name: str, column: str, si: str, *words: str) -> list[Curve]:
+        """The curve of a column; none where no row has a value."""
+        values = _numbers(columns.get(column, []))
+        if not np.isfinite(values).any():
+            return []
+        said = zip(*([columns[word][k] for k in order] for word in words))
+        texts = tuple(", ".join(str(v) for v in row if v is not None) for row in said)
+        return [Curve(name, si, values[order], texts)]
+
+    modes = [column for column in columns if re.fullmatch(r"f\d+_hz", column)]
+    radial, axial = (
+        [
+            curve
+            for column in columns
+            if column.endswith(ending)
+            for curve in told(column.removesuffix(ending), column, "N")
+        ]
+        for ending in (".radial", ".axial")
+    )
+    return Curves(
+        over="torque" if of_points else one.label,
+        unit=unit,
+        log=one.spacing == "log",
+        x=x[order] / (size or 1.0),
+        labels=tuple(str(columns[POINT][k]) for k in order) if of_points else (),
+        frequencies=[
+            curve
+            for column in modes
+            for curve in told(column[:-3], column, "Hz", f"mode{column[1:-3]}")
+        ],
+        mesh_force=told("mesh force", "mesh_force", "N"),
+        misalignment=[
+            curve
+            for name in measured_names(train)
+            for curve in told(name, misaligned(name), UNITS.get(name, "m moved"))
+        ],
+        radial=radial,
+        axial=axial,
+        peak_hz=told("largest peak", "peak1_hz", "Hz", "peak1_mode"),
+        peak_force=told("largest peak", "peak1_force", "N", "peak1_mode"),
+    )
+
+
+def _numbers(values: Sequence[Any]) -> np.ndarray:
+    return np.array([np.nan if v is None else float(v) for v in values], float)

@@ -1,0 +1,288 @@
+"""Run a sweep of a train: bodies once for all variants that share them, row by row."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.models.limits import number
+from solidgear.scene.toml_file import parse
+from solidgear.scene.train import SIDES, Train
+from solidgear.studies.sweep.curves import Curves, curves, varied_number
+from solidgear.studies.sweep.rows import RowFile, tell_in_log
+from solidgear.studies.sweep.train_task import ASKED, MOST_MODES, TrainTask
+from solidgear.studies.sweep.train_variants import OWN, TrainVariants, train_variants
+from solidgear.studies.sweep.workers import workers
+from solidgear.studies.train.contact import contact
+from solidgear.studies.train.models import KEPT
+from solidgear.studies.train.shaft import checked_rung
+
+#: most natural frequencies of a row
+MOST_SHAPES = 200
+#: rows that curves are made of
+MOST_CURVED = 5000
+#: variants that are sent to another process at once
+SENT = 8
+
+
+@dataclass(frozen=True)
+class TrainSummary:
+    """Account of a sweep of a train.
+
+    Attributes
+    ----------
+    path : Path
+    total, skipped, refused : int
+        Variants; of these: rows that were there before, and refused ones.
+    why : str
+        Why the first of the refused ones is none; empty if none is refused.
+    bodies : int or None
+        Shafts that were meshed and reduced; None where other processes did.
+    seconds : float
+        Wall seconds of this run.
+    cut : int
+        Natural frequencies up to the highest frequency that the widest row has and no column holds.
+    repairs : tuple of str
+        What was found damaged in the files and how it was mended, a sentence each.
+    curves : Curves or None
+        The rows as curves, where one number varies.
+    title : str
+        Of the train.
+    cautions : tuple of str
+        What does not fit together in it but can be solved, of the first variant.
+    """
+
+    path: Path
+    total: int
+    skipped: int
+    refused: int = 0
+    why: str = ""
+    bodies: int | None = 0
+    seconds: float = 0.0
+    cut: int = 0
+    repairs: tuple[str, ...] = ()
+    curves: Curves | None = None
+    title: str = ""
+    cautions: tuple[str, ...] = ()
+
+
+def sweep_train(
+    train: Path | str,
+    vary_texts: Iterable[str],
+    out: Path | str,
+    *,
+    pinion: str = "harmonic",
+    gear: str = "harmonic",
+    ask: Iterable[str] = ASKED,
+    n: int | None = None,
+    max_frequency: float | None = None,
+    point: str | None = None,
+    every_point: bool = False,
+    sample: int | None = None,
+    seed: int = 0,
+    reduction: str = "rubin",
+    kept: int = KEPT,
+    local_harmonics: Sequence[int] = (),
+    settings: Mapping[Any, Mapping] | None = None,
+    jobs: int = 1,
+    dask: str | None = None,
+    overwrite: bool = False,
+    charted: bool = False,
+    progress: Callable[[int, int, str], None] = lambda done, total, text: None,
+    tell: Callable[[str], None] = tell_in_log,
+) -> TrainSummary:
+    """Natural frequencies, mesh force and misalignment of many variants of a train, as rows of a
+    file.
+
+    Parameters
+    ----------
+    train : path
+        Of the train file.
+    vary_texts : iterable of str
+        ``PATH=VALUES``, see :mod:`solidgear.studies.sweep.entries`: any number or word of the train
+        file, or of the scene of a side, such as ``pinion.bearing.2.position=140 mm:160 mm:5``. The
+        change is made to the tables of the file, and every rule of the file applies.
+    out : path
+        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
+        again.
+    pinion, gear : str
+        Models of both shafts, as of ``system-modes``.
+    ask : iterable of str
+        Some of ``system-modes``, ``response`` and ``deflect``: what a row tells, all by default.
+    n : int, optional
+        Elastic modes of a row; those up to the highest frequency by default.
+    max_frequency : float, optional
+        Hz; that of the file by default.
+    point : str, optional
+        Operating point that is looked at, by its name or number; the first by default, or the one
+        that varies.
+    every_point : bool
+        A row for each operating point of the file.
+    sample, seed : int, optional
+        Draw so many points of a Latin hypercube instead of taking all combinations.
+    reduction, kept, settings
+        As of :class:`solidgear.studies.train.models.Workshop`.
+    local_harmonics : sequence of int
+        In place of those of the file.
+    charted : bool
+        Refuse at once what no curves can be drawn of.
+    jobs : int
+        Processes on this machine (joblib), at most eight for each processor.
+    dask : str, optional
+        Address of a Dask scheduler, whose workers have solidgear installed.
+    overwrite : bool
+        Discard rows that are there.
+    progress : callable
+        Called with rows that are there, rows in all, and what is being done.
+    tell : callable
+        Called with a sentence for every damage to the files that was found and mended.
+
+    Returns
+    -------
+    TrainSummary
+
+    Raises
+    ------
+    SolidgearError
+        A path or a value that no variant can have, and a file that belongs to another sweep, is
+        being written by one or cannot be written. A variant that the files' rules refuse, or that
+        finds no equilibrium, is no error: its row says why.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> out = Path(tempfile.mkdtemp()) / "rows.csv"
+    >>> vary = ["mesh.stiffness=2e8 N/m:3e8 N/m:3"]
+    >>> found = sweep_train("geometry/axle_overhung.toml", vary, out, pinion="euler", gear="rigid")
+    >>> found.total, found.refused, found.bodies  # the gear's is a harmonic solid, for its mass
+    (3, 0, 2)
+    """
+    start = time.perf_counter()
+    asked = _asked(ask)
+    for model in (pinion, gear):
+        checked_rung(model)
+    if n is not None:
+        number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
+    number("sweep", "jobs", jobs, least=1, whole=True)
+    variants = train_variants(
+        Path(train), vary_texts, count=sample, seed=seed, point=point, every_point=every_point
+    )
+    if local_harmonics:
+        variants = variants.with_entry(OWN, ("mesh", "local_harmonics"), list(local_harmonics))
+    if charted:
+        varied_number(variants.entries)
+        if len(variants) > MOST_CURVED:
+            raise SolidgearError(
+                f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
+            )
+    how = reduction, kept, dict(settings or {})
+    task = TrainTask(variants, pinion, gear, asked, n, max_frequency, *how)
+    team = workers(jobs, dask)
+    first = variants.first_sound()
+    usual = variants.train(first)
+    columns = task.columns(usual)
+    plan = _plan(task, first, usual, sample, seed)
+    repairs: list[str] = []
+
+    def mended(text: str) -> None:
+        repairs.append(text)
+        tell(text)
+
+    total = len(variants)
+    with RowFile(Path(out), columns, plan, total, overwrite, mended) as file:
+        found = TrainSummary(file.path, total, len(file.done), title=usual.title or usual.name)
+        found = replace(found, cautions=contact(usual).cautions)
+        todo = variants.in_turn(k for k in range(total) if k not in file.done)
+        progress(len(file.done), total, "solving")
+        size = 1 if jobs == 1 and dask is None else max(1, min(SENT, len(todo) // (4 * jobs)))
+        parts = [todo[k : k + size] for k in range(0, len(todo), size)]
+        for rows in team(lambda: task, parts):
+            file.append(rows)
+            progress(len(file.done), total, "solving")
+        file.finish()
+        found = _counted(found, file.by_column(), task, usual)
+    bodies = task.bench.made if jobs == 1 and dask is None else None
+    seconds = time.perf_counter() - start
+    return replace(found, bodies=bodies, seconds=seconds, repairs=tuple(repairs))
+
+
+def _asked(ask: Iterable[str]) -> tuple[str, ...]:
+    """What rows tell, in the usual order."""
+    given = list(ask)
+    for word in given:
+        if word not in ASKED:
+            raise SolidgearError(
+                f"--ask {show(word, 40)}: a row tells what {', '.join(ASKED)} tell"
+                f"{nearest(word, ASKED)}"
+            )
+    if not given:
+        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
+    return tuple(word for word in ASKED if word in given)
+
+
+def _counted(
+    found: TrainSummary, columns: dict[str, list[Any]], task: TrainTask, usual: Train
+) -> TrainSummary:
+    """The account of all rows, and their curves where one number varies."""
+    whys = [status for status in columns["status"] if status != "ok"]
+    widest = max((count for count in columns.get("modes", []) if count), default=0)
+    drawn = None
+    if found.total <= MOST_CURVED:
+        with suppress(SolidgearError):
+            drawn = curves(columns, varied_number(task.variants.entries), usual)
+    cut = max(0, widest - MOST_MODES) if task.n is None else 0
+    return replace(found, refused=len(whys), why=next(iter(whys), ""), cut=cut, curves=drawn)
+
+
+def _plan(
+    task: TrainTask, first: int, usual: Train, sample: int | None, seed: int
+) -> dict[str, Any]:
+    """What rows depend on, told by the files of one variant."""
+    from solidgear import __version__
+
+    variants = task.variants
+    files = {name or "train": _plain(t) for name, t in variants.tables(first).items()}
+    # what these files name
+    cells = [cell.model_dump() for cell in usual.mesh.contact_cells]
+    parts = [usual.member(side).scene.body for side in SIDES]
+    named = {"cells": cells, "parts": [part and part.model_dump(mode="json") for part in parts]}
+    settings = {" ".join(key): dict(own) for key, own in task.settings.items()}
+    return {
+        **files,
+        **named,
+        "scenes": {word: _plain(tables) for word, tables in _in_turn(variants)},
+        "vary": {
+            one.label: [one.spacing, one.unit, *(one.words or one.values)]
+            for one in variants.entries
+        },
+        "point": variants.point,
+        "sample": None if sample is None else {"points": sample, "seed": seed},
+        "models": [task.pinion, task.gear],
+        "n": task.n,
+        "max_frequency": task.max_frequency,
+        "reduction": [task.reduction, task.kept],
+        "set": _plain(settings),
+        "version": __version__,
+    }
+
+
+def _in_turn(variants: TrainVariants) -> Iterator[tuple[str, Any]]:
+    """Tables of the scenes that a side has in turn, by the names of their files."""
+    for one in variants.entries:
+        if one.file == OWN and one.keys[-1] == "scene":
+            for word in one.words:
+                yield str(word), parse(str(variants.path.parent / str(word)))
+
+
+def _plain(data: Any) -> Any:
+    """Data for JSON, without what no number depends on."""
+    if isinstance(data, Mapping):
+        return {k: _plain(v) for k, v in data.items() if k not in ("title", "source", "note")}
+    if isinstance(data, (list, tuple)):
+        return [_plain(one) for one in data]
+    return data if isinstance(data, (str, int, float, type(None))) else str(data)

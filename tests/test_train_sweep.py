@@ -1,0 +1,391 @@
+"""Sweeps of a train: rows against the same files edited by hand, what is kept from row to row, what
+is refused, and stops.
+"""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command import command
+
+import solidgear as sg
+from solidgear.errors import SolidgearError
+from solidgear.scene.paths import changed, keys_of, label_of
+from solidgear.scene.toml_file import parse
+from solidgear.studies.sweep import train_run as runner
+from solidgear.studies.sweep.train_run import sweep_train
+from solidgear.studies.train.deflection import deflection
+from solidgear.studies.train.misalignment import measured_names
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.operation import at_point
+from solidgear.studies.train.respond import respond
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+GEARBOX, AXLE = GEOMETRY / "gearbox_train.toml", GEOMETRY / "axle_overhung.toml"
+BEAMS = {"pinion": "timoshenko", "gear": "timoshenko"}
+LIGHT = {**BEAMS, "max_frequency": 1500.0}
+MODES, AT_REST = ["system-modes"], ["deflect"]
+
+
+def swept(train, vary, out, **how):
+    """Account and rows of a sweep, numbers as numbers."""
+    found = sweep_train(train, vary, out, **{**LIGHT, **how})
+    return found, rows_of(out)
+
+
+def rows_of(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return [{k: _plain(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+
+def _plain(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def by_hand(folder, file, *edits):
+    """Copy of the shipped files with texts replaced in some of them; the file of the train."""
+    for source in GEOMETRY.glob("*.toml"):
+        text = source.read_text()
+        for name, old, new in edits:
+            if source.name == name:
+                assert text.count(old) == 1, (name, old)
+                text = text.replace(old, new)
+        (folder / source.name).write_text(text)
+    return folder / file.name
+
+
+# ---------------------------------------------------------------------------------- what rows say
+def test_a_row_is_what_the_same_files_edited_by_hand_give(tmp_path):
+    vary = [
+        "operation.full.torque=60 N*m,140 N*m",
+        "mesh.stiffness=log:2e8 N/m:4e8 N/m:2",
+        "pinion.bearing.A.position=15 mm,16.5 mm",
+        "gear.segment.right.diameter=50 mm:52 mm:2",
+    ]
+    found, rows = swept(GEARBOX, vary, tmp_path / "rows.csv", max_frequency=None)
+    assert (found.total, found.refused) == (16, 0)
+    (row,) = (r for r in rows if list(r.values())[1:5] == [140.0, 4e8, 0.0165, 0.05])
+    path = by_hand(
+        tmp_path,
+        GEARBOX,
+        ("gearbox_train.toml", 'torque = "115 N*m"', 'torque = "140 N*m"'),
+        ("gearbox_train.toml", 'stiffness = "3.2e8 N/m"', 'stiffness = "4e8 N/m"'),
+        ("gearbox_catalogue.toml", 'position = "15 mm"', 'position = "16.5 mm"'),
+        ("gearbox_wheel.toml", 'diameter = "52 mm"', 'diameter = "50 mm"'),
+    )
+    train = sg.load_train(path)
+    shop = Workshop(train)
+    modes = [mode for mode in train_modes(shop, *BEAMS.values()).modes if mode.frequency_hz > 0]
+    assert row["modes"] == len(modes) and row["rigid_modes"] == 1
+    # the same operations on the same numbers; the tangents of bearings are found to 1e-9
+    swept_hz = [row[f"f{k}_hz"] for k in range(1, len(modes) + 1)]
+    np.testing.assert_allclose(swept_hz, [mode.frequency_hz for mode in modes], rtol=1e-8)
+    assert [row[f"mode{k}"] for k in range(1, len(modes) + 1)] == [mode.name for mode in modes]
+    assert row[f"f{len(modes) + 1}_hz"] == ""
+    tops = sorted(respond(shop, *BEAMS.values()).peaks, key=lambda top: -top.force)
+    for k, top in enumerate(tops[:3], start=1):
+        assert row[f"peak{k}_hz"] == pytest.approx(top.frequency_hz, rel=1e-8)
+        assert row[f"peak{k}_force"] == pytest.approx(top.force, rel=1e-6)
+        assert row[f"peak{k}_mode"] == top.mode
+    still = deflection(shop, train.operation[0], *BEAMS.values())
+    assert row["mesh_force"] == pytest.approx(still.mesh_force, rel=1e-12)
+    assert [one.name for one in still.misalignment] == list(measured_names(train))
+    for one in still.misalignment:
+        column = f"misalignment_{one.name.replace(' ', '_')}"
+        assert row[column] == pytest.approx(one.value, rel=1e-6, abs=1e-12)
+    for shaft in still.shafts:
+        for bearing in shaft.bearings:
+            told = [row[f"{shaft.name}.{bearing.name}.{w}"] for w in ("radial", "axial", "moment")]
+            own = bearing.radial, bearing.load[1], bearing.moment
+            np.testing.assert_allclose(told, own, rtol=1e-6, atol=1e-6)
+
+
+def test_the_bound_of_a_row_is_the_largest_of_its_frequencies(tmp_path):
+    how = {"reduction": "craig_bampton", "kept": 8, "n": 9, "ask": MODES, "max_frequency": None}
+    _, (row,) = swept(AXLE, ["mesh.stiffness=2.5e8 N/m"], tmp_path / "rows.csv", **how)
+    modes = train_modes(Workshop(sg.load_train(AXLE), "craig_bampton", 8), *BEAMS.values()).modes[
+        1:
+    ]
+    largest = max(mode.bound for mode in modes[:9])
+    assert row["error_bound"] == pytest.approx(largest, rel=1e-6) and largest > 1e-8
+    assert row["modes"] == len(modes) > 9 and "f10_hz" not in row
+
+
+def test_every_operating_point_has_a_row_that_is_the_train_at_that_point(tmp_path):
+    _, rows = swept(GEARBOX, [], tmp_path / "rows.csv", every_point=True, ask=MODES + AT_REST)
+    assert [(row["point"], row["torque"]) for row in rows] == [("full", 115.0), ("coast", -30.0)]
+    train = at_point(sg.load_train(GEARBOX), "coast")
+    shop = Workshop(train)
+    modes = train_modes(shop, *BEAMS.values(), 1500.0).modes
+    own = [mode.frequency_hz for mode in modes if mode.frequency_hz > 0]
+    np.testing.assert_allclose(
+        [rows[1][f"f{k}_hz"] for k in range(1, len(own) + 1)], own, rtol=1e-8
+    )
+    assert rows[0]["f3_hz"] != pytest.approx(rows[1]["f3_hz"], rel=1e-3)
+    in_plane = deflection(shop, train.operation[0], *BEAMS.values()).misalignment[0].value
+    assert rows[1]["misalignment_in_plane"] == pytest.approx(in_plane, rel=1e-6)
+
+
+def test_the_point_that_varies_is_the_one_that_is_looked_at(tmp_path):
+    vary = ["operation.coast.torque=-30 N*m,-60 N*m"]
+    _, rows = swept(GEARBOX, vary, tmp_path / "a.csv", ask=AT_REST)
+    assert [row["torque"] for row in rows] == [-30.0, -60.0]
+    _, rows = swept(GEARBOX, vary, tmp_path / "b.csv", ask=AT_REST, point="full")
+    assert [row["torque"] for row in rows] == [115.0, 115.0]
+    both = [*vary, "operation.full.torque=1,2"]
+    with pytest.raises(SolidgearError, match="several operating points; say by --point"):
+        swept(GEARBOX, both, tmp_path / "c.csv")
+
+
+def test_a_range_has_the_unit_of_its_first_end_in_curves_and_si_in_rows(tmp_path):
+    vary = ["pinion.bearing.2.position=140 mm:0.15 m:3"]
+    found, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES)
+    assert [row["pinion.bearing.2.position"] for row in rows] == [0.14, 0.145, 0.15]
+    curves = found.curves
+    assert (curves.over, curves.unit) == ("pinion.bearing.2.position", "mm")
+    assert curves.x.tolist() == [140.0, 145.0, 150.0]
+    assert curves.frequencies[0].values.tolist() == [row["f1_hz"] for row in rows]
+    assert [*curves.frequencies[0].words] == [row["mode1"] for row in rows]
+
+
+def test_words_vary_as_numbers_do(tmp_path):
+    vary = [
+        'gear.bearing.D.catalogue.designation=6210,6310,"6010"',
+        "gear.bearing.D.catalogue.load_rating=37 kN",
+        "pinion.loaded_side=left,right",
+    ]
+    _, rows = swept(GEARBOX, vary, tmp_path / "rows.csv", ask=AT_REST)
+    assert [row["gear.bearing.D.catalogue.designation"] for row in rows] == [
+        *(6210.0, 6210.0),
+        *(6310.0, 6310.0),
+        *(6010.0, 6010.0),
+    ]
+    assert [row["pinion.loaded_side"] for row in rows] == ["left", "right"] * 3
+    assert {row["status"] for row in rows} == {"ok"}
+    # another flank pushes the axis the other way; a bearing of another series is another spring
+    axial = [row["pinion.B.axial"] for row in rows]
+    assert axial[0] * axial[1] < 0
+    assert len({row["misalignment_in_plane"] for row in rows}) == 6
+
+
+def test_a_file_of_a_shaft_varies_and_its_entries_go_by_their_names(tmp_path):
+    path = by_hand(tmp_path, AXLE)
+    other = (tmp_path / "gear_shaft.toml").read_text()
+    # the same segments in another order of numbers
+    split = other.replace(
+        'name = "shaft"',
+        'name = "hub"\nlength = "1 mm"\ndiameter = "120 mm"\n\n'
+        '[[segment]]\nkind = "cylinder"\nname = "shaft"',
+    ).replace('length = "111 mm"', 'length = "110 mm"')
+    (tmp_path / "hub.toml").write_text(split)
+    vary = ["gear.scene=gear_shaft.toml,hub.toml", "gear.segment.shaft.diameter=120 mm,100 mm"]
+    _, rows = swept(path, vary, tmp_path / "rows.csv", ask=MODES)
+    assert {row["status"] for row in rows} == {"ok"}
+    first = [row["f3_hz"] for row in rows]
+    # a cut through a cylinder changes nothing; where its other half keeps 120 mm, next to nothing
+    assert first[0] == pytest.approx(first[2], rel=1e-5)
+    assert first[1] == pytest.approx(first[3], rel=3e-2) and first[0] > 1.005 * first[1]
+
+
+# ---------------------------------------------------------------------------- what is not done again
+NOT_OF_THE_BODY = (
+    "mesh.stiffness=2e8 N/m,3e8 N/m",
+    "mesh.pressure_angle=20 deg,25 deg",
+    "losses.mesh=0.1,0.2",
+    "engine.spring.stiffness=1e4 N*m/rad,2e4 N*m/rad",
+    "pinion.bearing.1.stiffness.kyy=8e8 N/m,9e8 N/m",
+)
+
+
+def test_what_is_no_part_of_a_body_makes_none(tmp_path):
+    found, rows = swept(AXLE, NOT_OF_THE_BODY, tmp_path / "rows.csv")
+    assert (found.total, found.bodies) == (32, 2)
+    assert len({row["peak1_force"] for row in rows}) > 8
+    moved = [*NOT_OF_THE_BODY[:1], "pinion.bearing.2.position=140 mm,145 mm,150 mm"]
+    found, _ = swept(AXLE, moved, tmp_path / "moved.csv")
+    assert (found.total, found.bodies) == (6, 3 + 1)
+
+
+def test_torques_make_a_body_of_each_shaft_for_each_model_of_it(tmp_path):
+    vary = ["operation.full.torque=20 N*m:200 N*m:4"]
+    how = {"pinion": "euler", "gear": "lumped/euler", "ask": AT_REST}
+    found, rows = swept(GEARBOX, vary, tmp_path / "rows.csv", **how)
+    # bearings settle on Timoshenko shafts, and the rows are told by Euler ones
+    assert (found.total, found.bodies) == (4, 4)
+    assert [row["pinion.B.radial"] for row in rows] == sorted(r["pinion.B.radial"] for r in rows)
+
+
+# ------------------------------------------------------------------------------------- what is refused
+def test_a_refused_variant_says_why_and_the_others_are_solved(tmp_path):
+    vary = ["pinion.bearing.2.position=150 mm,175 mm,900 mm", "losses.mesh=0.1,3"]
+    found, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES)
+    assert found.refused == 5 and found.why == rows[1]["status"]
+    assert rows[0]["status"] == "ok" and rows[0]["f1_hz"] > 0
+    assert "losses.mesh = 3: a loss factor lies between 0 and 1" in rows[1]["status"]
+    for row in rows[2:]:
+        assert "inside the shaft" in row["status"] and row["f1_hz"] == "" == row["modes"]
+
+
+def test_a_load_is_held_against_the_torque_of_its_own_variant(tmp_path):
+    """Whatever was solved before: the [load] of the wheel's scene is the mesh force at 115 N m."""
+    path = by_hand(
+        tmp_path,
+        GEARBOX,
+        ("gearbox_train.toml", 'scene_load = "replaced"\nteeth = 57', "teeth = 57"),
+    )
+    vary = ["operation.full.torque=115 N*m,300 N*m"]
+    _, rows = swept(path, vary, tmp_path / "rows.csv", ask=AT_REST)
+    assert rows[0]["status"] == "ok"
+    assert "the [load] of the gear's scene is" in rows[1]["status"]
+
+
+def test_a_variant_without_equilibrium_is_refused_as_well(tmp_path):
+    """A bearing that holds one way only is pushed out of by the other flank."""
+    path = by_hand(
+        tmp_path,
+        GEARBOX,
+        ("gearbox_catalogue.toml", 'arrangement = "back_to_back"', 'arrangement = "single"'),
+    )
+    vary = ["operation.full.torque=100 N*m,-100 N*m"]
+    _, rows = swept(path, vary, tmp_path / "rows.csv", ask=AT_REST)
+    assert sorted(row["status"] == "ok" for row in rows) == [False, True]
+    (why,) = (row["status"] for row in rows if row["status"] != "ok")
+    assert "pushed out of its bearings" in why
+
+
+@pytest.mark.parametrize(
+    "vary, says",
+    [
+        ("mesh.stifness=1,2", 'unknown key; did you mean "mesh.stiffness"?'),
+        ("pinion.bearings.1.position=1,2", 'did you mean "pinion.bearing.1.position"?'),
+        ("pinion.bearing.2.positon=1 mm:2 mm:3", 'did you mean "pinion.bearing.2.position"?'),
+        ("pinion.bearing.9.position=1,2", "there is no bearing.9; there are 1, 2"),
+        ("pinion.bearing.1.seat_width=10 N,20 N", '"N" is not a unit of length'),
+        ("mesh.stiffness=1 N/m:2 furlong/N2:3", "is no known unit"),
+        ("mesh.stiffness=1 N/m:2:3", "give both ends with a unit, or none"),
+        ("mesh.stiffness=1:2", 'values are "a:b:n"'),
+        ("mesh=1", "mesh: is no single entry; add one of shaft_angle"),
+        ("mesh.stiffness.kxx=1", "mesh.stiffness: is no table with a kxx"),
+        ("mesh.stiffness", "write PATH=VALUES"),
+        ("bearing.1.position=1,2", "pinion.bearing.1.position or gear.bearing.1.position"),
+        ("gear.teeth=44.5", "gear.teeth = 44.5: must be a whole number"),
+    ],
+)
+def test_what_no_variant_can_have_is_refused_at_once(vary, says, tmp_path):
+    with pytest.raises(SolidgearError) as caught:
+        swept(AXLE, [vary], tmp_path / "rows.csv")
+    assert says in str(caught.value) and len(str(caught.value).splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_same_entry_twice_is_refused_by_whatever_name(tmp_path):
+    vary = ["pinion.bearing.2.position=150 mm", "pinion.bearing.2.position=140 mm"]
+    with pytest.raises(SolidgearError, match="is varied already"):
+        swept(AXLE, vary, tmp_path / "rows.csv")
+    point = ["operation.full.torque=1", "operation.1.torque=2"]
+    with pytest.raises(SolidgearError, match="operation.full.torque is varied already"):
+        swept(GEARBOX, point, tmp_path / "rows.csv")
+
+
+# ----------------------------------------------------------------------------------------- stops
+VARY = ["mesh.stiffness=2e8 N/m:3e8 N/m:3", "pinion.bearing.2.position=150 mm,140 mm"]
+
+
+def test_a_stopped_sweep_goes_on_and_gives_the_same_digits(tmp_path):
+    whole, _ = swept(AXLE, VARY, tmp_path / "whole.csv")
+
+    def stop(done, total, text):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        swept(AXLE, VARY, tmp_path / "rows.csv", progress=stop)
+    assert len(rows_of(tmp_path / "rows.csv")) == 2
+    rest, _ = swept(AXLE, VARY, tmp_path / "rows.csv")
+    assert (rest.skipped, rest.total) == (2, whole.total) == (2, 6)
+    assert (tmp_path / "rows.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    again, _ = swept(AXLE, VARY, tmp_path / "rows.csv")
+    assert (again.skipped, again.bodies) == (6, 0)
+    for other in ({"gear": "euler"}, {"max_frequency": 1400.0}, {"ask": MODES}):
+        with pytest.raises(SolidgearError, match=r"another sweep .*--overwrite"):
+            swept(AXLE, VARY, tmp_path / "rows.csv", **other)
+
+
+def test_two_processes_give_the_rows_of_one(tmp_path):
+    pytest.importorskip("joblib")
+    swept(AXLE, VARY, tmp_path / "one.csv", ask=MODES)
+    swept(AXLE, VARY, tmp_path / "two.csv", ask=MODES, jobs=2)
+    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "two.csv").read_bytes()
+
+
+# ------------------------------------------------------------------------------------ paths of a scene
+def test_entries_of_a_scene_go_by_their_paths_as_those_of_a_train_do():
+    tables = parse(str(GEOMETRY / "gearbox_catalogue.toml"))
+    for path, label in {
+        "segment.2.length": "segment.pinion.length",
+        "segment.pinion.length": "segment.pinion.length",
+        "bearing.A.catalogue.designation": "bearing.A.catalogue.designation",
+        "bearing.B.catalogue.conformity.2": "bearing.B.catalogue.conformity.2",
+        "load.x": "load.x",
+        "port.pinion.at": "port.at",
+        "port.position": "port.position",
+        "material.E": "material.E",
+    }.items():
+        assert label_of(keys_of(path, tables), tables) == label
+    wider = changed(tables, keys_of("bearing.A.seat_width", tables), "20 mm")
+    assert [one.get("seat_width") for one in wider["bearing"]] == ["20 mm", "36 mm"]
+    assert tables["bearing"][0]["seat_width"] == "17 mm"
+
+
+# ------------------------------------------------------------------------------------- the command
+def call(tmp_path, *words):
+    beams = ("--pinion", "timoshenko", "--gear", "timoshenko")
+    return command("sweep", *words, *beams, "--out", tmp_path / "rows.csv")
+
+
+@pytest.mark.parametrize("ending", ["svg", "html"])
+def test_the_command_draws_curves_over_one_number(ending, tmp_path):
+    chart = tmp_path / f"curves.{ending}"
+    vary = ("--vary", "operation.full.torque=20 N*m:100 N*m:3", "--chart", chart)
+    done = call(tmp_path, GEARBOX, *vary)
+    assert done.exit_code == 0, done.output
+    assert "2 shafts meshed and reduced" in done.stdout
+    drawn = chart.read_text()
+    assert "operation.full.torque, N*m" in drawn and "radial load of bearings in N" in drawn
+    # words on every place of a curve, in the unit that was asked in
+    assert "operation.full.torque: 60 N*m" in drawn and "gear bending 1" in drawn
+    (row,) = (r for r in rows_of(tmp_path / "rows.csv") if r["operation.full.torque"] == 60)
+    assert "mesh force" in done.stdout and f"{row['mesh_force']:.4g}" in done.stdout
+
+
+def test_the_command_refuses_what_it_cannot_draw_before_anything_is_solved(tmp_path, monkeypatch):
+    monkeypatch.setattr(runner, "RowFile", None)
+    two = ("--vary", "mesh.stiffness=1e8,2e8", "--vary", "losses.mesh=0.1,0.2")
+    for words, says in (
+        ((*two, "--chart", "a.png"), "here vary: mesh.stiffness, losses.mesh"),
+        (("--vary", "pinion.loaded_side=concave,convex", "--chart", "a.png"), "varies by words"),
+        ((*two, "--chart", "a.pdf"), "no picture ends like that"),
+        ((*two, "--ask", "modes"), "a row tells what system-modes, response, deflect tell"),
+        ((*two, "--model", "euler"), "its models are those of --pinion and --gear"),
+        ((*two, "--every-point"), "the file has no operating point"),
+        ((), "nothing is varied"),
+    ):
+        done = call(tmp_path, AXLE, *words)
+        assert done.exit_code == 1 and says in str(done.exception), words
+    shaft = command("sweep", GEOMETRY / "pinion_overhung.toml", "--every-point")
+    assert "--every-point is for a train" in str(shaft.exception)
+
+
+def test_the_command_ends_with_an_error_where_no_variant_finds_its_rest(tmp_path):
+    done = call(
+        tmp_path, AXLE, "--vary", "mesh.stiffness=2e8,3e8", "--max-frequency", "9e5", "--json"
+    )
+    told = json.loads(done.stdout)
+    assert done.exit_code == 1 and told["refused"] == told["total"] == 2
+    assert "beyond what the reduction resolves" in told["why"]
