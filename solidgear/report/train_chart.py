@@ -122,8 +122,8 @@ def columns_chart(
     """
     ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
     models, panels = _models(responses, PAIR), []
-    beside = 2 if width > NARROW else 1
     moving = [c for c in columns if any(np.any(r.columns.get(c[0])) for r in responses)]
+    beside = 2 if width > NARROW and len(moving) > 1 else 1
     for k, (column, title) in enumerate(moving):
         si = column.partition(" [")[2].rstrip("]")
         si = f"{si} moved" if si in ("m", "rad") else si

@@ -4,6 +4,7 @@ self-contained page.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -143,7 +144,9 @@ def _pages(
     """Columns that share a chart: those of a unit or a shaft, and no more than a sheet takes."""
     for group in groups:
         own = [c for c in columns if c[0].startswith(f"{group} ") or c[0].endswith(f" {group}")]
-        yield from (own[k : k + MOST_PANELS] for k in range(0, len(own), MOST_PANELS))
+        charts = math.ceil(len(own) / MOST_PANELS)
+        size = 2 * math.ceil(len(own) / charts / 2) if own else 1  # alike, whole rows of two
+        yield from (own[k : k + size] for k in range(0, len(own), size))
 
 
 def motions(found: Any) -> list[tuple[str, str]]:
