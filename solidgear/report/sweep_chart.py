@@ -145,7 +145,7 @@ def _places(found: Any, one: Any, y: np.ndarray, what: str, unit: str) -> list[d
     for k, (a, b) in enumerate(zip(found.x.tolist(), y.tolist())):
         named = found.labels[k] if found.labels else one.name
         said = one.words[k] if one.words else one.name
-        facts = (found.over, f"{a:.6g}", found.unit), (what, plain(b, 5), unit), ("mode", "", "")
+        facts = (found.over, f"{a:.6g}", found.unit), (what, plain(b, 5), unit)
         rows.append({"x": a, "y": b, "readout": readout(said or named, *facts)})
     return rows
 
