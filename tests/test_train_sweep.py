@@ -398,6 +398,7 @@ def test_the_command_refuses_what_it_cannot_draw_before_anything_is_solved(tmp_p
         ((*two, "--ask", "modes"), "a row tells what system-modes, response, deflect tell"),
         ((*two, "--model", "euler"), "its models are those of --pinion and --gear"),
         ((*two, "--every-point"), "the file has no operating point"),
+        ((*two, "--point", "full"), "axle_overhung has no operating point"),
         ((), "nothing is varied"),
     ):
         done = call(tmp_path, AXLE, *words)
