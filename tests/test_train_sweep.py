@@ -16,6 +16,7 @@ from solidgear.scene.paths import changed, keys_of, label_of
 from solidgear.scene.toml_file import parse
 from solidgear.studies.sweep import train_run as runner
 from solidgear.studies.sweep.train_run import sweep_train
+from solidgear.studies.train import models
 from solidgear.studies.train.deflection import deflection
 from solidgear.studies.train.misalignment import measured_names
 from solidgear.studies.train.models import Workshop
@@ -221,6 +222,28 @@ def test_torques_make_a_body_of_each_shaft_for_each_model_of_it(tmp_path):
     assert [row["pinion.B.radial"] for row in rows] == sorted(r["pinion.B.radial"] for r in rows)
 
 
+def test_harmonics_at_the_teeth_are_found_once_for_a_mesh_point(tmp_path, monkeypatch):
+    made, teeth = [], models.local_teeth
+    monkeypatch.setattr(models, "local_teeth", lambda *of: made.append(of[1]) or teeth(*of))
+    coarse = {(side, "harmonic"): {"order": 2, "layers": 0} for side in ("pinion", "gear")}
+    how = {"pinion": "harmonic", "gear": "harmonic", "settings": coarse, "local_harmonics": (2,)}
+    vary = ["pinion.pitch_radius=67 mm,66 mm", "mesh.stiffness=2e8 N/m,3e8 N/m"]
+    _, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES, **how)
+    assert made == 2 * ["pinion", "gear"]
+    # and they are those of the point: the second radius as in a workshop of its own
+    path = by_hand(
+        tmp_path, AXLE, ("axle_overhung.toml", 'pitch_radius = "67 mm"', 'pitch_radius = "66 mm"')
+    )
+    train = sg.load_train(path)
+    mesh = train.mesh.with_changes(local_harmonics=(2,), stiffness=3e8)
+    shop = Workshop(train.with_changes(mesh=mesh), settings=coarse)
+    (first, *_) = [
+        hz for hz in shop.system("harmonic", "harmonic").modes(4).frequency_hz if hz > 60
+    ]
+    assert rows[3]["f3_hz"] == pytest.approx(first, rel=1e-9)
+    assert rows[1]["f3_hz"] != pytest.approx(first, rel=1e-6)
+
+
 # ------------------------------------------------------------------------------------- what is refused
 def test_a_refused_variant_says_why_and_the_others_are_solved(tmp_path):
     vary = ["pinion.bearing.2.position=150 mm,175 mm,900 mm", "losses.mesh=0.1,3"]
@@ -274,6 +297,7 @@ def test_a_variant_without_equilibrium_is_refused_as_well(tmp_path):
         ("mesh.stiffness.kxx=1", "mesh.stiffness: is no table with a kxx"),
         ("mesh.stiffness", "write PATH=VALUES"),
         ("bearing.1.position=1,2", "pinion.bearing.1.position or gear.bearing.1.position"),
+        ("pinion.pitch_radius=300 mm,400 mm", "no variant can be solved; the first one is"),
         ("gear.teeth=44.5", "gear.teeth = 44.5: must be a whole number"),
     ],
 )
@@ -374,6 +398,7 @@ def test_the_command_refuses_what_it_cannot_draw_before_anything_is_solved(tmp_p
         ((*two, "--ask", "modes"), "a row tells what system-modes, response, deflect tell"),
         ((*two, "--model", "euler"), "its models are those of --pinion and --gear"),
         ((*two, "--every-point"), "the file has no operating point"),
+        ((*two, "--point", "full"), "axle_overhung has no operating point"),
         ((), "nothing is varied"),
     ):
         done = call(tmp_path, AXLE, *words)

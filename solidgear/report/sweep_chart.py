@@ -128,8 +128,8 @@ def _panel(
     for one, y in zip(lines, values):
         look = {"name": one.name} if several else {}
         colour = series[one.name].colour if several else LINE
-        line: dict[str, Any] = {"type": "line", "point": {"size": 14}}
-        line |= {} if several else {"color": LINE}
+        one_colour = {} if several else {"color": LINE}
+        line = {"type": "line", "point": {"size": 14, **one_colour}, **one_colour}
         # a curve is broken where a variant was refused
         parts = zip(found.x.tolist(), y.tolist(), np.cumsum(~np.isfinite(y)).tolist())
         panel.draw(line, [{"x": a, "y": b, "detail": part, **look} for a, b, part in parts])
@@ -145,7 +145,7 @@ def _places(found: Any, one: Any, y: np.ndarray, what: str, unit: str) -> list[d
     for k, (a, b) in enumerate(zip(found.x.tolist(), y.tolist())):
         named = found.labels[k] if found.labels else one.name
         said = one.words[k] if one.words else one.name
-        facts = (found.over, f"{a:.6g}", found.unit), (what, plain(b, 5), unit), ("mode", "", "")
+        facts = (found.over, f"{a:.6g}", found.unit), (what, plain(b, 5), unit)
         rows.append({"x": a, "y": b, "readout": readout(said or named, *facts)})
     return rows
 

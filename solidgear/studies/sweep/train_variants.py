@@ -78,7 +78,7 @@ class TrainVariants:
 
     def at(self, index: int, train: Train) -> OperatingPoint | None:
         """Operating point at which a variant is looked at; None of a train without any."""
-        if not train.operation:
+        if not train.operation and self.point is None:
             return None
         if self.entries[-1].label == POINT:
             return train.operation[int(self.values[index, -1])]

@@ -70,7 +70,6 @@ class Workshop:
                 f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
             )
         self._made: dict[tuple[str, str], ShaftModel] = {}
-        self._local: dict[tuple[str, str], Part] = {}
         self._local_seconds = 0.0
         #: what meshes leave in the first frequencies, by the models of both shafts
         self.bars: dict[tuple[str, ...], np.ndarray] = {}
@@ -329,14 +328,15 @@ class Workshop:
         harmonics = self.train.mesh.local_harmonics
         if not harmonics or rung != JUDGE:
             return self.shaft(side, rung).part
-        if (side, rung) not in self._local:
+        own, point = self.shaft(side, rung), self._vector(side).point
+        key = tuple(harmonics), self.train.member(side).teeth, tuple(point.tolist())
+        if key not in own.local:
             start = perf_counter()
-            own, vector = self.shaft(side, rung), self._vector(side)
-            self._local[side, rung] = local_teeth(
-                self.train, side, self.scenes[side], own.part, own.body, vector.point
-            )
+            made = local_teeth(self.train, side, self.scenes[side], own.part, own.body, point)
+            own.local.clear()  # of a mesh point elsewhere
+            own.local[key] = made
             self._local_seconds += perf_counter() - start
-        return self._local[side, rung]
+        return own.local[key]
 
     def teeth(self, side: str, part: Part) -> tuple[str, MeshVector]:
         """Port of a part that the teeth act on, and along which line from there."""

@@ -12,7 +12,7 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -67,6 +67,8 @@ class ShaftModel:
         Of the body's mesh.
     seconds : float
         To build and reduce it.
+    local : dict
+        The part with harmonics that teeth drive at a mesh point, by these.
     """
 
     side: str
@@ -75,6 +77,7 @@ class ShaftModel:
     body: Body
     unknowns: int
     seconds: float
+    local: dict[tuple, Part] = field(default_factory=dict, repr=False)
 
     @cached_property
     def rigid_mass(self) -> np.ndarray:
