@@ -28,12 +28,7 @@ class Displayed:
     shown: ClassVar[str] = ""
 
     def table(self, *args: Any, **kwargs: Any) -> Table:
-        """Its numbers in short.
-
-        Returns
-        -------
-        Table
-        """
+        """Its numbers in short."""
         return getattr(importlib.import_module(TELLING), self.shown)(self, *args, **kwargs)
 
     def plot(self, *args: Any, **kwargs: Any) -> Any:

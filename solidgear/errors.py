@@ -175,10 +175,6 @@ def printable(text: str) -> str:
 def for_terminal(error: Exception) -> str:
     """Text of an error for a terminal.
 
-    Parameters
-    ----------
-    error : Exception
-
     Returns
     -------
     str
@@ -210,13 +206,8 @@ def show(value: Any, width: int = 70) -> str:
 
     Parameters
     ----------
-    value : object
     width : int
         Greatest number of letters.
-
-    Returns
-    -------
-    str
 
     Examples
     --------
@@ -313,10 +304,6 @@ def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
         What was validated, for names and values as written.
     where : str
         File or scene name put in front.
-
-    Returns
-    -------
-    SceneError
     """
     return SceneError.of(
         _plain_error(one, data, where)

@@ -93,7 +93,6 @@ def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
 
     Parameters
     ----------
-    housing : Elastic
     moves : (6, k) ndarray, optional
         Of the ring for unit motions in which the housing gives; by default both are at one point.
 
@@ -113,8 +112,6 @@ class Mounted:
 
     Attributes
     ----------
-    port : str
-    bearing : Holds
     attachment : str or None
         Of the port; None takes the body's first.
     spring : float or None
@@ -166,10 +163,6 @@ def between(soft: np.ndarray, rigid: np.ndarray, size: np.ndarray) -> Between:
         Motions P that strain nothing, ``P' Q = 0``.
     size : (n,) ndarray
         Motion of each place that counts as one metre.
-
-    Returns
-    -------
-    Between
 
     Examples
     --------

@@ -65,16 +65,7 @@ class Ranges:
         return ", ".join(parts) or "nothing of the bearings varies"
 
     def for_scene(self, scene: Scene) -> Ranges:
-        """Without what does not vary in a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-
-        Returns
-        -------
-        Ranges
-        """
+        """Without what does not vary in a scene."""
         known = [b.catalogue for b in scene.bearings if b.catalogue is not None]
         loaded = scene.load is not None or any(data.load for data in known)
         return Ranges(
@@ -96,7 +87,6 @@ def choices(ranges: Ranges, sample: int = SAMPLE) -> Iterable[Choice]:
 
     Parameters
     ----------
-    ranges : Ranges
     sample : int
         Points of the sample.
 

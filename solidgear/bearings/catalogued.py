@@ -34,7 +34,6 @@ class Catalogued:
 
     Attributes
     ----------
-    bearing : RollingBearing
     inside : Inside
         Inner geometry of a row that it was made with.
     estimated : tuple of str
@@ -69,7 +68,6 @@ def catalogued(
 
     Parameters
     ----------
-    data : Catalogue
     end : {'middle', 'softer', 'stiffer'}
         Of an estimated inner geometry.
     clearance_share : float
@@ -78,10 +76,6 @@ def catalogued(
         Times the preload, force or displacement.
     geometry : Geometry, optional
         As :func:`solidgear.bearings.geometry.inner_geometry` found it before.
-
-    Returns
-    -------
-    Catalogued
 
     Raises
     ------
@@ -172,8 +166,6 @@ def state(
 
     Parameters
     ----------
-    data : Catalogue
-    made : Catalogued
     factor : float
         Times its load.
     start : (6,) ndarray, optional

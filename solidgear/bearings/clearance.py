@@ -42,10 +42,6 @@ _ROLLERS = {
 def clearance_range(data: Catalogue) -> tuple[float, float]:
     """Least and largest radial internal clearance before mounting, m.
 
-    Parameters
-    ----------
-    data : Catalogue
-
     Returns
     -------
     float, float
@@ -85,15 +81,6 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
 def mounting_change(data: Catalogue, inside: Inside) -> float:
     """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft.
 
-    Parameters
-    ----------
-    data : Catalogue
-    inside : Inside
-
-    Returns
-    -------
-    float
-
     Examples
     --------
     >>> from solidgear.bearings.geometry import inner_geometry
@@ -117,14 +104,8 @@ def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> fl
 
     Parameters
     ----------
-    data : Catalogue
-    inside : Inside
     share : float
         Place in the range of a clearance class, 0 to 1.
-
-    Returns
-    -------
-    float
     """
     low, high = clearance_range(data)
     return low + share * (high - low) + mounting_change(data, inside)

@@ -47,7 +47,6 @@ class DutyLife:
 
     Attributes
     ----------
-    hours, revolutions : float
     damage : tuple of float
         Share of the damage that each point does; they sum to one, or are zero where none does any.
     worst : int
@@ -67,10 +66,6 @@ def duty_life(points: Sequence[DutyPoint]) -> DutyLife:
     ----------
     points : sequence of DutyPoint
         All with shares of the time that sum to one, or all with hours.
-
-    Returns
-    -------
-    DutyLife
 
     Raises
     ------

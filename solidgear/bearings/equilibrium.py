@@ -50,7 +50,6 @@ class Equilibrium:
         Bearings that carry nothing.
     unbalanced : float
         What is left of the loads, of the largest of them or of the preloads.
-    iterations : int
     """
 
     ports: tuple[str, ...]
@@ -77,17 +76,12 @@ def equilibrium(
     ----------
     body : Body
         Any, whose ports carry the bearings and the loads.
-    bearings : sequence of Mounted
     loads : mapping of str to (6,) array_like
         Loads on ports by name, N and N m; torques about y pass on to the drive.
     housing : float or Housing, optional
         Between all bearings and ground; a number is a spring along y, N/m.
     start : Equilibrium, optional
         One of the same shaft to begin at, under a load that is near.
-
-    Returns
-    -------
-    Equilibrium
 
     Raises
     ------

@@ -104,16 +104,10 @@ def equivalent_load(
 
     Parameters
     ----------
-    data : Catalogue
-    inside : Inside
     rated : Ratings
         Of all rows.
     load : (6,) ndarray
         Of the shaft on the bearing, N; moments are not felt by this load.
-
-    Returns
-    -------
-    Equivalent
 
     Examples
     --------
@@ -148,8 +142,6 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
 
     Parameters
     ----------
-    data : Catalogue
-    inside : Inside
     depth : float
         Axial load over the squares of the balls that carry it, N/mm^2.
 
@@ -203,8 +195,6 @@ def static_load(data: Catalogue, inside: Inside, load: np.ndarray) -> float:
 
     Parameters
     ----------
-    data : Catalogue
-    inside : Inside
     load : (6,) ndarray
         Of the shaft on it, N.
 

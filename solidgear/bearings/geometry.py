@@ -73,10 +73,8 @@ class Inside:
 
     Attributes
     ----------
-    elements : int
     diameter, length, pitch : float
         `length` is 0 for balls.
-    angle : float
     conformity : (float, float)
     """
 
@@ -113,14 +111,6 @@ class Geometry(NamedTuple):
 @lru_cache(maxsize=1024)
 def inner_geometry(data: Catalogue) -> Geometry:
     """Inner geometry of a bearing by its catalogue data.
-
-    Parameters
-    ----------
-    data : Catalogue
-
-    Returns
-    -------
-    Geometry
 
     Raises
     ------

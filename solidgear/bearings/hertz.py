@@ -73,10 +73,6 @@ def point_contact(rolling: float, across: float, E: float = STEEL_E, nu: float =
     E, nu : float
         Pa, ratio.
 
-    Returns
-    -------
-    Point
-
     Examples
     --------
     A ball of 10 mm on a plane: Q = 4/3 E* sqrt(R) delta^1.5 with 1/E* = 2 (1 - nu^2) / E

@@ -43,7 +43,6 @@ class Modified(NamedTuple):
     ----------
     life : float
         L_nmr, revolutions.
-    reliability : float
     a1, a_iso, kappa, contamination : float
         Factors of ISO 281; `a_iso` is that of all slices together, `contamination` is e_C.
     reference_viscosity : float
@@ -73,7 +72,6 @@ class Life:
         L_10 of ISO 281.
     reference : float
         L_10r of ISO/TS 16281.
-    modified : Modified or None
     without : str
         Why there is no modified life; empty where there is one.
     equivalent : Equivalent
@@ -85,7 +83,6 @@ class Life:
         P_0 in N, and C_0 / P_0.
     pressure : tuple of (float, float)
         Largest at the inner and the outer ring of each row, Pa.
-    rated : Ratings
     notes : tuple of str
         What is to be said of it, one sentence each.
     """
@@ -115,7 +112,6 @@ def life(
 
     Parameters
     ----------
-    data : Catalogue
     made : Catalogued
         From these data.
     motion : (6,) ndarray
@@ -126,10 +122,6 @@ def life(
         rad/s; without one there is no modified life.
     turning : {'inner', 'outer'}
         The ring that turns against the load.
-
-    Returns
-    -------
-    Life
 
     Examples
     --------

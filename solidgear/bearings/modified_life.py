@@ -70,10 +70,6 @@ def reference_viscosity(speed: float, pitch: float) -> float:
     pitch : float
         Diameter of the circle of the elements' centres, m.
 
-    Returns
-    -------
-    float
-
     Examples
     --------
     A 6207 at 2450 r/min, close to 12 mm^2/s in a maker's diagram:
@@ -95,7 +91,6 @@ def life_factor(kappa: float, ratio: np.ndarray, balls: bool) -> np.ndarray:
         Viscosity ratio, from 0.1, below which ISO 281 says nothing; above 4 it counts as 4.
     ratio : ndarray
         ``e_C C_u / P``.
-    balls : bool
 
     Returns
     -------

@@ -35,7 +35,6 @@ class Settled(NamedTuple):
     unbalanced : float
         Largest part of the load that is left, of the largest load or of the forces at work without
         any, in scaled units.
-    iterations : int
     """
 
     motion: np.ndarray
@@ -80,10 +79,6 @@ def settle(
     at_work : float
         Forces that balance each other at `start`, such as those of a preload, N: what is left of
         a load is judged on them where they are larger, since its rounding is theirs.
-
-    Returns
-    -------
-    Settled
 
     Raises
     ------

@@ -51,15 +51,10 @@ def passing(
 
     Parameters
     ----------
-    inside : Inside
     angle : float, optional
         Contact angle at work, rad; by default the nominal one.
     inner, outer : float
         Speeds of the rings, signed, in any unit; by default one turn of the inner ring.
-
-    Returns
-    -------
-    Passing
 
     Examples
     --------

@@ -77,7 +77,6 @@ class Raceways(NamedTuple):
     ----------
     inner, outer : float
         Q_ci and Q_ce, N.
-    law : Fatigue
     rating : float
         Of the row, N.
     """
@@ -93,13 +92,8 @@ def raceways(inside: Inside, rating: float) -> Raceways:
 
     Parameters
     ----------
-    inside : Inside
     rating : float
         Basic dynamic radial load rating of this row alone, N.
-
-    Returns
-    -------
-    Raceways
 
     Examples
     --------
@@ -182,7 +176,6 @@ class Damage:
     ----------
     each : (rows, slices) ndarray
         Sum of ``(Q / Q_c)^s`` over both rings.
-    law : Fatigue
     rating : float
         Basic dynamic radial load rating of a row, N.
     """
@@ -224,10 +217,6 @@ def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner"
     ----------
     rows, capacity, turning
         As of :func:`reference_life`.
-
-    Returns
-    -------
-    Damage
     """
     law = capacity.law
     inner = np.array([row.on_inner for row in rows]) / capacity.inner

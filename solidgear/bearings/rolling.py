@@ -43,10 +43,6 @@ class RollingBearing:
     act on the inner ring from outside, and that the bearing carries.  Both at one reference point
     on the axis, order (x, y, z, thx, thy, thz), SI.
 
-    Attributes
-    ----------
-    rows : tuple of Row
-
     Examples
     --------
     >>> import numpy as np

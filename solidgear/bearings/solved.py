@@ -86,13 +86,8 @@ def solved(
         Loads are those of its bearings, or its own at the port.
     body : Body, optional
         The shaft; without one, bearings that wait for its load are taken at rest.
-    choice : Choice
     start : Equilibrium, optional
         To begin at.
-
-    Returns
-    -------
-    Solved
 
     Raises
     ------
@@ -136,15 +131,6 @@ def solved(
 
 def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
     """Bearings of a scene that catalogue data describe, by name.
-
-    Parameters
-    ----------
-    scene : Scene
-    choice : Choice
-
-    Returns
-    -------
-    dict of str to Catalogued
 
     Raises
     ------
@@ -190,17 +176,7 @@ def _with(bearing: Bearing, tangent: Mapping[str, np.ndarray]) -> Bearing:
 
 
 def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
-    """Bearings of a scene as the equilibrium takes them.
-
-    Parameters
-    ----------
-    scene : Scene
-    made : mapping of str to Catalogued
-
-    Returns
-    -------
-    list of Mounted
-    """
+    """Bearings of a scene as the equilibrium takes them."""
     out = []
     for bearing in scene.bearings:
         if bearing.name not in made:

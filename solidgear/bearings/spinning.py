@@ -44,7 +44,6 @@ class SpinningBalls:
 
     Attributes
     ----------
-    row : BallRow
     speed : float
         rad/s.
     density : float

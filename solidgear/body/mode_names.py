@@ -28,7 +28,6 @@ class ModeName(Name):
         ``z`` or ``x`` of bending in a part with a mirror plane, else empty.
     number : int or None
         In ascending order of frequency, from one; None of rigid motions.
-    rigid : bool
 
     Examples
     --------
@@ -63,10 +62,6 @@ def numbered(labels: Iterable[str]) -> list[ModeName]:
     ----------
     labels : iterable of str
 
-    Returns
-    -------
-    list of ModeName
-
     Examples
     --------
     >>> numbered(["bending", "axial", "bending"])
@@ -91,10 +86,6 @@ def meant(name: str, names: Sequence[str]) -> int | None:
         not make it another mode.
     names : sequence of str
         Of modes in ascending order of frequency.
-
-    Returns
-    -------
-    int or None
 
     Examples
     --------

@@ -133,17 +133,12 @@ class Block:
 
         Parameters
         ----------
-        name : str
         components : tuple of int
             Of the new block.
         index : int
             Place of this block in its body.
         signs : tuple of float
             One per component.
-
-        Returns
-        -------
-        Block
         """
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports

@@ -66,7 +66,6 @@ def from_points(
     y : (n,) ndarray
         Axial position of each unknown, m; NaN for one that is no value at a point, which then takes
         no part in the fields.
-    components : tuple of int
 
     Returns
     -------

@@ -237,10 +237,6 @@ def as_supports(source: Holding) -> Supports:
     ----------
     source : Scene, Supports or iterable of Bearing
 
-    Returns
-    -------
-    Supports
-
     Examples
     --------
     >>> import solidgear as sg

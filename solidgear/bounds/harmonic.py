@@ -47,7 +47,6 @@ class HarmonicBounds:
 
     Attributes
     ----------
-    body : Body
     of_ports : (ne, 6 p, 6 p) ndarray
         M of its flexibility by cells of the mesh, N m per unit loads; empty where statics were not
         asked for.
@@ -120,7 +119,6 @@ def harmonic_bounds(
     ----------
     scene : Scene
         That the body was meshed from, chamfers as cones (:func:`solidgear.scene.coned.coned`).
-    body : Body
     statics : bool
         Whether the flexibility is wanted.
     found : ModeSet, optional
@@ -261,7 +259,6 @@ def vibration_energies(
     ----------
     scene : Scene
         As for :func:`harmonic_bounds`.
-    body : Body
     fields : dict of int to (n, k) ndarray
         Unknowns of blocks by their index, of unit mass of the whole.
     value : (k,) ndarray

@@ -61,12 +61,6 @@ class Batch:
 class LoadedPieces:
     """Pieces of one block under some displacements.
 
-    Parameters
-    ----------
-    space : RicherSpace
-    block : Block
-    loading : Loading
-
     Attributes
     ----------
     family : Family

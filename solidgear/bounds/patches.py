@@ -19,12 +19,6 @@ def local_energies(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Products of energy of the local solutions, cell by cell of the mesh.
 
-    Parameters
-    ----------
-    space : RicherSpace
-    block : Block
-    loading : Loading
-
     Returns
     -------
     whole, lower : (ne, k, k) ndarray

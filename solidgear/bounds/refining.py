@@ -51,7 +51,6 @@ class Meshed:
 
     Attributes
     ----------
-    order : int
     size : float
         Of the largest cells, in local outer radii.
     cuts : dict of (float, float) to int
@@ -93,18 +92,12 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
 
     Parameters
     ----------
-    scene : Scene
     body : Body
         Built on the mesh.
-    mesh : Meshed
     score : (ne,) ndarray
         Of every cell, its share of the relative bar of what needs it most.
     tol : float
         Relative.
-
-    Returns
-    -------
-    Meshed
     """
     corners, mesh_of = richer_space(coned(scene), body).corners, body.geometry
     cells, uncut = mesh_of.meridian.cells, mesh_of.uncut  # type: ignore[union-attr]

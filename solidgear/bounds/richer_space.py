@@ -246,7 +246,6 @@ def mapped(space: RicherSpace, part: np.ndarray, at: np.ndarray) -> Mapped:
 
     Parameters
     ----------
-    space : RicherSpace
     part : (m,) ndarray of int
     at : (q, 2) ndarray
         In the coordinates of the pieces.

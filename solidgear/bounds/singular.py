@@ -24,9 +24,6 @@ def singular_vertices(
 
     Parameters
     ----------
-    scene : Scene
-    ports : sequence of Port
-    flat : Meridian
     tangents : (ne, 4, 2, 2) ndarray
         Derivatives of position (last) along both coordinates at the corners of every cell.
 

@@ -67,7 +67,6 @@ class Asked:
 
     Parameters
     ----------
-    train : Train
     speed, of, measured, fit, within
         As given.
 

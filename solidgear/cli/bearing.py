@@ -112,10 +112,8 @@ def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
 
     Parameters
     ----------
-    scene : Scene
     load : str
         Such as ``x=2 kN, z=-500 N``.
-    bearing : str, optional
 
     Raises
     ------

@@ -48,8 +48,6 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
 
     Parameters
     ----------
-    train : Path
-    as_json : bool
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """

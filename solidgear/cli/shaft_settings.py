@@ -26,7 +26,6 @@ def of_shafts(
 
     Parameters
     ----------
-    pairs : list of str, optional
     pinion, gear : str
         Models; of a lumped or rigid one the options are those of the body it comes from.
 

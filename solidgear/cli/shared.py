@@ -139,7 +139,7 @@ class Chosen(Group):
         return self.settings or []
 
     def automatic(self) -> bool:
-        """Whether the mesh is to be chosen; what does not go together is refused.
+        """True where the mesh is to be chosen; what does not go together is refused.
 
         Raises
         ------
@@ -185,8 +185,6 @@ class Solved(Chosen):
 
         Parameters
         ----------
-        scene : Scene
-        ask : str
         points : sequence of str
             As for :func:`solidgear.judge.settle.settle`.
         """

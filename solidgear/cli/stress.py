@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Rated(Group):
-    """What a rating by DIN 743 needs beyond the file; where it is not given, it is assumed."""
+    """Data that a rating by DIN 743 needs beyond the file; what is not given is assumed."""
 
     roughness: Annotated[
         str | None, typer.Option(help='Rz of the fillets, such as "6.3 um"; else K_F is 1.')

@@ -25,7 +25,7 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Rows(Group):
-    """Which rows a sweep makes, where to and by whom."""
+    """Rows that a sweep makes, where to and by whom."""
 
     out: Annotated[
         Path,

@@ -26,7 +26,7 @@ PAGE = ".html"
 
 @dataclass(frozen=True)
 class Told(Group):
-    """What rows of a train tell."""
+    """Numbers that rows of a train tell."""
 
     ask: Annotated[
         list[str] | None,

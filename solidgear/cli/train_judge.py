@@ -41,9 +41,6 @@ def compare_train(
 
     Parameters
     ----------
-    train, out : Path
-    renders : bool
-    run : Shown
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """

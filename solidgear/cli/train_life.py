@@ -23,12 +23,10 @@ def show_train(
 
     Parameters
     ----------
-    path : path
     name : str or None
         Of the one bearing that is asked for, such as ``pinion.A``.
     other : mapping of str to object
         Options that belong to a scene; none of them may be set.
-    as_json : bool
     """
     from solidgear.studies.loading import load_train
     from solidgear.studies.train.life import train_lives

@@ -165,7 +165,6 @@ def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
     ----------
     given : dict of str to bool
         Such options, and whether they were given.
-    train : Path
     instead : str
         What to do for a train, in words.
 

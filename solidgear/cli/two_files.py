@@ -25,10 +25,8 @@ def compare_two(
     ----------
     files : list of Path
         Two; more are refused.
-    out : Path
     models : (str or None, str or None)
         Of pinion and gear of both trains.
-    run : Shown
     given : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
 

@@ -50,18 +50,14 @@ class Answered(Displayed):
 
     Attributes
     ----------
-    scene : str
-    tolerance : float
     values : tuple of Value
         In the order asked for.
-    steps : tuple of Step
     reached : bool
         Whether every bar is within the tolerance.
     rung : str
         That the values come from.
     missing : tuple of Quantity
         Quantities that do not exist for this scene, such as the compliance of a free motion.
-    seconds : float
     """
 
     shown: ClassVar[str] = "answered"
@@ -162,11 +158,7 @@ def climbed(
 
     Parameters
     ----------
-    scene : Scene
-    tol : float
-    wanted : tuple of Quantity
     kind : type of Climb, or what makes one
-    progress : callable
 
     Returns
     -------

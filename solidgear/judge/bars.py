@@ -46,7 +46,6 @@ class ErrorBar:
         Error bar over what it rests on.
     solver : float
         Share of the solver in the error bar.
-    extrapolated : float
     method : str
         Where the error bar comes from.
     middle : float or None
@@ -96,10 +95,6 @@ def step_bars(
         Relative error that the cells around leave in each quantity.
     effect : mapping, optional
         What features change of each quantity, relative.
-
-    Returns
-    -------
-    dict of Quantity to ErrorBar
 
     Examples
     --------

@@ -37,14 +37,7 @@ ABOVE = 12
 
 @dataclass(frozen=True)
 class Statics:
-    """Statics of a body, or of its softest relative.
-
-    Attributes
-    ----------
-    main : Condensed
-    further : dict of str to Condensed
-    coupled : Coupled or None
-    """
+    """Statics of a body, or of its softest relative."""
 
     main: Condensed
     further: Mapping[str, Condensed]
@@ -52,15 +45,7 @@ class Statics:
 
     @classmethod
     def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
-        """Statics that some quantities need: the main point, further ones, and pairs of points.
-
-        Parameters
-        ----------
-        scene : Scene
-        body : Body
-        supports : Supports
-        names : sequence of Quantity
-        """
+        """Statics that some quantities need: the main point, further ones, and pairs of points."""
         main = condense(body, supports, scene.port.name)
         points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
         further = {point: condense(body, supports, point) for point in points}
@@ -94,7 +79,6 @@ class Bounded:
 
     Attributes
     ----------
-    error_bars : dict of Quantity to ErrorBar
     scores : dict of Quantity to ndarray
         Of every number, (ne,) shares of its bar by cells; in sum one.
     """
@@ -116,12 +100,8 @@ def bounded(
 
     Parameters
     ----------
-    scene : Scene
-    body : Body
-    supports : Supports
     statics : Statics or None
         What was condensed, None where nothing static is asked for.
-    found : ModeSet or None
     names : sequence of Quantity
         Those whose bars are wanted.
     solver : mapping
@@ -167,9 +147,6 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
 
     Parameters
     ----------
-    scene : Scene
-    body : Body
-    supports : Supports
     found : ModeSet
         Of the body.
 

@@ -87,7 +87,6 @@ def shoulder_cause(
 
     Parameters
     ----------
-    scene : Scene
     beam_gap : dict
         ``C_zz``, ``K_zz``, ``bending 1`` -> relative gap of the scene itself.
     options : dict

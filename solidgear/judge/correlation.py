@@ -31,7 +31,6 @@ class Pairing:
 
     Attributes
     ----------
-    reference : Mode
     mode : Mode or None
         None where no mode of the model has this shape.
     mac : float

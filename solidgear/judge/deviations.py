@@ -44,10 +44,8 @@ class Deviation:
 
     Attributes
     ----------
-    model, reference : str
     attachment : str
         Tie of both: ``as scene`` or ``section``.
-    quantity : Quantity
     value, reference_value : float
         SI.
     relative : float

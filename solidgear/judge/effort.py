@@ -24,11 +24,6 @@ SECONDS, AT, GROWTH = 10.0, 130_000, 1.3
 def cost_text(unknowns: int, mb: float) -> str:
     """Unknowns, memory and time of a mesh, each to what it is worth.
 
-    Parameters
-    ----------
-    unknowns : int
-    mb : float
-
     Examples
     --------
     >>> cost_text(931_117, 5894.0)
@@ -42,11 +37,6 @@ def cost_text(unknowns: int, mb: float) -> str:
 def heavy_meshes(scene: Scene, model: Model) -> Iterator[str]:
     """Cost of the two coarsest meshes of a solid, which an error bar needs, in sentences where it is
     much; meshes that may be large are made and counted.
-
-    Parameters
-    ----------
-    scene : Scene
-    model : Model
     """
     places = ("its coarsest mesh", "the next, without which there is no bar,")
     words = []

@@ -33,11 +33,6 @@ def synthesise_all(
 ) -> dict[str, LumpedRecord]:
     """Lumped models of every solved body.
 
-    Parameters
-    ----------
-    scene : Scene
-    solutions : mapping of str to Solution
-
     Returns
     -------
     dict of str to LumpedRecord
@@ -138,7 +133,6 @@ def model_record(
         Records of the others.
     reference_hz : float or None
         First bending of the reference model.
-    tolerance : float
     bar : float or None
         Of the reference's first bending; None where nothing may judge.
     notices : iterable of GuardRecord

@@ -11,12 +11,7 @@ from solidgear.solve.modes import ModeSet
 
 
 class Partners:
-    """Modes of a model beside those of a reference.
-
-    Parameters
-    ----------
-    model, reference : ModeSet
-    """
+    """Modes of a model beside those of a reference."""
 
     def __init__(self, model: ModeSet, reference: ModeSet):
         self.model, self.reference = model, reference

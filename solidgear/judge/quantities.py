@@ -40,7 +40,6 @@ def in_words(quantity: Quantity, main: str) -> str:
 
     Parameters
     ----------
-    quantity : Quantity
     main : str
         Name of the main point where there are several, else nothing.
 
@@ -159,7 +158,6 @@ def measure(
     ----------
     condensed : Condensed or None
         At the main point.
-    modes : ModeSet or None
     further : mapping of str to Condensed, optional
         At further points, by name.
     coupled : Coupled, optional

@@ -50,7 +50,6 @@ class Solved:
     ----------
     body : Body
         The last one that was built on it.
-    numbers : Numbers
     unknowns : int
         Of all bodies.
     cell : float or None
@@ -73,7 +72,6 @@ def coupled_families(
 
     Parameters
     ----------
-    scene : Scene
     body : Body
         With a block for every family.
     tolerance : float

@@ -58,14 +58,10 @@ def recorded(
 
     Parameters
     ----------
-    scene : Scene
-    solutions : dict of str to Solution
     failed : dict of str to str
         Models that could not be solved, and why.
-    causes : list of CauseRecord
     lumped : dict of str to LumpedRecord
         From :func:`solidgear.judge.lumped.synthesise_all`.
-    guards : list of GuardRecord
     complete : bool
         False after an interrupt.
     """

@@ -52,7 +52,6 @@ class Loop(ABC):
 
     Parameters
     ----------
-    scene : Scene
     model : Model
         A solid.
     wanted : tuple of Quantity

@@ -52,9 +52,6 @@ class Settled:
 
     Attributes
     ----------
-    scene : str
-    tolerance : float
-    rung : str
     options : dict
         Of the builder: with these, the model gives the same body again.
     body : Body
@@ -133,7 +130,6 @@ def settle(
 
     Parameters
     ----------
-    scene : Scene
     tol : float, optional
         Relative; by default the tolerance of the scene.
     ask : {'all', 'stiffness', 'modes'}

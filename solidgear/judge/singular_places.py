@@ -46,13 +46,8 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
 
     Parameters
     ----------
-    scene : Scene
     attachments : tuple of str, optional
         How every station is tied; by default as the scene says.
-
-    Returns
-    -------
-    tuple of Place
 
     Examples
     --------

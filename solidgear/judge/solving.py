@@ -78,10 +78,8 @@ class Answer:
 
     Attributes
     ----------
-    body : Body
     condensed : Condensed
         Statics at the lumped point.
-    modes : ModeSet
     quantities : dict of Quantity to float
         The compared numbers; see :mod:`solidgear.judge.quantities`.
     further : dict of str to Condensed
@@ -120,8 +118,6 @@ def searched(
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     n : int
         Elastic shapes of the list; what is found above stands beyond its end.
     wanted : iterable of str
@@ -152,12 +148,7 @@ def searched(
 
 
 def widened(found: ModeSet, wider: ModeSet) -> ModeSet:
-    """A list of modes with all that a longer one of the same body has beyond it.
-
-    Parameters
-    ----------
-    found, wider : ModeSet
-    """
+    """A list of modes with all that a longer one of the same body has beyond it."""
     known = {m.name for m in (*found.modes, *found.beyond)}
     beyond = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
     above = tuple(m for m in wider.above if m.name not in known)
@@ -194,7 +185,6 @@ def solve(
 
     Parameters
     ----------
-    scene : Scene
     model : str
         One that builds a body.
     n : int
@@ -255,8 +245,6 @@ def answered(
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     ports : sequence of str
         Names of the lumped points, the main one first.
     attachments : str or sequence of str, optional

@@ -22,8 +22,6 @@ class Value:
 
     Attributes
     ----------
-    quantity : Quantity
-    unit : str
     value : float
         SI.
     bar : float
@@ -68,7 +66,6 @@ class Step:
 
     Attributes
     ----------
-    rung : str
     setting : str
         Of the mesh, in words.
     valid : bool
@@ -77,9 +74,6 @@ class Step:
         Why it was passed over, or what came after it.
     bar : float or None
         The largest over the quantities asked for; None where there is none yet.
-    unknowns : int or None
-    seconds : float
-    chosen : bool
     only : tuple of Quantity
         What was still open, where a mesh was not solved for everything asked for.
     options : dict

@@ -54,7 +54,6 @@ def study(
 
     Parameters
     ----------
-    scene : Scene
     model : str
         Name of it in the ladder.
     options : mapping, optional

@@ -73,12 +73,9 @@ def judge(
 
     Parameters
     ----------
-    scene : Scene
-    solutions : dict of str to Solution
     gaps : list of Deviation
         From :func:`deviations`, against the model that :func:`trusted` names or, where there is
         none, the best there is.
-    notices : sequence of GuardRecord
     """
     tolerance = scene.ask.tolerance
     names = judged(scene)

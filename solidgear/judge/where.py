@@ -77,7 +77,6 @@ class Whereabouts:
 
     Attributes
     ----------
-    quantity : Quantity
     order : int
         Of the elements.
     total : float
@@ -89,7 +88,6 @@ class Whereabouts:
     cells : (4, m) ndarray of int
     shares : (m,) ndarray
         Of every cell; in sum one.
-    seconds : float
 
     Examples
     --------
@@ -126,15 +124,10 @@ def where(
 
     Parameters
     ----------
-    scene : Scene
     quantity : str
         A compliance, a stiffness or a frequency, also of a further point or between two.
     options : mapping, optional
         Of the builder of the harmonic solid; by default the first mesh that is tried for an answer.
-
-    Returns
-    -------
-    Whereabouts
 
     Raises
     ------
@@ -166,7 +159,6 @@ def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
 
     Parameters
     ----------
-    scene : Scene
     solution : Solution
         Of the harmonic solid.
 

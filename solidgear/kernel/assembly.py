@@ -136,10 +136,6 @@ class Tabulation:
         ----------
         nodes : (dim, nn, ne) ndarray
             Of the mapping, m.
-
-        Returns
-        -------
-        Tabulated
         """
         nn, dim, nq = self._dshape.shape
         nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
@@ -167,10 +163,6 @@ def tabulate(
         Of the unknowns.
     points : (dim, nq) ndarray
         Reference points.
-
-    Returns
-    -------
-    Tabulated
     """
     return Tabulation(geometry, element, points).on(nodes)
 
@@ -315,10 +307,6 @@ class Pattern:
         ----------
         components : int
             Unknowns of a node, numbered together.
-
-        Returns
-        -------
-        Sum
         """
         return Sum(self, components)
 

@@ -17,7 +17,6 @@ def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> 
 
     Parameters
     ----------
-    block : Block
     ties : list of (port index, y, mask)
         Port whose motion the surface takes, its position (m), and the (n,) mask of unknowns on the
         surface.

@@ -27,7 +27,6 @@ class Kind:
     Attributes
     ----------
     cells : (m,) ndarray of int
-    curved : bool
     flip : tuple of bool
         Local edges whose odd functions have the other sign.
     """
@@ -42,7 +41,6 @@ class Shapes:
 
     Parameters
     ----------
-    flat : Meridian
     element : scikit-fem element
         Of the unknowns.
     """

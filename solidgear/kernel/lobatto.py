@@ -12,7 +12,6 @@ def lobatto(order: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Parameters
     ----------
-    order : int
     x : (...) ndarray
         From 0 to 1.
 
@@ -44,7 +43,6 @@ def products(order: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     Parameters
     ----------
-    order : int
     at : (..., q, 2) ndarray
         Reference points.
 

@@ -66,7 +66,6 @@ def condensed(cell: Cell, inner: np.ndarray) -> Cell:
 
     Parameters
     ----------
-    cell : Cell
     inner : (n,) ndarray of bool
     """
     if not inner.any():
@@ -91,7 +90,6 @@ def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    cells : sequence of Cell
     rigid : (n, r) ndarray
         Rigid motions in the unknowns of the richer space.
 

@@ -20,7 +20,6 @@ def assemblable(elements: float, size: int) -> None:
 
     Parameters
     ----------
-    elements : float
     size : int
         Rows of an element matrix of one component.
 
@@ -44,10 +43,6 @@ def assemblable(elements: float, size: int) -> None:
 
 def assembled(entries: int, unknowns: int) -> None:
     """Refuse a matrix of so many entries that will not fit into memory.
-
-    Parameters
-    ----------
-    entries, unknowns : int
 
     Raises
     ------

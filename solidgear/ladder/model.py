@@ -120,7 +120,6 @@ class Model:
 
         Parameters
         ----------
-        scene : Scene
         options : mapping
             Builder options that were asked for.
         """
@@ -161,7 +160,6 @@ class Model:
 
         Parameters
         ----------
-        scene : Scene
         full : bool
             More levels.
         """
@@ -174,12 +172,7 @@ class Model:
         return ""
 
     def unfit(self, scene: Any) -> str:
-        """Reason why it does not model a scene, or nothing.
-
-        Parameters
-        ----------
-        scene : Scene
-        """
+        """Reason why it does not model a scene, or nothing."""
         from solidgear.scene.features import FEATURES
         from solidgear.scene.shaft import named
 
@@ -203,23 +196,12 @@ class Model:
         return unfit if strange else f"{unfit}, which no mesh holds together"
 
     def concerns(self, scene: Any) -> bool:
-        """True where it is among the models that one asks of a scene without naming any.
-
-        Parameters
-        ----------
-        scene : Scene
-        """
+        """True where it is among the models that one asks of a scene without naming any."""
         sorts = {f.sort for f in features_of(scene)}
         return not self.for_features or not sorts.isdisjoint(self.holds)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
-        """Options for the builder of a scene: those asked for over those that its features ask for.
-
-        Parameters
-        ----------
-        scene : Scene
-        options : mapping
-        """
+        """Options for the builder of a scene: those asked for over those that its features ask for."""
         return dict(options)
 
     def checked(self, options: Options) -> dict[str, Any]:

@@ -64,7 +64,6 @@ def refusal(
 
     Parameters
     ----------
-    scene : Scene
     name : str
         A model.
     options : mapping
@@ -73,10 +72,6 @@ def refusal(
         If it could be built.
     error : NoRoom
         What its mesh, its matrices or its factors said.
-
-    Returns
-    -------
-    NoRoom
     """
     model = LADDER[name]
     if name not in LARGE:

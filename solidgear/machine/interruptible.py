@@ -37,10 +37,6 @@ def call(function: Callable, *arguments, **options) -> Any:
     *arguments, **options
         Passed to it.
 
-    Returns
-    -------
-    object
-
     Raises
     ------
     KeyboardInterrupt

@@ -36,10 +36,6 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
     memory_mb : float
         Address space it may take, where the system can limit it.
 
-    Returns
-    -------
-    object
-
     Raises
     ------
     IsolatedError

@@ -48,7 +48,6 @@ def require(need_mb: float, what: str, by: str = "", free: float | None = None) 
 
     Parameters
     ----------
-    need_mb : float
     what : str
         What needs it, such as ``120 unknowns``.
     by : str
@@ -185,12 +184,7 @@ def begin() -> None:
 
 @contextmanager
 def listening(hear: Listener) -> Iterator[None]:
-    """Within it, ``hear(unknowns, mb)`` is told of every factor before it is made.
-
-    Parameters
-    ----------
-    hear : callable
-    """
+    """Within it, ``hear(unknowns, mb)`` is told of every factor before it is made."""
     token = _listener.set(hear)
     try:
         yield

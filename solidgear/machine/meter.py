@@ -76,16 +76,10 @@ class Meter:
         ----------
         source, target : str
             Stages.
-        seconds : float
         """
         self.seconds[source] = self.seconds.get(source, 0.0) - seconds
         self.seconds[target] = self.seconds.get(target, 0.0) + seconds
 
     def total(self) -> dict[str, float]:
-        """Seconds per stage, and their sum as ``total``.
-
-        Returns
-        -------
-        dict of str to float
-        """
+        """Seconds per stage, and their sum as ``total``."""
         return {**self.seconds, "total": sum(self.seconds.values())}

@@ -61,14 +61,6 @@ def pinned(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: OpenBLAS has one thread while the function runs, and what it had before
     afterwards.
 
-    Parameters
-    ----------
-    function : callable
-
-    Returns
-    -------
-    callable
-
     Examples
     --------
     >>> @pinned

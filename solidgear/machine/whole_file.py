@@ -49,11 +49,6 @@ def whole(path: Path) -> Iterator[Path]:
 def write_page(path: str | os.PathLike, text: str) -> Path:
     """Write a file that a user named, and the folders above it; there is a whole one or none.
 
-    Parameters
-    ----------
-    path : path
-    text : str
-
     Raises
     ------
     SolidgearError

@@ -221,10 +221,6 @@ def radial_bands(
     Where the outer radius jumps, the larger side gets at least one band more than
     the smaller one, whose bands it continues; likewise inwards where the bore jumps.
 
-    Parameters
-    ----------
-    outline : Outline
-
     Returns
     -------
     bands : tuple of (int, int)

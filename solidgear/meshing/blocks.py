@@ -78,8 +78,6 @@ class Joint:
         m.
     index : int
         Number of the segment that begins here.
-    corners : list of Corner
-    low, high : Zone
     line : int
         Mesh line of the joint, once there is one.
     """

@@ -27,7 +27,6 @@ class Cell:
     ----------
     ids : tuple of int
         Of its corners; those of ring lines are ``line * ring lines + ring``.
-    segment : int
     ring : int
         Its place in its segment from the inside, -1 in a block.
     count : int

@@ -68,10 +68,6 @@ def cut_towards(
         Points on sides, m: before all else a line is drawn through each, from side to opposite side
         through all cells in its way.
 
-    Returns
-    -------
-    Pieces
-
     Examples
     --------
     One square, cut twice towards its first corner:

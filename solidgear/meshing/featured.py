@@ -54,7 +54,6 @@ class FeaturedMesh:
         Elements that features remove.
     plane : int or None
         Axis at right angles to the mirror plane: 0 for x = 0, 2 for z = 0; None for a whole shaft.
-    quality : MeshQuality
     removed : float
         Volume that OCC says the features remove from the whole shaft, m^3.
     """
@@ -84,7 +83,6 @@ def featured_mesh(
 
     Parameters
     ----------
-    outline : Outline
     features : tuple of Keyway, Flat or CrossHole
     planes, circles, size, graded_size, around
         As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
@@ -94,10 +92,6 @@ def featured_mesh(
         Whether to draw half of the shaft where features have a mirror plane.
     edges : bool
         Whether elements are smaller at the re-entrant edges of features and at holes.
-
-    Returns
-    -------
-    FeaturedMesh
 
     Raises
     ------

@@ -31,8 +31,6 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
 
     Parameters
     ----------
-    scene : Scene
-    plan : Layout
     around : int
         Cells around the circumference, a multiple of 4, at least 8.
 

@@ -123,16 +123,10 @@ def layout(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None =
 
     Parameters
     ----------
-    scene : Scene
-    grading : Grading
     attachments : tuple of str, optional
         Attachments every station will be built with; by default those of the scene. Planes of
         section ties are lines of the mesh and graded, ends of rigid seats are graded like
         shoulders.
-
-    Returns
-    -------
-    Layout
 
     Examples
     --------

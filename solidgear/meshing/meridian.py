@@ -110,7 +110,6 @@ def cut_meridian(flat: Meridian, cuts: Sequence[Cut]) -> tuple[Meridian, np.ndar
 
     Parameters
     ----------
-    flat : Meridian
     cuts : sequence of (float, float, int)
         y and r of a vertex, m, and how often all cells around it are cut.
 

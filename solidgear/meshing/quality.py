@@ -83,10 +83,6 @@ def check_mesh(
     min_ratio : float
         Least accepted (min det J) / (max det J) inside an element.
 
-    Returns
-    -------
-    MeshQuality
-
     Raises
     ------
     MeshError

@@ -40,7 +40,6 @@ def draw_revolved(
     Parameters
     ----------
     gmsh : module
-    outline : Outline
     planes : sequence of float
         Positions y of cross-sections to be made of element faces, m.
     circles : sequence of float
@@ -275,7 +274,7 @@ def _kinks(slabs: Sequence[Frustum], circles: Sequence[float], tolerance: float)
 
 
 def _place(below: Frustum | None, above: Frustum | None) -> float:
-    """Where one slab ends and the next begins."""
+    """Place where one slab ends and the next begins."""
     if below:
         return below.y1
     assert above is not None

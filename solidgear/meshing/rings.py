@@ -41,8 +41,6 @@ class Run(NamedTuple):
 
     Attributes
     ----------
-    band : int
-    segments : tuple of int
     thicknesses : tuple of float
         Of the band at both ends of each segment, m.
     on_axis : bool

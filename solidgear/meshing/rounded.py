@@ -42,7 +42,7 @@ SIDES: tuple[Surface, Surface] = (SURFACES[1], SURFACES[0])
 def rounded_layout(
     scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None, marks: Sequence[Mark]
 ) -> tuple:
-    """What :class:`solidgear.meshing.layout.Layout` holds, of a shaft with fillets or chamfers, by
+    """Parts of a :class:`solidgear.meshing.layout.Layout`, of a shaft with fillets or chamfers, by
     the marks of the shaft without them; SolidgearError if a seat ends among the cells of a block.
     """
     segments, outline = scene.segments, scene.outline

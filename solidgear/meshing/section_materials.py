@@ -20,7 +20,6 @@ class Share(NamedTuple):
 
     Attributes
     ----------
-    wall : Frustum
     groups : tuple of (int, float)
         Groups and their shares of its volume, roughly where there are several.
     """

@@ -58,7 +58,6 @@ class SectorMesh:
         Volume of the sector (of a half, of that half) that OCC has drawn, m^3.
     turn : float
         Angle of the middle of the sector at the start of the shaft, rad.
-    half : bool
     """
 
     mesh: MeshTet2
@@ -107,7 +106,6 @@ def sector_mesh(
 
     Parameters
     ----------
-    segments : tuple of Segment
     features : tuple of Teeth, Spline or BoltCircle
     planes, circles, size, graded_size, around
         As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
@@ -115,10 +113,6 @@ def sector_mesh(
         Divides the sizes at features; those above are given refined.
     count : int, optional
         Sectors around; by default as many as the features say.
-
-    Returns
-    -------
-    SectorMesh
 
     Raises
     ------

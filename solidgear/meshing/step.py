@@ -49,7 +49,6 @@ class Seen:
         Of the solids that were named and of the rest, m^3.
     rest : tuple of str
         Solids of the rest.
-    faces : int
     """
 
     points: np.ndarray
@@ -170,8 +169,6 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
 
     Parameters
     ----------
-    path : str
-    place : Placing
     plan : dict
         ``circles`` and ``planes``, (y, radius) of cuts into the surface and across the part, m;
         ``formulas`` of the size of elements, the largest ``size`` and the ``graded`` one at concave

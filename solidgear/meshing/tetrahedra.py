@@ -35,7 +35,6 @@ class TetMesh:
         With mid-edge nodes on the true surface, but for what keeps its volume.
     segment : ndarray of int, shape (n_elements,)
         Index of the segment each element lies in.
-    quality : MeshQuality
     """
 
     mesh: MeshTet2

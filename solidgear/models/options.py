@@ -19,7 +19,6 @@ class Option:
 
     Attributes
     ----------
-    meaning : str
     kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'several', 'places'}
     least, most : float, optional
         Limits that may be met.
@@ -27,7 +26,6 @@ class Option:
         Limits that may not.
     why : str
         The reason for the limits.
-    choices : tuple of str
     optional : bool
         Whether None may be given, for the builder's own choice.
     """

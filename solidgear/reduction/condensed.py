@@ -54,7 +54,6 @@ def condensed_shaft(
 
     Parameters
     ----------
-    shaft : Superelement
     supports : (6 p, 6 p) ndarray
         Stiffness of all bearings together, in the order of ``held``.
     held : tuple of str

@@ -97,7 +97,6 @@ def effective_masses(
 
     Parameters
     ----------
-    point : LumpedPoint
     receptance : callable, optional
         ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N; without it
         the band of validity stays None.
@@ -234,9 +233,7 @@ def synthesise(
 
     Parameters
     ----------
-    body : Body
     supports : Scene, Supports or iterable of bearings
-    port : str
     found : ModeSet, optional
         Solved if not given.
 

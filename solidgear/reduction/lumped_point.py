@@ -58,9 +58,7 @@ def lumped_point(
 
     Parameters
     ----------
-    body : Body
     supports : Scene, Supports or iterable of bearings
-    port : str
     found : ModeSet, optional
         Solved if not given, or without a first bending mode.
 

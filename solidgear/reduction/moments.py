@@ -44,7 +44,6 @@ class ReducedBlock:
 
     Attributes
     ----------
-    components : tuple of int
     turn : (r, c) ndarray
         Coordinates in U of unit rigid motions about the origin.
     theta : (u,) ndarray
@@ -96,7 +95,6 @@ class Reduced:
 
     Attributes
     ----------
-    blocks : tuple of ReducedBlock
     frame : Body
         The ports with their static flexibility, and the components of the blocks: enough for
         :func:`solidgear.solve.statics.condense`.
@@ -226,7 +224,6 @@ def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
 
     Parameters
     ----------
-    block : Block
     elastic : sequence of (n,) ndarray
         Mode shapes of the free block, mass-normalised, in any order.
     """

@@ -20,7 +20,6 @@ def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.nd
 
     Parameters
     ----------
-    body : Body
     vectors : dict of int to (n,) ndarray
         Shape, by block index.
     index : int
@@ -49,9 +48,7 @@ def modal_receptance(
 
     Parameters
     ----------
-    body : Body
     supports : Scene, Supports or iterable of bearings
-    port : str
     found : ModeSet
         Modes of the body on these supports.
 

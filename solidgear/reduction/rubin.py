@@ -145,7 +145,6 @@ def residual_block(
 
     Parameters
     ----------
-    block : Block
     factor : Factor
         Of the block, shifted.
     free : FreeShapes

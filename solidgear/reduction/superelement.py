@@ -102,7 +102,6 @@ class ReducedMotions:
         Mass-normalised, on the unknowns of the block.
     motions : (6, p, m) ndarray
         Of the chosen ports.
-    truncation : Truncation
     """
 
     index: int

@@ -48,7 +48,6 @@ def with_waves(
 
     Parameters
     ----------
-    part : Superelement
     body : Body
         Of which it was made, with further harmonics.
     at : str
@@ -64,10 +63,6 @@ def with_waves(
         it turns as its carrier does.
     kept : int
         Free modes of each harmonic.
-
-    Returns
-    -------
-    Superelement
 
     Raises
     ------
@@ -109,10 +104,6 @@ def _reduced(family: Body, rows: np.ndarray, kept: int):
 def own_waves(part: Superelement) -> dict[int, np.ndarray]:
     """Coordinates of every harmonic n >= 2 of a superelement.
 
-    Parameters
-    ----------
-    part : Superelement
-
     Returns
     -------
     dict of int to (k,) ndarray of int
@@ -132,7 +123,6 @@ def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> fl
 
     Parameters
     ----------
-    part : Superelement
     name : str
         Of the port.
     direction : (3,) ndarray

@@ -24,7 +24,6 @@ class BearingPanel(NamedTuple):
 
     Attributes
     ----------
-    title : str
     factors : (n,) ndarray
         Times the load of the scene.
     middle, low, high : (n, 3) ndarray
@@ -48,7 +47,6 @@ def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:
     ----------
     file : Path
         Its ending, ``.png`` or ``.svg``, says what it becomes.
-    panels : sequence of BearingPanel
 
     Raises
     ------

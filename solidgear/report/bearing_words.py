@@ -19,7 +19,6 @@ def load_row(scene: Mapping[str, Any], units: Units) -> list[list[str]]:
     ----------
     scene : mapping
         As a record has it.
-    units : Units
 
     Returns
     -------
@@ -45,7 +44,6 @@ def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
     ----------
     data : mapping or None
         ``catalogue`` of a bearing in a record.
-    units : Units
 
     Returns
     -------

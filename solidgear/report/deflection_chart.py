@@ -28,8 +28,6 @@ def deflection_chart(
     ----------
     found : mapping of str to sequence of ShaftDeflection
         Shafts of each model, by its name; the last is the reference.
-    title : str
-    units : Units, optional
     width : float
         px.
     """

@@ -28,15 +28,12 @@ def write_deflection(
 
     Parameters
     ----------
-    folder : Path
     models : mapping of str to sequence of ShaftDeflection
         Shafts by model, the judge last.
     data : mapping
         Everything as plain data in SI, which becomes ``deflection.json``.
-    title, lead : str
     told : sequence of Table
         Before those of displacements and bearings.
-    cautions : sequence of str
     units : str or Units
         Of chart and page.
 

@@ -20,13 +20,7 @@ LOAD_OF = ("N",) * 3 + ("N m",) * 3
 
 
 def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
-    """Misalignment by every model, with its bar and what bearings leave open.
-
-    Parameters
-    ----------
-    found : Deflections
-    units : Units, optional
-    """
+    """Misalignment by every model, with its bar and what bearings leave open."""
     judge = found.judge
     columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
     columns += [Column(one.pinion, partial(_of, one, units)) for one in found.found]
@@ -50,7 +44,6 @@ def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table
     ----------
     points : sequence of TrainDeflection
         By one model; none for one point, of which there are tables already.
-    units : Units, optional
     """
     if not points:
         return []
@@ -113,13 +106,7 @@ def _range(measured: Any, units: Units) -> str | None:
 
 
 def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
-    """Motion of every lumped point and bearing.
-
-    Parameters
-    ----------
-    shafts : sequence of ShaftDeflection
-    units : Units, optional
-    """
+    """Motion of every lumped point and bearing."""
     rows = [(f"{s.name}.{name}", six) for s in shafts for name, six in s.ports.items()]
     columns = [word("place", lambda row: row[0]), *_six(units, lambda row: row[1])]
     note = "From where nothing is loaded, in the axes of each shaft's scene, y along it."
@@ -133,8 +120,6 @@ def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Tabl
     ----------
     shafts : sequence of ShaftDeflection
         One a model.
-    port : str
-    units : Units, optional
     """
     columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
     return Table(f"Motion of {port}", columns, shafts)
@@ -154,13 +139,7 @@ def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
 
 
 def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Load of every bearing, and how those of catalogue data carry it.
-
-    Parameters
-    ----------
-    shafts : sequence of ShaftDeflection
-    units : Units, optional
-    """
+    """Load of every bearing, and how those of catalogue data carry it."""
     rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
     inside = [row for row in rows if row[1].rows]
     name = word("bearing", lambda row: row[0])
@@ -218,12 +197,7 @@ def _largest(bearing: Any) -> float | None:
 
 
 def line(shaft: Any) -> Table:
-    """Deflection line of a shaft in SI, for other programs.
-
-    Parameters
-    ----------
-    shaft : ShaftDeflection
-    """
+    """Deflection line of a shaft in SI, for other programs."""
     heads = ["y [m]", *(f"{d} [{si.split()[0]}]" for d, si in zip(DOFS, SI_OF))]
     rows = [[float(y), *map(float, six)] for y, six in zip(shaft.stations, shaft.line)]
     return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in heads], rows)

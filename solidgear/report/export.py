@@ -34,16 +34,11 @@ def write_vtu(
 
     Parameters
     ----------
-    body : Body
     modes : ModeSet or iterable of Mode
     path : str or Path
         Of the vtu file; there is a whole one or none.
     most : int, optional
         Write the first so many modes only.
-
-    Returns
-    -------
-    Path
 
     Raises
     ------

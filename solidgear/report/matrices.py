@@ -31,8 +31,6 @@ def block(
     matrix : six rows of six numbers
         SI, order x y z thx thy thz; a dash for what is None or NaN.
     kind : {'stiffness', 'compliance'}
-    units : Units
-    title : str
     free : collection of str
         Components that are shown as a dash.
     sizes : two lists of six numbers, optional
@@ -41,10 +39,6 @@ def block(
     faint_digits : int
         Figures of a coupling that is next to nothing, in units without exponents: there zeros would
         fill its cell. By default it is a bare zero.
-
-    Returns
-    -------
-    Table
     """
     own = [entry(matrix, k, k) for k in range(6)]
     across, along = sizes or (own, own)

@@ -37,8 +37,6 @@ def measured_chart(
     ----------
     found : AtSpeed
         With a spectrum.
-    response : TrainResponse
-    title : str
     units : Units, optional
         Of the computed force.
     width : float

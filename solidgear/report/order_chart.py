@@ -29,11 +29,8 @@ def order_chart(
 
     Parameters
     ----------
-    found : OrderMap
-    title : str
     teeth : int
         Of the pinion, for the upper axis.
-    units : Units, optional
     width : float
         px.
     """
@@ -94,7 +91,6 @@ def spread(places: np.ndarray, apart: float) -> np.ndarray:
     Parameters
     ----------
     places : (n,) ndarray
-    apart : float
 
     Returns
     -------

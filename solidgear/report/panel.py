@@ -47,15 +47,12 @@ class Axis(NamedTuple):
 
     Attributes
     ----------
-    title : str
     ends : (float, float)
         From left to right, or from the foot up.
-    log : bool
     label : str
         What a tick says, as an expression of Vega.
     ticks : mapping of float to str, optional
         Where they stand and what they say instead.
-    grid : bool
     shown : bool
         Of one that is not shown only the ends count.
     """
@@ -120,10 +117,8 @@ class Panel:
 
     Parameters
     ----------
-    x, y : Axis
     height : float
         px.
-    title : str
     series : mapping of str to Series
         By their names in rows.
     legend : dict, optional
@@ -294,8 +289,6 @@ def read_places(x: Any, y: Any, places: int = 100, log: bool = False) -> list[in
     ----------
     x, y : (n,) array_like
         `x` ascending, and above zero where the axis is logarithmic.
-    places : int
-    log : bool
 
     Examples
     --------

@@ -214,7 +214,6 @@ def page_svg(name: str, make: Make) -> bytes | None:
     ----------
     name : str
         Letters and underscores, of no other chart of the page.
-    make : callable
     """
     drawings = []
     for kind, width in (("wide", WIDE), ("narrow", NARROW)):

@@ -42,7 +42,6 @@ class RenderJob:
 
     Attributes
     ----------
-    surface : Surface
     title : str
         Such as ``harmonic - bending 1 - 2758.0 Hz``.
     path : str or Path
@@ -66,7 +65,6 @@ class RenderResult:
 
     Attributes
     ----------
-    ok : bool
     path : Path
         Holds the new picture if ``ok``; otherwise whatever was there before is untouched.
     reason : str

@@ -114,7 +114,6 @@ def apart(record: Record, key: str, quantity: str) -> Cell | None:
 
     Parameters
     ----------
-    record : Record
     key : str
         Of the model.
     quantity : str

@@ -38,9 +38,6 @@ def section_chart(
 
     Parameters
     ----------
-    forces : SectionForces
-    title : str
-    units : Units, optional
     width : float
         px.
 

@@ -30,7 +30,6 @@ def write_files(
 
     Parameters
     ----------
-    folder : Path
     name : str
         Of page and data.
     title, lead, tables, notes, cautions

@@ -107,7 +107,6 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
 
     Parameters
     ----------
-    modes : ModeSet
     names : sequence of str
         Modes to draw, by name; the first few elastic ones by default.
     """
@@ -143,7 +142,6 @@ def condensed(statics: Any, kind: str = "stiffness") -> Table:
 
     Parameters
     ----------
-    statics : Condensed
     kind : {'stiffness', 'compliance'}
     """
     if kind not in BLOCK_UNITS:
@@ -165,7 +163,6 @@ def coupled(statics: Any, kind: str = "compliance") -> Table:
 
     Parameters
     ----------
-    statics : Coupled
     kind : {'stiffness', 'compliance'}
     """
     if kind not in BLOCK_UNITS:

@@ -29,7 +29,6 @@ def sketch_svg(name: str, scene: Mapping[str, Any]) -> bytes | None:
     ----------
     name : str
         Letters and underscores, of no other drawing of the page.
-    scene : mapping
     """
     import matplotlib
 

@@ -10,12 +10,7 @@ from solidgear.report.words import DASH, hertz, whole
 
 
 def first_lines(found: Sequence[Any]) -> Table:
-    """First harmonics of everything that turns, meshes and rolls.
-
-    Parameters
-    ----------
-    found : sequence of Line
-    """
+    """First harmonics of everything that turns, meshes and rolls."""
     shown = [line for line in found if line.kind != "sideband" and line.name.endswith(" 1")]
     columns = [
         text("order", lambda line: line.name.removesuffix(" 1")),
@@ -44,12 +39,7 @@ def all_lines(found: Sequence[Any]) -> Table:
 
 
 def coincidences(found: Any) -> Table:
-    """Orders near natural frequencies.
-
-    Parameters
-    ----------
-    found : AtSpeed
-    """
+    """Orders near natural frequencies."""
     columns = [
         text("order", lambda one: one.line),
         Column("Hz", lambda one: one.line_hz, hertz),

@@ -25,8 +25,6 @@ def write_stress(
 
     Parameters
     ----------
-    folder : Path
-    found : StressAtRest
     lead : str
         Under what they are loaded.
     units : Units
@@ -97,7 +95,7 @@ def headline(found: StressAtRest, units: Units = ENGINEERING) -> str:
 
 
 def sentences(found: StressAtRest, units: Units = ENGINEERING) -> list[str]:
-    """What else is to be said of the shafts: where no stress is told, and what was left out."""
+    """Sentences on the shafts: places without a stress, and what was left out."""
     out = []
     for shaft in found.shafts:
         lead = f"{shaft.name}: " if len(found.shafts) > 1 else ""

@@ -56,8 +56,6 @@ def section_forces(
 
     Parameters
     ----------
-    forces : SectionForces
-    units : Units, optional
     of : str
         Name of the shaft, where there are several.
     open_ : (float, float), optional
@@ -173,10 +171,8 @@ def surface_stress(
 
     Parameters
     ----------
-    found : ShaftStress
     open_ : mapping of str to (float, float)
         Least and largest amplitude by fillet, Pa.
-    units : Units, optional
     of : str
         Name of the shaft, where there are several.
     open_by : str
@@ -288,7 +284,6 @@ def rating(notch: Notch, units: Units = ENGINEERING, of: str = "") -> Table:
     ----------
     notch : Notch
         With a rating.
-    units : Units
     of : str
         Name of the shaft, where there are several.
     """

@@ -29,9 +29,6 @@ def sweep_chart(found: Any, title: str, units: Units = ENGINEERING, width: float
 
     Parameters
     ----------
-    found : Curves
-    title : str
-    units : Units, optional
     width : float
         px.
     """
@@ -53,13 +50,7 @@ def sweep_chart(found: Any, title: str, units: Units = ENGINEERING, width: float
 
 
 def sweep_table(found: Any, units: Units = ENGINEERING) -> Table:
-    """What the rows tell of the operating point and of the largest peak of the mesh force.
-
-    Parameters
-    ----------
-    found : Curves
-    units : Units, optional
-    """
+    """Table of the operating point and of the largest peak of the mesh force in every row."""
     columns = [text("point", lambda k: found.labels[k])] if found.labels else []
     last = found.over.rpartition(".")[2]
     columns.append(

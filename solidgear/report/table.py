@@ -114,7 +114,6 @@ class Table:
 
     Attributes
     ----------
-    title : str
     columns : sequence of Column or str
         A text is the head of a column whose values need no more than :func:`as_text`.
     rows : sequence

@@ -232,10 +232,6 @@ def matrix_table(
     sizes : two lists of six numbers, optional
         Diagonal entries beside which a coupling may be next to nothing, of rows and of columns; by
         default those of the matrix.
-
-    Returns
-    -------
-    Table
     """
     chosen = units_named(units)
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix

@@ -45,14 +45,12 @@ def response_chart(
     ----------
     responses : sequence of TrainResponse
         By their labels; the peaks of the first are named.
-    title : str
     teeth : int or None
         Of the pinion, for the upper axis in rpm; None where the responses do not share them.
     band : float or None
         Drawn around the first where there are others, dB.
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
-    units : Units, optional
     width : float
         px.
     """
@@ -116,7 +114,6 @@ def columns_chart(
         are left out.
     teeth : int or None
         As of :func:`response_chart`.
-    units : Units, optional
     width : float
         px.
     """
@@ -172,10 +169,8 @@ def receptance_chart(
     ----------
     found : sequence of TrainReceptance
         Of the same two ends.
-    title : str
     teeth : int
         Of the pinion, for the upper axis in rpm.
-    units : Units, optional
     width : float
         px.
     """

@@ -40,10 +40,6 @@ def write_response(
     spectrum ``peaks.csv`` and the chart ``measured``.
 
     Charts and page are in `units`, all else in SI.
-
-    Returns
-    -------
-    list of Path
     """
     first, shown = responses[0], units_named(units)
     tables = {"response": over_frequency(first, teeth)}
@@ -98,21 +94,14 @@ def write_receptance(
 
     Parameters
     ----------
-    folder : Path
     found : sequence of TrainReceptance
         Of the same two ends.
-    title : str
     teeth : int
         Of the pinion.
-    notes : mapping
     train : mapping
         What is known of the train, as plain data.
     units : str or Units
         Of chart and page; all else is SI.
-
-    Returns
-    -------
-    list of Path
     """
     first, shown = found[0], units_named(units)
     unit, value = first.unit, first.value

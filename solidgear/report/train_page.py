@@ -49,7 +49,6 @@ def write_train(
         Where a model leaves its band, Hz.
     orders : OrderMap
         Of the judge.
-    out : path
     draw : callable, optional
         Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
         sentences on what could not be drawn.

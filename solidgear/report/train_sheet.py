@@ -42,7 +42,6 @@ class Section:
 
     Attributes
     ----------
-    anchor, title, words : str
     charts : mapping of str to callable
         By names of letters and underscores, each of no other chart of the page; those in ``WORDS``
         say what is written there, others the title.
@@ -74,7 +73,6 @@ def write_sheet(
 
     Parameters
     ----------
-    path : Path
     title, lead : str
         What is shown, and with which models.
     tables : iterable of Table
@@ -82,7 +80,6 @@ def write_sheet(
         A chart each, by a name that begins with one of ``WORDS``.
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
-    notes, cautions : sequence of str
     verdict : sequence of str
         Conclusions, which come first.
     sections : sequence of Section

@@ -34,7 +34,6 @@ class Shape:
     ----------
     name : str
         Such as ``bending 1``.
-    frequency_hz : float
     pair : bool
         True if there is a second shape at this frequency.
     twists : bool
@@ -58,7 +57,6 @@ class Turned:
     ----------
     title : str
         Of the model, such as ``harmonic solid``.
-    mesh : Mesh
     shapes : tuple of Shape
         In ascending order of frequency; rigid motions are left out.
     rotation : (3, 3) ndarray
@@ -94,7 +92,6 @@ class Member(NamedTuple):
 
     Attributes
     ----------
-    body : Body
     rotation : (3, 3) ndarray
     origin : (3,) ndarray
         As of :class:`Turned`.
@@ -118,7 +115,6 @@ def turned(
 
     Parameters
     ----------
-    body : Body
     modes : ModeSet or iterable of Mode
     title : str, optional
         The body's model by default.
@@ -147,10 +143,8 @@ def together(
 
     Parameters
     ----------
-    title : str
     modes : sequence of (str, float)
         Name and frequency, Hz, of elastic modes.
-    members : sequence of Member
     like : sequence of Turned, optional
         The same bodies by other models: a shape takes the sign of theirs of the same name.
 

@@ -52,12 +52,10 @@ def write_two_trains(
 
     Parameters
     ----------
-    found : TwoTrains
     results : mapping
         The same as plain data, as of ``two_trains_told.results``.
     sentences : sequence of str
         Its conclusions.
-    out : path
     units : str or Units
         Of tables and charts; all else is SI.
 

@@ -113,10 +113,8 @@ def largest(
 
     Parameters
     ----------
-    found : TwoTrains
     columns : sequence of (str, str)
         Name with its unit, and what it is called.
-    units : Units, optional
     """
     out = []
     for si, title in (("N", "forces"), ("N m", "moments"), ("m", "motions"), ("rad", "rotations")):

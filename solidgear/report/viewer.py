@@ -44,7 +44,6 @@ class Turning:
 
     Attributes
     ----------
-    models : tuple of Turned
     title : str
         Of the page.
     first : str

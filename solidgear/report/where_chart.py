@@ -48,7 +48,6 @@ def draw_where(
         Of every cell; their magnitudes are drawn.
     rows : sequence of Row or PlaceRecord
         Places, the largest share first; those worth it are named.
-    title : str
 
     Raises
     ------

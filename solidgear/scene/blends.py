@@ -170,10 +170,6 @@ class _Blend(Placed):
     def corner(self, segments: Sequence[Segment]) -> Corner:
         """Its edge on a shaft.
 
-        Parameters
-        ----------
-        segments : sequence of Segment
-
         Raises
         ------
         SceneError

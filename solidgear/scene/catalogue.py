@@ -46,7 +46,6 @@ class BearingLoad(Model):
 
     Attributes
     ----------
-    x, y, z : float
     thx, thz : float or None
         Moments; where none is given a bearing's ring is held against tilting.
 
@@ -75,10 +74,6 @@ class BearingLoad(Model):
 
 class BearingDisplacement(Model):
     """Displacement of the inner ring against the outer one, m and rad.
-
-    Attributes
-    ----------
-    x, y, z, thx, thz : float
 
     Examples
     --------

@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 def volume_of(outline: Outline) -> float:
     """Volume of a shaft, closed form.
 
-    Parameters
-    ----------
-    outline : Outline
-
     Returns
     -------
     float
@@ -70,10 +66,6 @@ def mass_properties(outline: Outline[Segment]) -> MassProperties:
     ----------
     outline : Outline
         Of segments with a material.
-
-    Returns
-    -------
-    MassProperties
 
     Examples
     --------

@@ -35,7 +35,7 @@ TYPED = 1e-3
 
 @dataclass(frozen=True)
 class Working:
-    """What two cylindrical gears are where they roll on each other.
+    """Two cylindrical gears where they roll on each other.
 
     Attributes
     ----------
@@ -74,10 +74,6 @@ def working(
         Profile shifts x, in modules.
     centre_distance : float, optional
         m; by default that without backlash.
-
-    Returns
-    -------
-    Working
 
     Raises
     ------
@@ -129,11 +125,6 @@ def _of_involute(value: float) -> float:
 def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[SceneError]:
     """Problems of the words of cylindrical gears among themselves and with those of bevel gears.
 
-    Parameters
-    ----------
-    pinion, gear : Member
-    mesh : Mesh
-
     Yields
     ------
     SceneError
@@ -169,11 +160,6 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
 def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     """Fields of a train of parallel shafts as bevel gears have them: pitch radii and angles where the
     wheels roll on each other; none for other shafts.
-
-    Parameters
-    ----------
-    pinion, gear : Member
-    mesh : Mesh
 
     Raises
     ------

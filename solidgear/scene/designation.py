@@ -92,7 +92,6 @@ class Boundary(NamedTuple):
 
     Attributes
     ----------
-    kind : str
     bore, outer_diameter, width : float
         m; the bore of a drawn cup is the diameter under its rollers.
     contact_angle : float or None

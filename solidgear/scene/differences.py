@@ -108,7 +108,7 @@ class _Files:
         yield from self._tables("", a, b, left_out=("ask",) if self.prefix else ())
 
     def _meaning(self, k: int) -> Any:
-        """What a file says, whatever it leaves out; None where it cannot be read alone."""
+        """Scene or train of a file, whatever it leaves out; None where it cannot be read alone."""
         read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
         try:
             return read(self.raw[k], self.files[k])

@@ -25,10 +25,8 @@ class Known:
     ----------
     E : float
         Pa.
-    nu : float
     density : float
         kg/m^3.
-    source : str
     """
 
     E: float

@@ -41,7 +41,6 @@ class OperatingPoint(Model):
 
     Attributes
     ----------
-    name : str
     torque : float
         N m, of the shaft `of`; positive where the flank that the file names carries it (drive),
         negative where the other one does (coast).
@@ -52,7 +51,6 @@ class OperatingPoint(Model):
         Of the other shaft, to be held against the teeth.
     weight : str or None
         Direction in which weight acts, in the axes of the pinion's scene, such as ``-z``.
-    force : tuple of OutsideForce
     share, hours : float or None
         Of a duty table: share of the time, or hours; of every point or of none.
 
@@ -137,7 +135,6 @@ def operation_problems(
 
     Parameters
     ----------
-    points : sequence of OperatingPoint
     ratio : float
         Teeth of the gear over the pinion's.
     ports : mapping of str to sequence of str

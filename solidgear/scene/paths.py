@@ -23,7 +23,6 @@ def keys_of(path: str, tables: Tables) -> Keys:
 
     Parameters
     ----------
-    path : str
     tables : mapping
         Of a file, as they are written.
 
@@ -82,7 +81,7 @@ def label_of(keys: Keys, tables: Tables) -> str:
 
 
 def entry(keys: Keys, tables: Tables) -> Any:
-    """What a file holds at an entry; None where it holds nothing."""
+    """Value that a file holds at an entry; None where it holds nothing."""
     here: Any = tables
     for key in keys:
         here = _child(here, key)

@@ -68,7 +68,6 @@ class Recognised(NamedTuple):
 
     Attributes
     ----------
-    body : BodyFile
     walls : sequence of (y0, y1, outer0, outer1, inner0, inner1)
         Frusta end to end from y = 0, m.
     origin : float

@@ -171,7 +171,6 @@ class Laid(NamedTuple):
 
     Attributes
     ----------
-    segments : list of Segment
     shapes : list of (int, Shape)
         Of each segment, with its place in the file.
     """

@@ -66,8 +66,6 @@ class Member(Model):
 
     Attributes
     ----------
-    scene : Scene
-    teeth : int
     hand : {'left', 'right'} or None
     loaded_side : {'concave', 'convex', 'left', 'right'} or None
         Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
@@ -83,7 +81,6 @@ class Member(Model):
         Of cylindrical gears, in modules.
     apex : {'start', 'end'}
         Towards which end of the shaft the pitch apex lies.
-    head : HeadInertia or None
     scene_load : {'added', 'replaced'} or None
         Of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
         gives way to it; where neither is said it must be the mesh force.
@@ -158,7 +155,6 @@ class Rotor(Model):
     ----------
     inertia : float
         About the shaft, kg m^2.
-    spring : TorsionSpringTable
     status : {'published', 'identified', 'assumed', 'measured'}
     """
 

@@ -126,10 +126,6 @@ def _divided(key, own, least: int):
 def of_body(body: Body) -> tuple[Circumference, Callable[[np.ndarray], np.ndarray]] | None:
     """The fit for a body of one 3D block that knows its mesh, kept with the body.
 
-    Parameters
-    ----------
-    body : Body
-
     Returns
     -------
     (Circumference, callable) or None

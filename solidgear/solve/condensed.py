@@ -18,8 +18,6 @@ class Condensed(Displayed):
 
     Attributes
     ----------
-    port : str
-    attachment : str
     stiffness : (6, 6) ndarray
         N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero.
     compliance : (6, 6) ndarray
@@ -63,8 +61,6 @@ class Coupled(Displayed):
 
     Attributes
     ----------
-    ports : tuple of str
-    attachments : tuple of str
     stiffness : (6 n, 6 n) ndarray
         Loads that hold all ports at given motions, port by port, SI. NaN where ports move as one:
         then none exists. Rows of motions that nothing resists at any of them are exactly zero.

@@ -16,8 +16,6 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     tolerance : float
         Largest bound that is accepted.
 
@@ -56,8 +54,6 @@ def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     spring : (6 m, 6 m) ndarray
         From :func:`decoupled`.
 

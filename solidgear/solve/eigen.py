@@ -85,17 +85,12 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
 
     Parameters
     ----------
-    supported : Supported
     n : int
         Number of modes wanted; two more are found, so that a pair at the end of the list is seen
         whole.
     method : {None, 'lanczos', 'arpack', 'dense'}
         None takes the quickest for the size and the back end.  If block Lanczos does not converge
         ARPACK takes over.
-
-    Returns
-    -------
-    Solved
 
     Raises
     ------
@@ -231,7 +226,6 @@ class Count:
         Bound, rad^2/s^2.
     found, counted : int
         Modes the eigensolver gave below it, and modes there are.
-    backend : str
     distance : float
         Of the nearest eigenvalue from the bound, relative.
     """
@@ -253,8 +247,6 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
 
     Parameters
     ----------
-    supported : Supported
-    solved : Solved
     reach : float
         Highest eigenvalue that is used, rad^2/s^2.
 

@@ -69,10 +69,6 @@ def factorise(
         ``matrix @ u``, by which a factor in single precision is refined; by default the matrix
         itself is kept for that.
 
-    Returns
-    -------
-    Factor
-
     Raises
     ------
     FactorError
@@ -98,7 +94,6 @@ class Planned:
 
     Attributes
     ----------
-    unknowns : int
     backend : str
         That will make it.
     estimate_mb : float
@@ -122,10 +117,6 @@ def planned(
     product: Linear | None = None,
 ) -> Planned:
     """Analyse a matrix and leave its numbers alone; parameters as for :func:`factorise`.
-
-    Returns
-    -------
-    Planned
 
     Raises
     ------
@@ -171,13 +162,8 @@ def factored(plans: Sequence[Planned], free: float | None = None) -> list[Factor
 
     Parameters
     ----------
-    plans : sequence of Planned
     free : float, optional
         MB before they were analysed, which takes a part of what they need.
-
-    Returns
-    -------
-    list of Factor
 
     Raises
     ------

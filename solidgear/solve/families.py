@@ -8,16 +8,7 @@ FAMILIES = {"bending": (0, 2, 3, 5), "axial": (1,), "torsion": (4,)}
 
 
 def waves_of(block: Block) -> int:
-    """Waves around the axis of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
-
-    Returns
-    -------
-    int
-    """
+    """Waves around the axis of the motions of a block."""
     for kind in ("ovalising_", "cyclic_"):
         if block.name.startswith(kind):
             return int(block.name.removeprefix(kind))
@@ -27,31 +18,18 @@ def waves_of(block: Block) -> int:
 def repeats(block: Block) -> bool:
     """True where every shape of a block stands for its twin as well, a quarter of a wave further
     round.
-
-    Parameters
-    ----------
-    block : Block
     """
     return block.name.startswith("ovalising_")
 
 
 def several(block: Block) -> bool:
-    """True where section motions tell the families of a block apart, and not the block alone.
-
-    Parameters
-    ----------
-    block : Block
-    """
+    """True where section motions tell the families of a block apart, and not the block alone."""
     own = [name for name, known in FAMILIES.items() if set(block.components) & set(known)]
     return len(own) > 1
 
 
 def family_of(block: Block) -> str:
     """Family of the motions of a block.
-
-    Parameters
-    ----------
-    block : Block
 
     Returns
     -------

@@ -34,7 +34,6 @@ class Part:
 
     Attributes
     ----------
-    supported : Supported
     ask : int
         Number of modes to search for.
     solved : Solved
@@ -72,10 +71,6 @@ class Part:
         ----------
         found : list of Raw
             Of the group.
-
-        Returns
-        -------
-        list of Raw
         """
         out = []
         for r in found:
@@ -88,12 +83,7 @@ class Part:
         return out
 
     def values(self) -> list[float]:
-        """Elastic eigenvalues with every shape counted, rad^2/s^2.
-
-        Returns
-        -------
-        list of float
-        """
+        """Elastic eigenvalues with every shape counted, rad^2/s^2."""
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
 
 
@@ -124,17 +114,11 @@ def solved_parts(
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     spring : (6 m, 6 m) ndarray
         From :func:`~solidgear.solve.supported.decoupled`.
     n : int
         Number of shapes wanted in all.
     method : {None, 'lanczos', 'arpack', 'dense'}
-
-    Returns
-    -------
-    list of Part
 
     Raises
     ------
@@ -179,7 +163,6 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
     ----------
     parts : list of Part
         Solved.
-    n : int
     highest : float
         rad^2/s^2.
 
@@ -199,13 +182,10 @@ def further_parts(
 
     Parameters
     ----------
-    body : Body
     parts : list of Part
         The body's own, solved.
-    n : int
     highest : float
         Largest eigenvalue wanted, rad^2/s^2.
-    method : str, optional
 
     Returns
     -------
@@ -309,10 +289,6 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
     """Everything that was solved, lowest number of waves last among single families.
 
-    Parameters
-    ----------
-    parts : list of Part
-
     Returns
     -------
     list of (str, int or None, bool)
@@ -336,8 +312,6 @@ def family_rows(
 
     Parameters
     ----------
-    parts : list of Part
-    left : list of Uncounted
     found : list of (str, float, int)
         Family, frequency (Hz) and number of shapes of every mode.
 

@@ -28,7 +28,6 @@ class Found:
         Mass-orthonormal.
     columns : int
         Solves that were spent.
-    converged : bool
     """
 
     theta: np.ndarray
@@ -65,10 +64,6 @@ def block_lanczos(
         Largest number of basis vectors; beyond it the result is returned as not converged.
     seed : int
         Of the directions that replace an exhausted block.
-
-    Returns
-    -------
-    Found
 
     Examples
     --------

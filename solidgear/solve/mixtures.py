@@ -52,10 +52,6 @@ class Mixture(NamedTuple):
 def mixtures(found: ModeSet) -> tuple[Mixture, ...]:
     """Modes with a name that is a toss-up, and the one that each shares its motion with.
 
-    Parameters
-    ----------
-    found : ModeSet
-
     Returns
     -------
     tuple of Mixture

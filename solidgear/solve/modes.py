@@ -48,8 +48,6 @@ class Mode:
     ----------
     name : ModeName
         Such as ``bending 1``, ``axial 1``, ``rigid torsion``.
-    family : str
-    frequency_hz : float
     multiplicity : int
         2 for a degenerate pair.
     vectors : tuple of dict
@@ -84,8 +82,6 @@ class ModeSet(Displayed):
 
     Attributes
     ----------
-    fidelity : str
-    modes : tuple of Mode
     stations : (s,) ndarray
         Places of section motions, m.
     gram : (6 s, 6 s) ndarray
@@ -147,10 +143,6 @@ class ModeSet(Displayed):
             Such as ``bending 1``. Where bending is named by its plane, ``bending 1`` and ``bending
             2`` are the first and the second of both planes in order of frequency, as they are of a
             part without a mirror plane: which way a keyway looks does not matter.
-
-        Returns
-        -------
-        Mode or None
         """
         every = sorted((*self.modes, *self.beyond), key=lambda mode: mode.frequency_hz)
         place = meant(name, [mode.name for mode in every])

@@ -41,7 +41,6 @@ class Shape:
 
     Attributes
     ----------
-    family : str
     waves : int
         Around the axis.
     motion : (stations, 6) ndarray
@@ -81,7 +80,6 @@ class Projection:
 
     Parameters
     ----------
-    body : Body
     stations : (s,) ndarray
         Axial positions, ascending, m; the first and the last at the ends of the shaft.
 
@@ -164,8 +162,6 @@ class Names:
     ----------
     body : Body
         All blocks that shapes refer to.
-    supports : Supports
-    project : Projection
     """
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
@@ -188,10 +184,6 @@ class Names:
         ----------
         vectors : dict of int to (n,) ndarray
             By block index.
-
-        Returns
-        -------
-        Shape
         """
         motion = self.project(vectors)
         shares = self.project.shares(motion)
@@ -263,10 +255,6 @@ class Names:
 
     def overlap(self, a: Shape, b: Shape) -> float:
         """MAC of one shape, turned by a quarter of a wave, with another.
-
-        Parameters
-        ----------
-        a, b : Shape
 
         Returns
         -------

@@ -17,10 +17,6 @@ def alike(supports: Supports) -> float:
     If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
     supported body moves by more than eps (Rayleigh), and likewise for a change of the mass.
 
-    Parameters
-    ----------
-    supports : Supports
-
     Returns
     -------
     float

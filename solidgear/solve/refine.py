@@ -66,10 +66,6 @@ class Refined:
         ----------
         needed : int
             How many pairs.
-
-        Returns
-        -------
-        float
         """
         return float((self.error - self.noise)[:needed].max(initial=0.0))
 
@@ -90,17 +86,12 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
 
     Parameters
     ----------
-    supported : Supported
     vectors : (n, k) ndarray
         Mass-orthonormal shapes.
     value : (k,) ndarray
         Their eigenvalues, roughly, ascending, rad^2/s^2.
     needed : int
         How many of the lowest must be right; the others are there to see gaps.
-
-    Returns
-    -------
-    Refined
     """
     carried = supported.mass_rigid.T @ vectors
     elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)

@@ -34,10 +34,6 @@ class Factored:
 def factors(body: Body) -> list[Factor]:
     """One factor of ``K + sigma M`` per block, kept with the body.
 
-    Parameters
-    ----------
-    body : Body
-
     Returns
     -------
     list of Factor
@@ -56,11 +52,6 @@ def factors(body: Body) -> list[Factor]:
 def plans(body: Body, factoring: Factoring) -> dict[int, Planned]:
     """Factors of a body that are not made yet, analysed in full.
 
-    Parameters
-    ----------
-    body : Body
-    factoring : Factoring
-
     Returns
     -------
     dict of int to Planned
@@ -76,11 +67,6 @@ def plans(body: Body, factoring: Factoring) -> dict[int, Planned]:
 
 def needed_mb(body: Body, factoring: Factoring) -> float:
     """Memory that the factors of a body would take, by analysis.
-
-    Parameters
-    ----------
-    body : Body
-    factoring : Factoring
 
     Returns
     -------

@@ -22,8 +22,6 @@ def sound(body: Body, mode: Mode, parts: list[Part]) -> Mode:
 
     Parameters
     ----------
-    body : Body
-    mode : Mode
     parts : list of Part
         Where it was found.
 

@@ -57,7 +57,6 @@ class Flexibility:
         Relative asymmetry of the computed matrix before it was symmetrised.
     residual : float
         Estimated relative error that refinement left: the square of what the displacements miss.
-    backend : str
     fields : dict of int to ndarray
         Elastic displacements under unit loads on the ports, by planar blocks.
     """
@@ -75,13 +74,8 @@ def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
 
     Parameters
     ----------
-    body : Body
     tolerance : float
         Relative error of the energy at which refinement stops.
-
-    Returns
-    -------
-    Flexibility
 
     Raises
     ------

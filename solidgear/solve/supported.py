@@ -39,8 +39,6 @@ class Supported:
 
     Parameters
     ----------
-    body : Body
-    supports : Supports
     spring : (6 m, 6 m) ndarray
         Stiffness of the supports, perhaps without negligible couplings (see :func:`decoupled`).
     group : list of int

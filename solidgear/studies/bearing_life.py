@@ -23,7 +23,6 @@ class BearingLife:
 
     Attributes
     ----------
-    name : str
     life : Life
         At the middle of what is not known.
     speed : float
@@ -70,15 +69,10 @@ def bearing_lives(
 
     Parameters
     ----------
-    scene : Scene
     body : Body, optional
         The shaft, where the bearings wait for its load.
     speed : float, optional
         Of the shaft, rad/s, in place of that of its bearings or of its lubrication.
-
-    Returns
-    -------
-    list of BearingLife
 
     Raises
     ------
@@ -107,7 +101,7 @@ def _place(found: Solved, bearing: Bearing) -> Place:
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
-    """What is not known of the bearings of scenes that share their loads.
+    """Unknowns of the bearings of scenes that share their loads.
 
     Parameters
     ----------
@@ -151,7 +145,6 @@ def life_of(
     ----------
     bearing : Bearing
         With catalogue data.
-    oil : Lubrication or None
     told : str
         What the places differ in.
     speed : float or None
@@ -159,10 +152,6 @@ def life_of(
     places : sequence of (Catalogued, (6,) ndarray)
         The bearing and the motion of its inner ring, as told and at the corners of what is not
         known.
-
-    Returns
-    -------
-    BearingLife
     """
     data = bearing.catalogue
     assert data is not None

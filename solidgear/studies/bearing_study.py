@@ -27,7 +27,6 @@ class BearingFacts:
 
     Attributes
     ----------
-    name, kind, designation, status : str
     inside : dict
         Inner geometry it was solved with, SI.
     estimated : tuple of str
@@ -39,7 +38,6 @@ class BearingFacts:
     stiffness : (6, 6) ndarray
     spread : (ndarray, ndarray) or None
         Diagonal of the stiffness: least and largest of an estimated inside and its two ends.
-    rows : tuple of Contacts
     notes : tuple of str
         What is to be said of it, one sentence each.
     """
@@ -64,13 +62,8 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
 
     Parameters
     ----------
-    scene : Scene
     body : Body, optional
         The shaft, where the bearings wait for its load.
-
-    Returns
-    -------
-    list of BearingFacts
 
     Raises
     ------
@@ -179,15 +172,10 @@ def over_load(
 
     Parameters
     ----------
-    scene : Scene
     body : Body, optional
         The shaft, where the bearings wait for its load.
     factors : sequence of float
         Times the load that the scene says.
-
-    Returns
-    -------
-    dict of str to OverLoad
     """
     names = [b.name for b in scene.bearings if b.catalogue is not None]
     loads: dict[str, list] = {name: [] for name in names}
@@ -218,7 +206,6 @@ class Bound:
 
     Attributes
     ----------
-    mode : str
     middle, low, high : float
         Hz.
     """
@@ -237,8 +224,6 @@ class BearingRange:
     ----------
     bounds : tuple of Bound
         Modes that every point has, by name.
-    ranges : Ranges
-    points : int
     lost : tuple of str
         Bearings that carry nothing somewhere in the range.
     refused : tuple of str
@@ -276,17 +261,10 @@ def bearing_range(
 
     Parameters
     ----------
-    scene : Scene
-    ranges : Ranges
     body : Body, optional
         Made at `fidelity` unless given; factored once.
     n : int
         Elastic modes.
-    fidelity : str
-
-    Returns
-    -------
-    BearingRange
 
     Raises
     ------
@@ -336,15 +314,10 @@ def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -
 
     Parameters
     ----------
-    scene : Scene
     load : dict
         As for :class:`solidgear.scene.BearingLoad`.
     bearing : str or None
         Name of the bearing that bears it; None puts it on the port.
-
-    Returns
-    -------
-    Scene
 
     Raises
     ------

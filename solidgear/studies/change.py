@@ -13,7 +13,6 @@ class Change:
 
     Attributes
     ----------
-    a, b : float
     bar_a, bar_b : float or None
         Error bars of both, in the unit of the number; None of one that has none.
 

@@ -72,7 +72,6 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
 
     Parameters
     ----------
-    scene : Scene
     body : Body
         The model asked for; its mesh is held against the closed form.
     probe : Probe, optional
@@ -114,8 +113,6 @@ def notices(
 
     Parameters
     ----------
-    scene : Scene
-    solutions : dict of str to Solution
     names : tuple of str, optional
         Guards to ask; by default all that a comparison does not answer by itself.
 
@@ -164,8 +161,6 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
 
     Parameters
     ----------
-    scene : Scene
-    body : Body
     fidelity : str, optional
         Another model than that of ``body``, whose mesh is then not judged.
     """

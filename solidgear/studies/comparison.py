@@ -41,7 +41,6 @@ class Comparison(Displayed):
 
     Attributes
     ----------
-    scene : Scene
     record : Record
         What ``results.json`` holds.
     solutions : dict of str to Solution

@@ -41,7 +41,6 @@ class BearingState:
 
     Attributes
     ----------
-    name : str
     place : float
         Along the shaft, m.
     load : (6,) ndarray
@@ -132,14 +131,12 @@ class ShaftDeflection:
 
     Attributes
     ----------
-    name, model : str
     stations : (s,) ndarray
         Along the shaft, m; empty of a model without a body.
     line : (s, 6) ndarray
         Motions of cross-sections there (mean, weighted by mass), m and rad.
     ports : dict of str to (6,) ndarray
         Motions of lumped points, bearings and other stations.
-    bearings : tuple of BearingState
     """
 
     name: str
@@ -173,7 +170,6 @@ class SceneDeflection:
 
     Attributes
     ----------
-    title : str
     load : (6,) ndarray
         At the lumped point, N and N m.
     shafts : tuple of ShaftDeflection
@@ -208,10 +204,6 @@ def deflect_scene(
         The finest last.
     progress : callable, optional
         Told each model.
-
-    Returns
-    -------
-    SceneDeflection
 
     Raises
     ------
@@ -249,13 +241,7 @@ def load_of(scene: Scene) -> np.ndarray:
 
 
 class ShaftAtRest:
-    """A shaft by one model, to be settled under the load of its scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    model : str
-    """
+    """A shaft by one model, to be settled under the load of its scene."""
 
     def __init__(self, scene: Scene, model: str):
         self.scene, self.model = scene, model
@@ -284,7 +270,6 @@ def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
     ----------
     part : str
         Name of the shaft in the system.
-    scene : Scene
     made : mapping of str to Catalogued
         Bearings of catalogue data, by ``part.name``.
     """
@@ -324,12 +309,10 @@ def shaft_deflection(
     ----------
     part : str
         Its name in the system.
-    model : str
     scene : Scene
         Of that shaft.
     system : System
         Without its bearings.
-    found : SystemEquilibrium
     body : Body or None
         That the part was reduced from; None of a rigid one, whose line has its two ends.
     made : mapping of str to Catalogued

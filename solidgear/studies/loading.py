@@ -116,10 +116,6 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
     scene : Scene, optional
         As read from it.
 
-    Returns
-    -------
-    Solved
-
     Raises
     ------
     SceneError

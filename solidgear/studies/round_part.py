@@ -24,12 +24,7 @@ ROUND_MODEL = "harmonic"
 
 
 def described(scene: Scene) -> Iterator[Notice]:
-    """Round portion of the part of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Round portion of the part of a scene."""
     body = scene.body
     if body is None:
         return

@@ -105,10 +105,6 @@ def read_spectrum(path: str | os.PathLike) -> Spectrum:
     ----------
     path : str or path
 
-    Returns
-    -------
-    Spectrum
-
     Raises
     ------
     SolidgearError

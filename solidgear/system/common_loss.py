@@ -63,7 +63,6 @@ def common_loss(system: System, loss: Mapping[str, float]) -> CommonLoss | None:
 
     Parameters
     ----------
-    system : System
     loss : mapping of str to float
         Loss factors of parts and links; those not named have none.
 
@@ -105,8 +104,6 @@ def in_real_modes(
 
     Parameters
     ----------
-    system : System
-    common : CommonLoss
     w2 : (f,) ndarray
         Squares of angular frequencies, rad^2/s^2.
     load : (N,) ndarray

@@ -35,7 +35,6 @@ class Elimination:
 
     Parameters
     ----------
-    system : System
     loss : mapping of str to float
         Loss factor eta of parts and links.
     """

@@ -40,7 +40,6 @@ class Seats:
 
     Attributes
     ----------
-    part : str
     bearings : tuple of Mounted
         On ports of the part.
     places : tuple of float
@@ -78,7 +77,6 @@ class SystemEquilibrium:
         Bearings that carry nothing.
     unbalanced : float
         What is left of the loads, of the largest of them or of the preloads.
-    iterations : int
     """
 
     coordinates: np.ndarray
@@ -94,11 +92,6 @@ class SystemEquilibrium:
 @dataclass(frozen=True, eq=False)
 class OnBearings:
     """A system without its bearings, and the bearings that it rests on.
-
-    Attributes
-    ----------
-    system : System
-    seats : tuple of Seats
 
     Examples
     --------
@@ -263,7 +256,6 @@ def weight(system: System, gravity: Sequence[float]) -> np.ndarray:
 
     Parameters
     ----------
-    system : System
     gravity : (3,) sequence of float
         Acceleration in the axes of the system, m/s^2.
 

@@ -246,7 +246,6 @@ class HousedSprings:
 
     Attributes
     ----------
-    at : tuple of str
     supports : Supports
         Of as many ports, in their order.
     """

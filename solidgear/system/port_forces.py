@@ -13,7 +13,6 @@ def port_forces(system: System, coordinates: np.ndarray) -> dict[str, np.ndarray
 
     Parameters
     ----------
-    system : System
     coordinates : (N,) ndarray
 
     Returns

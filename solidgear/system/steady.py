@@ -69,7 +69,6 @@ class SteadyState:
 
     Attributes
     ----------
-    system : System
     loss : mapping of str to float
         Loss factor eta of parts and links.
     kind : {'hysteretic', 'viscous', 'modal'}
@@ -256,7 +255,6 @@ class SteadyState:
 
         Parameters
         ----------
-        lowest_hz, highest_hz : float
         seen : callable
             ``seen(frequency_hz)`` gives the motions (f, q) that are looked at.
 

@@ -24,7 +24,6 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
 
     Parameters
     ----------
-    scene : Scene
     full : bool
         More levels, up to solids of several hundred thousand unknowns.
     """

@@ -41,7 +41,6 @@ class Row:
         ``waiting``, ``ok``, ``failed`` or ``left out``.
     reason : str
         Why it failed, was left out, lacks a number or has fewer runs.
-    unknowns : int or None
     samples : list of float
         Wall seconds of every run; of a failed case the seconds until it failed.
     values, errors, like_for_like : dict of str to float
@@ -75,11 +74,9 @@ class Race:
 
     Attributes
     ----------
-    scene : dict
     reference : dict
         ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and
         ``like_for_like``.
-    rows : list of Row
     setup : dict of str to float
         Seconds a process pays once, by what for.
     runs, modes : int
@@ -88,7 +85,6 @@ class Race:
         Allowed and used, s.
     complete : bool
         False after an interrupt.
-    environment : dict
     """
 
     scene: dict

@@ -63,7 +63,6 @@ class Deck:
         Of its cells, one of `KINDS`.
     cells : (nodes, ne) ndarray of int
         In VTK's order of nodes.
-    groups : tuple of Group
     numbers : (ne,) ndarray of int or None
         By which the file calls its elements.
     lines : (ne,) ndarray of int or None

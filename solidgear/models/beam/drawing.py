@@ -26,7 +26,6 @@ class BeamLine:
 
     Attributes
     ----------
-    shaft : Shaft
     nodes : (n,) ndarray
         Axial positions, m.
     """

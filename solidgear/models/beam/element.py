@@ -144,7 +144,6 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
 
     Parameters
     ----------
-    c : Section
     shear : bool
         Timoshenko, else Euler-Bernoulli.
     rotary : bool
@@ -220,7 +219,6 @@ def rod_matrices(c: Section, rigidity, inertia, mass: str):
 
     Parameters
     ----------
-    c : Section
     rigidity : (q,) ndarray
         ``E A`` or ``G J``.
     inertia : (q,) ndarray
@@ -249,7 +247,6 @@ class Fields:
 
     Attributes
     ----------
-    segment : Segment
     left, right : float
         Ends of the element, m.
     bend : (ndarray of int, (2, q, n) ndarray)

@@ -56,7 +56,6 @@ def grown(ratio: float, thin: Material, thick: Material) -> tuple[float, float]:
     ----------
     ratio : float
         Of the diameters.
-    thin, thick : Material
 
     Returns
     -------

@@ -61,8 +61,6 @@ class Arc:
     ----------
     scene : Scene
         That the body was built from.
-    body : Body
-    corner : Corner
 
     Raises
     ------

@@ -105,10 +105,6 @@ def harmonic(
     plain : bool
         Whether the mesh to be cut has one cell a band and strip, however narrow seats and discs are.
 
-    Returns
-    -------
-    Body
-
     Raises
     ------
     SolidgearError

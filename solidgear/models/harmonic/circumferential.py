@@ -39,7 +39,6 @@ class Families:
 
     Parameters
     ----------
-    scene : Scene
     build : callable
         Block of n waves on the mesh of the body.
 

@@ -58,10 +58,8 @@ class PatchMotion:
 
     Parameters
     ----------
-    scene : Scene
     body : Body
         Of the harmonic solid.
-    patch : Patch
 
     Raises
     ------

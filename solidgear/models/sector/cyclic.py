@@ -70,7 +70,6 @@ def basis(sector: Sector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarray
 
     Parameters
     ----------
-    sector : Sector
     nodes : int
         Of the sector.
     h : int
@@ -162,8 +161,6 @@ def cyclic_blocks(
     ----------
     mesh : SolidMesh
         Of the sector.
-    scene : Scene
-    sector : Sector
     wanted : sequence of (station, attachment)
     parts_of : callable
         ``parts_of(station, attachment)``: pieces of the surface, or of the material, whose mean

@@ -81,7 +81,6 @@ def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarr
 
     Parameters
     ----------
-    half : HalfSector
     nodes : int
         Of the half.
     h : int
@@ -228,12 +227,7 @@ def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class HalfSectorSolid(PieceSolid):
-    """The mesh of half a sector, which draws the whole part.
-
-    Attributes
-    ----------
-    sector : HalfSector
-    """
+    """The mesh of half a sector, which draws the whole part."""
 
     sector: HalfSector
 

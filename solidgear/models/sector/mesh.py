@@ -75,12 +75,7 @@ class PieceSolid(SolidMesh):
 
 @dataclass(frozen=True, eq=False)
 class SectorSolid(PieceSolid):
-    """The mesh of a sector, which draws the whole part.
-
-    Attributes
-    ----------
-    sector : Sector
-    """
+    """The mesh of a sector, which draws the whole part."""
 
     sector: Sector
 

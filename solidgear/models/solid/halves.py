@@ -94,7 +94,6 @@ class HalfDrawing:
 
     Attributes
     ----------
-    mesh : SolidMesh
     axis : int
         At right angles to the plane.
     """

@@ -55,11 +55,6 @@ def solid_body(
     owner : (ne,) ndarray of int, optional
         Place of each element's material among ``materials``; by default that of the segment which
         its middle lies in.
-    materials : sequence of Material, optional
-
-    Returns
-    -------
-    Body
 
     Raises
     ------

@@ -36,8 +36,6 @@ class Seats:
 
     Parameters
     ----------
-    mesh : SolidMesh
-    segments : sequence of Segment
     clipped : bool
         Whether to take facets that reach beyond the ends of a seat.
     """

@@ -54,12 +54,7 @@ def elsewhere() -> bool:
 
 @lru_cache(maxsize=1)
 def missing() -> str:
-    """Empty if PETSc can be used, else the reason why not.
-
-    Returns
-    -------
-    str
-    """
+    """Empty if PETSc can be used, else the reason why not."""
     if shutil.which(launcher()[0]) is None:
         return f"{launcher()[0]} is not there"
     if shutil.which(python()) is None:
@@ -228,14 +223,8 @@ def plan_on_ranks(block: Block, matrix: sp.csr_matrix, factoring: Factoring) -> 
 
     Parameters
     ----------
-    block : Block
     matrix : (n, n) sparse
         Its shifted stiffness.
-    factoring : Factoring
-
-    Returns
-    -------
-    Planned
     """
     name = "mumps" if factoring.engine == "petsc" else "gamg-cg"
     nodal = isinstance(block.mass, ScalarMass)

@@ -58,7 +58,6 @@ class Probe:
 
     Parameters
     ----------
-    scene : Scene
     body : Body
         The body the user asked for; it is read, not solved.
     solutions : dict of str to Solution, optional
@@ -85,7 +84,6 @@ class Probe:
 
         Parameters
         ----------
-        usual : str
         *models : str
             What it speaks of; by default the harmonic solid.
         """

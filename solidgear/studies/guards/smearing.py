@@ -41,10 +41,6 @@ def _lacking(scene: Scene) -> tuple[float, float]:
 def expected(scene: Scene) -> tuple[float, float]:
     """Errors of a shaft whose smeared teeth are a cone.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Returns
     -------
     stiffness, frequency : float
@@ -68,10 +64,6 @@ def expected(scene: Scene) -> tuple[float, float]:
 
 def smearing(scene: Scene) -> Notices:
     """Smeared teeth, what they cost, and whether they need a model in 3D.
-
-    Parameters
-    ----------
-    scene : Scene
 
     Yields
     ------

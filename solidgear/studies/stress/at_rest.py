@@ -61,10 +61,6 @@ class StressedShaft:
 
     Attributes
     ----------
-    name : str
-    scene : Scene
-    acting : Acting
-    found : ShaftStress
     open_moment : (float, float) or None
         Least and largest of the largest bending moment, N m, by what the data of bearings leave
         open; None where that is nothing.
@@ -88,7 +84,7 @@ class StressedShaft:
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of fillets.
+    """Question asked of fillets.
 
     Attributes
     ----------
@@ -116,13 +112,10 @@ class StressAtRest:
 
     Attributes
     ----------
-    title : str
     model : str
         On which shafts and bearings settled.
     under : dict
         Load of a scene, or operating point and mesh force of a train, as plain data in SI.
-    asked : Asked
-    shafts : tuple of StressedShaft
     open_by : str
         What the data of bearings leave open, in words; empty for nothing.
     cautions : tuple of str
@@ -171,7 +164,6 @@ def stress_of_scene(
     drive : mapping of str to float, optional
         Torques about the axis that enter at bearings, masses or further points, N m; the gear at
         the port takes them out.
-    asked : Asked
     progress : callable, optional
         Told what is solved.
 
@@ -237,11 +229,8 @@ def stress_of_train(
 
     Parameters
     ----------
-    train : Train
-    point : OperatingPoint
     model : str
         On which shafts and bearings settle; no lumped one, which has no places of its own.
-    asked : Asked
     progress : callable, optional
         Told what is solved.
 

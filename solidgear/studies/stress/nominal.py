@@ -91,13 +91,10 @@ class NominalRow:
     ----------
     y : float
         m.
-    segment : str
     names : str
         Of what acts there.
-    section : CrossSection
     forces : (6,) ndarray
         Q_x, N, Q_z, M_x, T, M_z, N and N m.
-    stress : NominalStress
     """
 
     y: float
@@ -115,15 +112,10 @@ def nominal_stress(
 
     Parameters
     ----------
-    section : CrossSection
     forces : (6,) ndarray
         Q_x, N, Q_z, M_x, T, M_z, N and N m.
     radius : float, optional
         Of the surface looked at, m; by default the outer one.
-
-    Returns
-    -------
-    NominalStress
 
     Examples
     --------
@@ -146,11 +138,6 @@ def nominal_stress(
 def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
     """Cross-sections on both sides of every place where a load acts, weights left out, or a segment
     ends.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-    forces : SectionForces
 
     Returns
     -------

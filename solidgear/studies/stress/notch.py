@@ -74,7 +74,6 @@ class Step:
 
     Attributes
     ----------
-    order, unknowns : int
     factors : dict of str to float
         By unit load.
     """
@@ -90,7 +89,6 @@ class FilletFactors:
 
     Attributes
     ----------
-    name : str
     corner : Corner
         On the shaft.
     section : CrossSection
@@ -102,7 +100,6 @@ class FilletFactors:
         By unit load: ``tension``, ``bending``, ``torsion``; ``shear`` counts in Q / A.
     profiles : dict of str to ArcStress
         Along the arc, over nominal stress.
-    steps : tuple of Step
     """
 
     name: str
@@ -115,7 +112,7 @@ class FilletFactors:
 
     @property
     def reference(self) -> float:
-        """Where the fillet meets the cylinder, m: the place of its section forces."""
+        """Place where the fillet meets the cylinder, m: that of its section forces."""
         return self.corner.on_cylinder[1]
 
     @property
@@ -137,7 +134,6 @@ def fillet_factors(
 
     Parameters
     ----------
-    scene : Scene
     name : str
         Of the fillet.
     tolerance : float

@@ -33,7 +33,6 @@ class Piece:
     ----------
     segments : tuple of Segment
         From y = 0 on.
-    outline : Outline
     corner : Corner
         The one looked at, in the places of the piece.
     start : float
@@ -67,10 +66,6 @@ def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
         Of the fillet.
     reach : float
         How far it goes on, in outer radii of the shaft on that side.
-
-    Returns
-    -------
-    Piece
 
     Examples
     --------
@@ -129,7 +124,7 @@ def _cut(shaft: Scene, y: float, way: int) -> float:
 
 
 def _part(segment: Segment, start: float, end: float) -> Segment:
-    """What lies of a segment between two places, counted from the first."""
+    """Part of a segment between two places, counted from the first."""
     y0, y1 = max(segment.y0, start), min(segment.y1, end)
     (inner0, outer0), (inner1, outer1) = segment.radius_at(y0), segment.radius_at(y1)
     return segment.with_changes(

@@ -77,7 +77,7 @@ FACTORS = {
 
 
 class Conditions(Model):
-    """What a rating by DIN 743 needs beyond the shaft, its loads and its strength.
+    """Data that a rating by DIN 743 needs beyond the shaft, its loads and its strength.
 
     Attributes
     ----------
@@ -140,12 +140,10 @@ class Entry:
 
     Attributes
     ----------
-    symbol, what : str
     values : tuple of float or None
         Of tension, bending and torsion, SI.
     unit : str
         Of SI; empty for a factor.
-    source : str
     """
 
     symbol: str
@@ -185,17 +183,12 @@ def fatigue_factors(
 
     Parameters
     ----------
-    found : FilletFactors
     yield_point : float
         Of the part at its size, Pa.
     large : float
         Larger diameter of the shoulder, m.
     bars : float
         How many bars the form factors are raised by.
-
-    Returns
-    -------
-    dict of str to FatigueFactor
     """
     small, radius = 2 * found.corner.r, found.corner.radial
     out: dict[Load, FatigueFactor] = {}
@@ -222,17 +215,10 @@ def rated(
 
     Parameters
     ----------
-    found : FilletFactors
     nominal : NominalStress
         Where the fillet meets its cylinder.
-    strength : Strength
-    conditions : Conditions
     large : float
         Larger diameter of the shoulder, m.
-
-    Returns
-    -------
-    Rating
     """
     sheet = _Sheet()
     fatigue, yielding = _safeties(sheet, found, nominal, strength, conditions, large)

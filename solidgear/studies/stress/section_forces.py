@@ -60,7 +60,6 @@ class Load:
 
     Attributes
     ----------
-    name : str
     y : float
         m.
     six : (6,) ndarray
@@ -138,10 +137,6 @@ def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
     length : float
         Of the shaft, m.
 
-    Returns
-    -------
-    SectionForces
-
     Raises
     ------
     SolidgearError
@@ -195,13 +190,8 @@ def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
 
     Parameters
     ----------
-    scene : Scene
     loads : mapping of str to (6,) array_like
         N and N m, about the place of the port, bearing or mass of that name.
-
-    Returns
-    -------
-    list of Load
 
     Raises
     ------
@@ -236,13 +226,8 @@ def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
 
     Parameters
     ----------
-    scene : Scene
     gravity : (3,) array_like
         m/s^2.
-
-    Returns
-    -------
-    list of Load
     """
     g = np.asarray(gravity, float)
     loads = []

@@ -80,16 +80,12 @@ class Notch:
 
     Attributes
     ----------
-    name : str
     y : float
         Where it meets its cylinder, m: forces and nominal stress are those of the section there.
     radius, small, large : float
         Of the fillet, and diameters on both sides of the step, m.
-    found : FilletFactors
     forces : (6,) ndarray
         Q_x, N, Q_z, M_x, T, M_z, N and N m.
-    nominal : NominalStress
-    local : Local
     published : dict of str to dict of str to float or None
         Form factors of solid shafts by their source and load, None where it gives none; empty of a
         fillet in a bore.
@@ -117,7 +113,7 @@ class Notch:
 
     @property
     def severity(self) -> tuple[float, float]:
-        """What is least of the worst fillet: its safety, and without any less its stress."""
+        """Rank of a fillet, the worst least: its safety, or minus its stress where there is none."""
         safety = self.rating.fatigue if self.rating else np.inf
         return safety, -(self.local.amplitude + abs(self.local.mean))
 
@@ -140,12 +136,8 @@ class ShaftStress:
 
     Attributes
     ----------
-    forces : SectionForces
-    nominal : tuple of NominalRow
     notches : tuple of Notch
         Along the shaft.
-    sharp : tuple of SharpCorner
-    remarks : tuple of str
     """
 
     forces: SectionForces
@@ -348,7 +340,7 @@ def _remark(
     tolerance: float,
     by_shear: float,
 ) -> str:
-    """What a user must know about the numbers of a fillet."""
+    """Remark that a user must know with the numbers of a fillet."""
     told = []
     first, last = corner.span
     gaps = [max(first - hi, lo - last, 0.0) for lo, hi in seats]

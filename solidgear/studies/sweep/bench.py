@@ -23,8 +23,6 @@ class Bench:
 
     Parameters
     ----------
-    reduction : str
-    kept : int
     settings : mapping
         As of :class:`solidgear.studies.train.models.Workshop`.
 

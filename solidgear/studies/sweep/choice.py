@@ -40,7 +40,6 @@ def settled_for_sweep(
 
     Parameters
     ----------
-    scene : Scene
     vary_texts : iterable of str
         See :mod:`solidgear.studies.sweep.vary`.
     tol : float, optional

@@ -26,7 +26,6 @@ class Curve:
 
     Attributes
     ----------
-    name : str
     unit : str
         SI; ``m moved`` and ``rad moved`` are motions.
     values : (n,) ndarray
@@ -49,12 +48,10 @@ class Curves:
     ----------
     over, unit : str
         What varies, and in which unit it is told; an empty one is SI.
-    log : bool
     x : (n,) ndarray
         Ascending.
     labels : tuple of str
         Names of the rows where they have some, such as operating points.
-    frequencies, misalignment : list of Curve
     radial, axial : list of Curve
         Loads of bearings.
     mesh_force, peak_hz, peak_force : list of Curve

@@ -49,7 +49,7 @@ class Entry(Span):
     words: tuple[str | float | bool, ...] = ()
 
     def put(self, value: float) -> str | float | bool:
-        """What a file with a value holds."""
+        """Tables of a file with a value put in."""
         if self.words:
             return self.words[int(value)]
         plain = (self.whole or self.unit) and value == int(value) and abs(value) < 1e15
@@ -84,7 +84,6 @@ def entries_of(
     texts : iterable of str
     files : mapping of str to mapping
         Tables by the name of their file.
-    owner : callable
 
     Raises
     ------

@@ -73,7 +73,6 @@ class Seats:
 
     Parameters
     ----------
-    reduced : Reduced
     ports : tuple of int
         Indices of the occupied ports.
     """
@@ -167,11 +166,8 @@ def ritz_modes(
 
     Parameters
     ----------
-    reduced : Reduced
     seats : Seats
         Of the ports of ``supports``, in their order.
-    supports : Supports
-    n : int
     slack : float
         Modes that may lie among the first ``n`` by less than this, relative, are no reason to
         distrust the count.

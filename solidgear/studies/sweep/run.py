@@ -33,7 +33,6 @@ class Summary:
 
     Attributes
     ----------
-    path : Path
     total, skipped, refused, full : int
         Variants; of these: rows that were there before, refused ones, and those whose modes were
         solved on the body itself (the last two of this run).
@@ -87,7 +86,6 @@ def sweep(
 
     Parameters
     ----------
-    scene : Scene
     vary_texts : iterable of str
         See :mod:`solidgear.studies.sweep.vary`.
     out : path
@@ -116,10 +114,6 @@ def sweep(
     tell : callable
         Called with a sentence for every damage to the files that was found and mended; by default
         a warning of the logger.
-
-    Returns
-    -------
-    Summary
 
     Raises
     ------

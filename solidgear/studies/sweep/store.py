@@ -61,7 +61,6 @@ class Store:
 
     Parameters
     ----------
-    path : Path
     key : mapping
         What the rows depend on, JSON-serialisable; rows of another key are never mixed in.
     total : int

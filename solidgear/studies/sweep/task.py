@@ -41,8 +41,6 @@ class Task:
 
     Attributes
     ----------
-    variants : Variants
-    reduced : Reduced
     n : int
         Elastic shapes wanted, twins counted twice.
     tolerance : float

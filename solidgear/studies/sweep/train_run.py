@@ -36,7 +36,6 @@ class TrainSummary:
 
     Attributes
     ----------
-    path : Path
     total, skipped, refused : int
         Variants; of these: rows that were there before, and refused ones.
     why : str
@@ -142,10 +141,6 @@ def sweep_train(
     tell : callable
         Called with a sentence for every damage to the files that was found and mended.
 
-    Returns
-    -------
-    TrainSummary
-
     Raises
     ------
     SolidgearError
@@ -212,7 +207,7 @@ def sweep_train(
 
 
 def _asked(ask: Iterable[str]) -> tuple[str, ...]:
-    """What rows tell, in the usual order."""
+    """Kinds of numbers that rows tell, in the usual order."""
     given = list(ask)
     for word in given:
         if word not in ASKED:
@@ -242,7 +237,7 @@ def _counted(
 def _plan(
     task: TrainTask, first: int, usual: Train, sample: int | None, seed: int
 ) -> dict[str, Any]:
-    """What rows depend on, told by the files of one variant."""
+    """Facts that rows depend on, by the files of one variant."""
     from solidgear import __version__
 
     variants = task.variants

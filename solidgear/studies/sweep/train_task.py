@@ -40,7 +40,6 @@ class TrainTask:
 
     Attributes
     ----------
-    variants : TrainVariants
     pinion, gear : str
         Models.
     ask : tuple of str
@@ -49,8 +48,6 @@ class TrainTask:
         Elastic modes; those up to the highest frequency, `MOST_MODES` at most, by default.
     max_frequency : float or None
         Hz; that of the file by default.
-    reduction : str
-    kept : int
     settings : mapping
         Builder options by (side, model).
     """
@@ -67,7 +64,7 @@ class TrainTask:
 
     @cached_property
     def bench(self) -> Bench:
-        """What is kept from row to row; not sent to other processes."""
+        """Things kept from row to row; not sent to other processes."""
         return Bench(self.reduction, self.kept, self.settings)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -194,7 +191,7 @@ def _bearings(scene: Scene) -> list[str]:
 
 
 def _carried(state: OperatingState) -> dict[str, float]:
-    """What every bearing carries: across the shaft, along it and against tilting."""
+    """Load of every bearing: across the shaft, along it and against tilting."""
     out: dict[str, float] = {}
     for end, load in state.equilibrium.load.items():
         values = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])

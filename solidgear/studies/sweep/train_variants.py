@@ -62,7 +62,7 @@ class TrainVariants:
         return len(self.values)
 
     def told(self, index: int) -> dict[str, str | float]:
-        """What varies, by its label."""
+        """Values that vary, by their labels."""
         return {one.label: one.told(v) for one, v in zip(self.entries, self.values[index].tolist())}
 
     def train(self, index: int) -> Train:

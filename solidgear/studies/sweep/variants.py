@@ -58,8 +58,6 @@ class Variants:
 
     Attributes
     ----------
-    scene : Scene
-    axes : tuple of Axis
     values : (n, len(axes)) ndarray
         SI.
     """
@@ -173,10 +171,6 @@ def settled_anew(scene: Scene) -> Scene:
     them there.
 
     A bearing's tangent is that of its load, and where a seat moves, loads move with it.
-
-    Parameters
-    ----------
-    scene : Scene
 
     Returns
     -------

@@ -44,7 +44,6 @@ class Span:
     ----------
     label : str
         Name of its column, such as ``bearing.2.kxx``.
-    values : tuple of float
     spacing : {'linear', 'log', 'list'}
         How values between the listed ones are drawn: along a line, along its logarithm, or not at
         all.
@@ -258,7 +257,6 @@ def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
 
     Parameters
     ----------
-    spec : str
     read : callable
         Value of one number.
 

@@ -12,7 +12,7 @@ Rows = list[dict[str, Any]]
 
 
 class Task(Protocol):
-    """What turns variants into rows; sent to other processes."""
+    """Something that turns variants into rows; sent to other processes."""
 
     def rows(self, indices: Iterable[int]) -> Rows:
         """Rows of some variants."""

@@ -37,7 +37,6 @@ class Line:
     ----------
     kind, name, source : str
         As of :class:`solidgear.studies.train.kinematics.Order`.
-    frequency_hz, low_hz, high_hz : float
     """
 
     kind: str
@@ -59,8 +58,6 @@ class Coincidence:
 
     Attributes
     ----------
-    line, mode : str
-    line_hz, mode_hz : float
     off : float
         Of the order from the mode, as a share of the latter.
     rpm : float
@@ -81,7 +78,6 @@ class MeasuredPeak:
 
     Attributes
     ----------
-    frequency_hz, amplitude, resolution_hz : float
     line : Line or None
         The nearest order within its bar and the resolution, lines of teeth before those of
         bearings; None where there is none.
@@ -113,13 +109,10 @@ class AtSpeed:
         Origin of the speed.
     within : float
         Share of a natural frequency within which orders are told.
-    lines : tuple of Line
     modes : tuple of (str, float)
         Natural frequencies looked at.
     coincidences : tuple of Coincidence
         Of the mesh, of shafts, of sidebands, of bearings; of each the nearest first.
-    spectrum : Spectrum or None
-    peaks : tuple of MeasuredPeak
     covered : float or None
         Share of the spectrum's range that lines cover with their bars and the resolution: of peaks
         that are none of ours, so many are called so by chance.
@@ -215,7 +208,6 @@ def at_speed(
 
     Parameters
     ----------
-    train : Train
     modes : iterable of TrainMode
     turns : float
         Of the pinion in a second.
@@ -223,7 +215,6 @@ def at_speed(
         Origin of the speed, in words.
     within : float
         Share of a natural frequency.
-    spectrum : Spectrum, optional
     fit : float, optional
         Share of the speed within which it is fitted to the first order of the mesh in the spectrum.
 
@@ -316,17 +307,7 @@ def _fitted(
 def explained(
     lines: Sequence[Line], hz: float, amplitude: float, resolution: float
 ) -> MeasuredPeak:
-    """A peak and the orders that it may be.
-
-    Parameters
-    ----------
-    lines : sequence of Line
-    hz, amplitude, resolution : float
-
-    Returns
-    -------
-    MeasuredPeak
-    """
+    """A peak and the orders that it may be."""
     ours = [line for line in lines if line.low_hz - resolution <= hz <= line.high_hz + resolution]
     # what teeth alone give lies within the resolution, where a wide bar holds almost anything
     ours.sort(key=lambda line: (not line.exact, abs(line.frequency_hz - hz)))

@@ -28,8 +28,6 @@ class TrainComparison:
 
     Attributes
     ----------
-    workshop : Workshop
-    verdict : Verdict
     modes : TrainModes
         Of the judge.
     orders : OrderMap

@@ -79,7 +79,6 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
 
     Parameters
     ----------
-    train : Train
     coast : bool, optional
         True for the flank that the file does not name; by default that of its operating point.
 

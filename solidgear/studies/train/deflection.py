@@ -31,7 +31,6 @@ class Measured:
 
     Attributes
     ----------
-    name, unit, meaning : str
     value : float
         SI.
     bar : float or None
@@ -54,17 +53,13 @@ class TrainDeflection:
 
     Attributes
     ----------
-    point : OperatingPoint
     pinion, gear : str
         Models.
     mesh_force : float
         N, along the line of action.
-    misalignment : tuple of Measured
     displacement : dict of str to tuple of Measured
         Of the lumped point of each side, six components; rotations about the axis are against the
         pinion's spring port.
-    shafts : tuple of ShaftDeflection
-    notes : tuple of str
     seconds : float
         To settle, once bodies are there.
     """
@@ -106,7 +101,6 @@ class Standing:
 
     Attributes
     ----------
-    model : str
     verdict : str
         ``within``, ``open`` or ``beyond`` the tolerance.
     worst : str
@@ -127,13 +121,10 @@ class Deflections:
 
     Attributes
     ----------
-    title : str
     tolerance : float
         Of the misalignment, relative.
     found : tuple of TrainDeflection
         The judge last.
-    standings : tuple of Standing
-    cautions : tuple of str
     points : tuple of TrainDeflection
         By the judge, at every operating point of the train; none where one is asked for.
     """
@@ -196,18 +187,12 @@ def deflect_train(
 
     Parameters
     ----------
-    workshop : Workshop
-    point : OperatingPoint
     models : sequence of str
         Of both shafts, the finest last.
     progress : callable, optional
         Told each model.
     every : bool
         Also at every operating point of the train, by the last model.
-
-    Returns
-    -------
-    Deflections
 
     Raises
     ------
@@ -261,10 +246,8 @@ def deflections(
 
     Parameters
     ----------
-    workshop : Workshop
     points : sequence of OperatingPoint
         Each is begun at the one before.
-    pinion, gear : str
 
     Raises
     ------

@@ -55,7 +55,6 @@ class Departure:
 
     Attributes
     ----------
-    pinion, gear : str
     unknowns : int
         Of both bodies.
     seconds : float
@@ -102,8 +101,6 @@ class Verdict:
 
     Attributes
     ----------
-    train : str
-    highest_hz, tolerance, decibels : float
     mixes : tuple of Departure
         Cheapest first, by unknowns; the judge is the last.
     judge_bar : float or None
@@ -111,8 +108,6 @@ class Verdict:
         None where teeth drive families of two waves and more.
     responses : tuple of TrainResponse
         The judge's and those of the mixes that were told apart from it, for a chart.
-    unpublished : dict of str to str
-    cautions : tuple of str
     """
 
     train: str
@@ -190,7 +185,6 @@ def judge_train(
 
     Parameters
     ----------
-    workshop : Workshop
     highest_hz : float, optional
         That of the file by default.
     more : sequence of (str, str)

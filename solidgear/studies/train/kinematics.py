@@ -81,11 +81,9 @@ def train_orders(
 
     Parameters
     ----------
-    train : Train
     angles : mapping of str to sequence of float, optional
         Contact angles of the rows of a bearing at work, rad, by ``side.bearing``; those of the
         catalogue by default.
-    mesh_orders : int
 
     Returns
     -------
@@ -159,8 +157,6 @@ def of_bearing(
 
     Parameters
     ----------
-    name : str
-    data : Catalogue
     inner, outer : float
         Turns of its rings in one turn of the pinion, signed.
     angles : sequence of float

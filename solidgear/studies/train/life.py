@@ -24,7 +24,6 @@ class TrainBearingLife:
     ----------
     end : str
         Shaft and bearing, such as ``pinion.A``.
-    points : tuple of OperatingPoint
     lives : tuple of BearingLife
         At each of them.
     """
@@ -68,10 +67,6 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
     ----------
     train : Train
         With operating points.
-
-    Returns
-    -------
-    list of TrainBearingLife
 
     Raises
     ------

@@ -51,9 +51,6 @@ def patch_of(train: Train, side: str, scene: Scene, point: np.ndarray) -> Patch:
 
     Parameters
     ----------
-    train : Train
-    side : str
-    scene : Scene
     point : (3,) ndarray
         Mesh point from the lumped point, in the axes of the scene, m.
     """
@@ -69,12 +66,8 @@ def local_teeth(
 
     Parameters
     ----------
-    train : Train
-    side : str
     scene : Scene
         Of the shaft.
-    part : Superelement
-    body : Body
     point : (3,) ndarray
         As :func:`patch_of`.
 
@@ -150,14 +143,8 @@ def undriven(
 
     Parameters
     ----------
-    body : Body
-    highest_hz : float
     driven : tuple of int
         Harmonics that are driven, and left out here.
-
-    Returns
-    -------
-    dict of int to tuple of float
     """
     if body.further is None:
         return {}

@@ -36,7 +36,6 @@ def mesh_bars(
 
     Parameters
     ----------
-    workshop : Workshop
     system : System
         Of its shafts.
     rungs : mapping of str to str

@@ -48,7 +48,6 @@ class Measure:
 
     Attributes
     ----------
-    name : str
     unit : str
         ``m moved`` or ``rad moved``.
     meaning : str
@@ -82,7 +81,6 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
 
     Parameters
     ----------
-    workshop : Workshop
     system : System
         Of its shafts.
 

@@ -33,8 +33,6 @@ class SeenMode:
 
     Attributes
     ----------
-    name : str
-    frequency_hz : float
     bar : float or None
         Largest relative error that meshes and reduction leave; None without a harmonic shaft.
     driven : bool
@@ -61,7 +59,6 @@ class ModePair:
 
     Attributes
     ----------
-    a, b : SeenMode or None
     mac : float or None
         Modal assurance criterion of their motions of shared ports; None for a mode alone, and for
         modes that belong together by name.
@@ -100,9 +97,6 @@ def told_modes(
 
     Parameters
     ----------
-    shop : Workshop
-    system : System
-    found : SystemModes
     rungs : dict of str to str
         Model of each side.
     """

@@ -43,7 +43,6 @@ class Workshop:
 
     Attributes
     ----------
-    train : Train
     reduction : {'rubin', 'craig_bampton'}
     kept : int
         Modes of each shaft.
@@ -118,7 +117,6 @@ class Workshop:
 
         Parameters
         ----------
-        side, rung : str
         body : Body
             Of that model, on any mesh.
         """
@@ -137,7 +135,6 @@ class Workshop:
 
         Parameters
         ----------
-        side : str
         name : str
             What it is asked for by.
         part : Part
@@ -157,10 +154,6 @@ class Workshop:
         ----------
         stiffness : mapping of str to (6, 6) array_like
             By bearing, such as ``pinion.1``, series springs included, SI.
-
-        Returns
-        -------
-        Workshop
 
         Raises
         ------

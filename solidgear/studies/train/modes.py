@@ -27,8 +27,6 @@ class TrainMode:
 
     Attributes
     ----------
-    name : str
-    frequency_hz : float
     rpm : float
         Speed of the pinion at which its teeth mesh at this frequency.
     strained : str
@@ -57,7 +55,6 @@ class TrainModes:
 
     Attributes
     ----------
-    train, pinion, gear, reduction : str
     coordinates : int
         Of the coupled system.
     kept : dict of str to int
@@ -66,15 +63,12 @@ class TrainModes:
         Of the bodies they were reduced from.
     seconds : float
         To build and reduce both shafts.
-    modes : tuple of TrainMode
     rigid : int
         Motions at exactly 0 Hz.
     free : tuple of str
         What moves freely beside the train, in words.
     contact : tuple of str
         What contact cells leave over, in words; empty without any.
-    unpublished : dict of str to str
-    cautions : tuple of str
     undriven : dict of str to dict of int to tuple of float
         Free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
         diameters; they take no part in the train.
@@ -200,8 +194,6 @@ def train_modes(
 
     Parameters
     ----------
-    workshop : Workshop
-    pinion, gear : str
     max_frequency : float, optional
         Hz; that of the file by default.
 

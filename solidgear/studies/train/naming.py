@@ -104,14 +104,7 @@ def workshop_rung(workshop: Workshop, side: str) -> str:
 
 
 def mode_names(workshop: Workshop, system: System, found: SystemModes) -> list[str]:
-    """One name a mode, none twice.
-
-    Parameters
-    ----------
-    workshop : Workshop
-    system : System
-    found : SystemModes
-    """
+    """One name a mode, none twice."""
     parts = shares(workshop, system, found.shapes)
     labels, table = list(parts), np.array(list(parts.values()))
     count: dict[str, int] = {}

@@ -44,7 +44,6 @@ class OperatingState:
 
     Attributes
     ----------
-    point : OperatingPoint
     pinion, gear : str
         Models of both shafts.
     mesh_force : float
@@ -168,13 +167,8 @@ class Operating:
 
         Parameters
         ----------
-        point : OperatingPoint
         start : OperatingState, optional
             One of the same train to begin at.
-
-        Returns
-        -------
-        OperatingState
 
         Raises
         ------
@@ -315,11 +309,6 @@ def _told(found: SystemEquilibrium, system: System, point: OperatingPoint) -> It
 def settled(train: Train, state: OperatingState) -> Train:
     """A train at one operating point, its bearings with the stiffness that they have there.
 
-    Parameters
-    ----------
-    train : Train
-    state : OperatingState
-
     Returns
     -------
     Train
@@ -349,14 +338,9 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
 
     Parameters
     ----------
-    train : Train
     word : str or int, optional
         Name of the point, or its number counted from one; by default the first, and the train keeps
         the others.
-
-    Returns
-    -------
-    Train
 
     Raises
     ------

@@ -49,8 +49,6 @@ class Crossing:
 
     Attributes
     ----------
-    line, mode : str
-    frequency_hz : float
     rpm : float
         Of the pinion.
     force : float or None
@@ -70,8 +68,6 @@ class OrderMap:
 
     Attributes
     ----------
-    highest_hz, highest_rpm : float
-    lines : tuple of OrderLine
     modes : tuple of TrainMode
         Elastic ones.
     crossings : tuple of Crossing
@@ -99,8 +95,6 @@ def order_map(
 
     Parameters
     ----------
-    workshop : Workshop
-    pinion, gear : str
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz

@@ -21,10 +21,6 @@ FACES = 0.25
 def compared(train: Train) -> list[str]:
     """Contradictions between the numbers of both wheels that are small enough to go on with.
 
-    Parameters
-    ----------
-    train : Train
-
     Raises
     ------
     SceneError

@@ -26,8 +26,6 @@ def seen_modes(
 
     Parameters
     ----------
-    workshop : Workshop
-    system : System
     highest : float
         Hz; the first elastic mode is always there.
     ends : sequence of str, optional

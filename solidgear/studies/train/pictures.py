@@ -36,7 +36,6 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
 
     Parameters
     ----------
-    workshop : Workshop
     system : System
         Of these models.
     rungs : (str, str)
@@ -92,7 +91,6 @@ def turned_modes(
 
     Parameters
     ----------
-    workshop : Workshop
     pinion, gear : str
         Models.
     highest_hz : float, optional
@@ -131,15 +129,10 @@ def turned_beside(
 
     Parameters
     ----------
-    workshop : Workshop
     first, second : (str, str)
         Models of pinion and gear.
     highest_hz : float, optional
         Of the modes of both; a partner may lie beyond it.
-
-    Returns
-    -------
-    list of Turned
 
     Raises
     ------
@@ -197,10 +190,8 @@ def draw_modes(
 
     Parameters
     ----------
-    workshop : Workshop
     pinion, gear : str
         Models.
-    folder : path
     numbers : sequence of int
         Of modes as system-modes lists them, from 1.
 

@@ -30,7 +30,6 @@ class TrainReceptance:
 
     Attributes
     ----------
-    pinion, gear, damping : str
     from_, to : (str, str)
         Port and direction.
     unit : str
@@ -53,7 +52,7 @@ class TrainReceptance:
 
     @property
     def label(self) -> str:
-        """What a legend calls it: the models of both shafts."""
+        """Name in a legend: the models of both shafts."""
         return f"pinion {self.pinion}, gear {self.gear}"
 
 
@@ -72,7 +71,6 @@ def receptance(
 
     Parameters
     ----------
-    workshop : Workshop
     pinion, gear : str
         Models.
     from_, to : (str, str)

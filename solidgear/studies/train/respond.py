@@ -56,7 +56,6 @@ class Peak:
 
     Attributes
     ----------
-    frequency_hz : float
     force : float
         Amplitude, N.
     mode : str
@@ -74,7 +73,6 @@ class TrainResponse:
 
     Attributes
     ----------
-    pinion, gear, damping : str
     frequency_hz : (f,) ndarray
         Of the excitation; the mesh frequency of its first order.
     columns : dict of str to (f,) complex ndarray
@@ -82,7 +80,6 @@ class TrainResponse:
         the first.
     peaks : tuple of Peak
         Of the mesh force.
-    cautions : tuple of str
     seconds : float
         To build and reduce both shafts.
     name : str
@@ -101,7 +98,7 @@ class TrainResponse:
 
     @property
     def label(self) -> str:
-        """What a legend calls it: the train, or the models of its shafts."""
+        """Name in a legend: the train, or the models of its shafts."""
         return self.name or f"pinion {self.pinion}, gear {self.gear}"
 
     @property
@@ -115,7 +112,6 @@ class Drive:
 
     Parameters
     ----------
-    workshop : Workshop
     pinion, gear : str
         Models.
     damping : {'hysteretic', 'viscous', 'modal', 'literal'}
@@ -240,7 +236,6 @@ class Drive:
 
         Parameters
         ----------
-        highest_hz, lowest_hz : float
         seen : callable, optional
             ``seen(frequency_hz)`` gives motions (f, q); by default the dynamic transmission error
             and the mesh force.
@@ -342,8 +337,6 @@ def respond(
 
     Parameters
     ----------
-    workshop : Workshop
-    pinion, gear : str
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz, forces

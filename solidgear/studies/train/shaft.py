@@ -59,8 +59,6 @@ class ShaftModel:
 
     Attributes
     ----------
-    side, rung : str
-    part : Part
     body : Body
         What the part was made of.
     unknowns : int

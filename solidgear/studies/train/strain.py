@@ -41,7 +41,7 @@ def strain_shares(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _place(name: str) -> str:
-    """Where a part or a link belongs."""
+    """Place that a part or a link belongs to."""
     side, dot, _ = name.partition(".")
     if dot:
         return f"{side} bearings"

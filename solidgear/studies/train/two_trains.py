@@ -40,14 +40,12 @@ class OneTrain:
     ----------
     letter, name : str
         ``A`` or ``B``, and what its file is called.
-    workshop : Workshop
     response : TrainResponse
         Named by the label.
     modes : tuple of SeenMode
         Elastic ones, also some above the highest frequency, where partners may lie.
     loaded : TrainDeflection or None
         At its operating point.
-    cautions : tuple of str
     """
 
     letter: str
@@ -91,10 +89,8 @@ class TwoTrains:
 
     Attributes
     ----------
-    a, b : OneTrain
     pinion, gear : str
         Models of both.
-    highest_hz : float
     inputs : tuple of Difference
         Of their files.
     modes : tuple of ModePair
@@ -103,7 +99,6 @@ class TwoTrains:
         Of the mesh force, by frequency.
     pairing : str
         How modes belong together, in words.
-    seconds : float
     """
 
     a: OneTrain

@@ -1,4 +1,4 @@
-"""What the comparison of two trains says: conclusions in sentences, and all of it as plain data."""
+"""Conclusions of the comparison of two trains in sentences, and all of it as plain data."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
 
     Parameters
     ----------
-    found : TwoTrains
     units : Units, optional
         Of forces.
     """
