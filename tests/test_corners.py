@@ -8,7 +8,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.meshing.corners import corner_exponent, sharpest_corner
-from solidgear.scene import Scene, Segment
+from tests.shafts import shaft
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
@@ -46,20 +46,6 @@ def test_sharper_corners_are_more_singular():
     # no jump where the first root enters the search: a degree moves the exponent by 0.011 near 180
     # degrees
     assert np.max(-np.diff(found)) < 0.012
-
-
-def chain(*parts):
-    """A scene of (length, outer0, outer1, inner0, inner1)."""
-    segments, y = [], 0.0
-    for k, (length, a, b, *bore) in enumerate(parts):
-        i, j = bore or (0.0, 0.0)
-        segments.append(
-            Segment(
-                name=f"s{k}", y0=y, y1=round(y + length, 9), outer0=a, outer1=b, inner0=i, inner1=j
-            )
-        )
-        y = segments[-1].y1
-    return Scene.from_parts(segments)
 
 
 def mirrored(parts):
@@ -112,7 +98,7 @@ CORNERS = {
 @pytest.mark.parametrize("name", CORNERS)
 def test_sharpest_corner(name, flip):
     parts, angle = CORNERS[name]
-    found, exponent = sharpest_corner(chain(*(mirrored(parts) if flip else parts)))
+    found, exponent = sharpest_corner(shaft(*(mirrored(parts) if flip else parts)))
     # plane geometry of the outline: rounding
     assert found == pytest.approx(angle, abs=1e-12)
     assert exponent == corner_exponent(found)
