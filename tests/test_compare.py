@@ -517,7 +517,7 @@ def test_disk_that_fills_up_is_a_sentence_and_leaves_no_halves(overhung, tmp_pat
     monkeypatch.setattr("os.replace", full)
     with pytest.raises(SolidgearError, match="writing stopped .No space left on device."):
         found.write_report(tmp_path / "out", renders=False)
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("below", ["", "deeper", "deeper/still"])

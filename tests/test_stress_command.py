@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.meshing.closed_form import mass_properties
 from solidgear.report.stress_files import shaft_tables
+from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.operation import GRAVITY, OperatingPoint
 from solidgear.studies.stress import shaft
 from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
@@ -180,7 +180,7 @@ def test_both_shafts_of_a_train_balance(name, direction):
         left = total(one.acting.loads, places)
         if direction:
             assert np.linalg.norm(one.acting.gravity) == pytest.approx(GRAVITY, rel=1e-12)
-            mass = mass_properties(one.scene.segments, one.scene.corners)
+            mass = mass_properties(one.scene.outline)
             at_middle = {"shaft": [*(mass.mass * one.acting.gravity), 0, 0, 0]}
             left += total(at_middle, {"shaft": mass.centre})
         size = sum(np.linalg.norm(six[:3]) for six in one.acting.loads.values())
