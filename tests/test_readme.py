@@ -10,6 +10,8 @@ import pytest
 import typer.main
 
 import solidgear as sg
+from validation.manual import CASES
+from validation.mutations import MUTATIONS
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -71,3 +73,24 @@ def test_python_of_the_readme_runs(tmp_path):
         [sys.executable, "-c", light], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    "page", ["README.md", "docs/validation/edges.md", "docs/validation/index.md"]
+)
+def test_counts_in_prose_are_those_of_the_source(page):
+    """A number that somebody typed is one of yesterday."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    scenes = [tomllib.loads(p.read_text()) for p in (ROOT / "geometry").glob("*.toml")]
+    trains = sum("pinion" in scene for scene in scenes)
+    counts = {
+        r"(\d+) wrong expressions": len(MUTATIONS),
+        r"(\d+) problems": len(CASES),
+        r"(\d+) scenes and \d+ trains": len(scenes) - trains,
+        r"\d+ scenes and (\d+) trains": trains,
+    }
+    said = {pattern: re.findall(pattern, text) for pattern in counts}
+    assert any(said.values())
+    assert {p: {str(counts[p])} for p in said if said[p]} == {
+        p: set(s) for p, s in said.items() if s
+    }
