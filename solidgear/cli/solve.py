@@ -12,7 +12,6 @@ import typer
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.settled import (
     bar_lines,
-    bars_of_modes,
     beyond,
     ended,
     heading,
@@ -166,6 +165,7 @@ def modes(
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.cli.reading import load
     from solidgear.judge.completeness import cut_short
+    from solidgear.judge.settle import bars_of_modes
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions

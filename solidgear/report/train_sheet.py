@@ -47,6 +47,8 @@ class Section:
         say what is written there, others the title.
     tables : sequence of Table
         Those without rows are left out.
+    drawings : mapping of str to bytes or None
+        SVG by what it says in words, before the charts.
     """
 
     anchor: str
@@ -54,6 +56,7 @@ class Section:
     words: str = ""
     charts: Mapping[str, Make] = field(default_factory=dict)
     tables: Sequence[Table] = ()
+    drawings: Mapping[str, bytes | None] = field(default_factory=dict)
 
 
 def write_sheet(
@@ -93,7 +96,8 @@ def write_sheet(
     from markupsafe import Markup
 
     shown = [
-        (s, [table for table in s.tables if table], _drawn(s.charts, s.title)) for s in sections
+        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        for s in sections
     ]
     page = template("train_sheet.html").render(
         title=title,
@@ -117,6 +121,13 @@ def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
     return [
         (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
     ]
+
+
+def _given(section: Section) -> list[tuple[str, str]]:
+    """Drawings as they stand in the page, and their words."""
+    from markupsafe import Markup
+
+    return [(Markup(svg.decode()), words) for words, svg in section.drawings.items() if svg]
 
 
 def _words(name: str) -> str:
