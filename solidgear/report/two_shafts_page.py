@@ -32,7 +32,7 @@ def numbers(found: Any, units: Units = ENGINEERING) -> Table:
         Column("difference", lambda one: beside_tables.apart(one.change, one.scale)),
         Column("bar of A", lambda one: _bar(one, one.change.bar_a, one.scale)),
         Column("bar of B", lambda one: _bar(one, one.change.bar_b, one.scale)),
-        word("", lambda one: one.verdict),
+        word("", _verdict),
     ]
     note = (
         "Differences and bars are relative to A, of couplings to the geometric mean of both diagonal "
@@ -40,6 +40,11 @@ def numbers(found: Any, units: Units = ENGINEERING) -> Table:
         "mass is that of the shaft alone; of a round one it is exact and has no bar."
     )
     return Table("Numbers", columns, found.changes, note, style="ruled")
+
+
+def _verdict(one: Any) -> str | None:
+    """Verdict on a difference; an exact number that both have alike needs none."""
+    return None if one.name == "mass" and one.change.difference == 0 else one.verdict
 
 
 def _value(one: Any, value: float, units: Units) -> str:

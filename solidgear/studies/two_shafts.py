@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from solidgear.body import Body, as_supports
+from solidgear.body import as_supports
 from solidgear.display import Displayed
 from solidgear.judge.answer import LEAST_TOLERANCE
 from solidgear.judge.correlation import pair_modes
@@ -26,7 +26,7 @@ from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.judge.solving import answered
 from solidgear.machine.meter import Meter
 from solidgear.machine.threads import pinned
-from solidgear.quantity import ACROSS, QUANTITIES, Quantity
+from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.differences import ROUNDING, Difference, scene_differences
 from solidgear.solve.modes import Mode, ModeSet
@@ -40,8 +40,11 @@ Progress = Callable[[str], None]
 #: part of the tolerance that the bars of both are brought to
 SHARE = 0.1
 #: entries of the other plane that are those of the first unless bearings or features differ
-TWINS = dict(zip(("C_xx", "C_x,thz", "C_thz", "K_xx", "K_x,thz", "K_thz"),
-                 map(Quantity, ("C_zz", "C_z,thx", "C_thx", "K_zz", "K_z,thx", "K_thx"))))  # fmt: skip
+TWINS = {
+    Quantity(f"{kind}_{its}"): Quantity(f"{kind}_{own}")
+    for kind in "CK"
+    for its, own in (("xx", "zz"), ("x,thz", "z,thx"), ("thz", "thx"))
+}
 #: relative; twins closer than this are one number
 SAME = 1e-9
 
@@ -338,9 +341,9 @@ def _statics(a: OneShaft, b: OneShaft) -> Iterable[NumberChange]:
 
 def _twin(one: OneShaft, name: Quantity) -> bool:
     """True for an entry of the other plane that is that of the first plane over again."""
-    twin = TWINS.get(name)
-    if name not in ACROSS or twin not in one.values:
+    if name not in TWINS or TWINS[name] not in one.values:
         return False
+    twin = TWINS[name]
     apart = abs(abs(one.values[name]) - abs(one.values[twin]))
     return apart <= SAME * size(one.values, twin)
 
@@ -349,19 +352,14 @@ def _frequencies(
     a: OneShaft, b: OneShaft, pairs: Sequence[ModePair[BarredMode]]
 ) -> Iterable[NumberChange]:
     """First frequencies, each beside that of the mode that its own belongs to."""
+    partners = {p.a.name: (p.b.name, p.change) for p in pairs if p.a and p.b and p.change}
     for name in (q for q in QUANTITIES if q.is_frequency):
         mode = a.modes.named(name)
-        own = [] if mode is None else [p for p in pairs if p.a and p.a.name == mode.name and p.b]
-        if own and own[0].change is not None and own[0].b is not None:
-            its = own[0].b.name
-            change = own[0].change
-            yield NumberChange(
-                str(name),
-                "Hz",
-                change,
-                abs(change.a),
-                "" if own[0].a.name == its else its,  # type: ignore[union-attr]
-            )
+        if mode is None or str(mode.name) not in partners:
+            continue
+        its, change = partners[str(mode.name)]
+        other = "" if its == mode.name else its
+        yield NumberChange(str(name), "Hz", change, abs(change.a), other)
 
 
 def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
@@ -373,9 +371,7 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
         for p in pair_modes(b.modes, a.modes):
             partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
             found += [(p.reference, m, p.mac or None) for m in partners]
-    left = {
-        str(m.name): m for m in its if all(m is not other for _, other, _ in found)
-    }  # by exact name
+    left = {str(m.name): m for m in its if all(m is not other for _, other, _ in found)}
     for mode in mine:
         if all(mode is not own for own, _, _ in found):
             found.append((mode, left.pop(str(mode.name), None), None))
@@ -383,7 +379,7 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     listed = {id(m) for one in (a, b) for m in one.modes.modes}
     tops = [max((m.frequency_hz for m in own), default=0.0) for own in (mine, its)]
     pairs = [
-        ModePair(m and a.seen(m), n and b.seen(n), mac)
+        ModePair(None if m is None else a.seen(m), None if n is None else b.seen(n), mac)
         for m, n, mac in found
         if id(m) in listed or id(n) in listed
     ]
