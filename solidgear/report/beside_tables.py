@@ -9,7 +9,7 @@ from solidgear.report.words import DASH, hertz, percent
 
 #: letters of an entry of a file on a page and in a terminal
 LONG, SHORT = 60, 34
-SAME = "Nothing differs between the two files."
+SAME = "Nothing differs in the input."
 
 
 def who(found: Any) -> str:

@@ -24,9 +24,9 @@ def inputs(found: Sequence[Difference]) -> str:
     """Sentence on the entries in which two inputs differ."""
     numbers = [d for d in found if not d.in_words]
     if not found:
-        return "Nothing differs between the two files."
+        return "Nothing differs in the input."
     if not numbers:
-        return "The two files differ in words alone (titles, sources): no number can."
+        return "The input differs in words alone (titles, sources): no number can."
     paths = [d.path for d in numbers[:NAMED]]
     more = f" and {len(numbers) - NAMED} more" if len(numbers) > NAMED else ""
     one = len(numbers) == 1
