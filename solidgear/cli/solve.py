@@ -38,7 +38,9 @@ def compare(
     scene: SceneFile,
     more: Annotated[
         list[Path] | None,
-        typer.Argument(help="A second train, to be held beside the first.", show_default=False),
+        typer.Argument(
+            help="A second file of its kind, to be held beside the first.", show_default=False
+        ),
     ] = None,
     *,
     out: Annotated[
@@ -83,7 +85,7 @@ def compare(
     run: Shown,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust; a train as well, or two
-    trains beside each other.
+    of a kind beside each other.
     """
     from solidgear.scene.toml_file import is_train
 

@@ -14,7 +14,7 @@ from solidgear.report.folder import begun
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sheet_files import write_json
 from solidgear.report.sketch_page import sketch_svg
-from solidgear.report.table import Column, Table, text, word
+from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.train_sheet import Section, write_sheet
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import is_number, percent, seconds
@@ -29,7 +29,7 @@ def numbers(found: Any, units: Units = ENGINEERING) -> Table:
         Column("A", lambda one: _value(one, one.change.a, units)),
         Column("B", lambda one: _value(one, one.change.b, units)),
         text("unit", lambda one: units.unit(one.unit)),
-        Column("difference", lambda one: beside_tables.apart(one.change, one.scale)),
+        Column("difference", _apart),
         Column("bar of A", lambda one: _bar(one, one.change.bar_a, one.scale)),
         Column("bar of B", lambda one: _bar(one, one.change.bar_b, one.scale)),
         word("", _verdict),
@@ -42,9 +42,17 @@ def numbers(found: Any, units: Units = ENGINEERING) -> Table:
     return Table("Numbers", columns, found.changes, note, style="ruled")
 
 
+def _exact_and_alike(one: Any) -> bool:
+    """True for a number without error that both have alike: there is nothing to resolve."""
+    return one.name == "mass" and one.change.difference == 0
+
+
+def _apart(one: Any) -> str | Cell | None:
+    return percent(0.0) if _exact_and_alike(one) else beside_tables.apart(one.change, one.scale)
+
+
 def _verdict(one: Any) -> str | None:
-    """Verdict on a difference; an exact number that both have alike needs none."""
-    return None if one.name == "mass" and one.change.difference == 0 else one.verdict
+    return None if _exact_and_alike(one) else one.verdict
 
 
 def _value(one: Any, value: float, units: Units) -> str:

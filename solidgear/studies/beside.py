@@ -43,7 +43,7 @@ def resolved(changes: Sequence[Change], what: str) -> Iterator[str]:
     """
     verdicts = [change.verdict for change in changes]
     count, sure = len(verdicts), verdicts.count("resolved")
-    if "no band" in verdicts:
+    if not verdicts or "no band" in verdicts:
         return
     many = {0: "none", count: "all"}.get(sure, str(sure))
     differ = "differs" if sure == 1 else "differ"
@@ -51,26 +51,28 @@ def resolved(changes: Sequence[Change], what: str) -> Iterator[str]:
     yield f"Of {count} {what} {many} {differ} by more than both bars (resolved){rest}."
 
 
-def modes(found: Sequence[ModePair[Any]], thing: str) -> Iterator[str]:
+def modes(found: Sequence[ModePair[Any]], where: str) -> Iterator[str]:
     """Sentences on pairs of modes: what is resolved, what moves most, and what is alone.
 
     Parameters
     ----------
-    thing : str
-        ``train`` or ``shaft``.
+    where : str
+        Of partners, such as ``in the other train``.
     """
     pairs = [(p, p.change) for p in found if p.change is not None]
     yield from resolved([change for _, change in pairs], "pairs of modes")
     moved = max(pairs, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
     if moved is not None and moved[1].verdict != "not resolved":
-        yield f"Moves most: {_moved(*moved)}."
+        by_shape = any(pair.mac is not None for pair in found)
+        by_name = ", paired by name" * (by_shape and moved[0].mac is None)
+        yield f"Moves most: {_moved(*moved)}{by_name}."
     for letter, alone in (
         ("A", [p.a for p in found if p.b is None]),
         ("B", [p.b for p in found if p.a is None]),
     ):
         told = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
         if told:
-            yield f"Without a partner in the other {thing}, of {letter}: {', '.join(told)}."
+            yield f"Without a partner {where}, of {letter}: {', '.join(told)}."
 
 
 def both_names(a: str, b: str) -> str:

@@ -92,7 +92,8 @@ class OneShaft:
 
     def seen(self, mode: Mode) -> BarredMode:
         """A mode with its bar."""
-        return BarredMode(str(mode.name), mode.frequency_hz, self.bars.get(mode.name))
+        bar = self.bars.get(mode.name, math.inf)
+        return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
 
 
 @dataclass(frozen=True)
@@ -263,21 +264,13 @@ def two_shafts(
     )
     pairs, pairing = _paired(a, b)
     changes = (_mass(a, b), *_statics(a, b), *_frequencies(a, b, pairs))
-    there = [{str(q) for q in one.values} for one in (a, b)]
-    return TwoShafts(
-        a,
-        b,
-        tol,
-        tuple(scene_differences(first, other) if inputs is None else inputs),
-        changes,
-        tuple(pairs),
-        pairing,
-        {
-            letter: tuple(str(q) for q in in_order(one.values) if q not in missing)
-            for letter, one, missing in (("A", a, there[1]), ("B", b, there[0]))
-        },
-        perf_counter() - start,
-    )
+    differ = tuple(scene_differences(first, other) if inputs is None else inputs)
+    alone = {
+        one.letter: tuple(str(q) for q in in_order(one.values) if q not in second.values)
+        for one, second in ((a, b), (b, a))
+    }
+    spent = perf_counter() - start
+    return TwoShafts(a, b, tol, differ, changes, tuple(pairs), pairing, alone, spent)
 
 
 def _solved(
@@ -302,22 +295,18 @@ def _solved(
     )
     told("how sure its frequencies are")
     bars = bars_of_modes(scene, body, _all(found.modes), settled)
+    for name in (q for q in settled.bars if q.is_frequency):
+        # bending may be called by its plane
+        mode = found.modes.named(name)
+        if mode is not None:
+            bars.setdefault(str(mode.name), settled.bars[name])
     round_ = body.mesh.get("round", True)
     mass = mass_properties(scene.outline).mass if round_ else float(body.mass_matrix()[0, 0])
     said = tuple(cautions(scene, body))
     body.cache.clear()
-    return OneShaft(
-        letter,
-        name,
-        scene,
-        settled,
-        found.quantities,
-        found.modes,
-        bars,
-        mass,
-        ROUNDING if round_ else None,
-        said,
-    )
+    exact = ROUNDING if round_ else None
+    numbers = found.quantities, found.modes, bars
+    return OneShaft(letter, name, scene, settled, *numbers, mass, exact, said)
 
 
 def _all(found: ModeSet) -> ModeSet:
@@ -376,19 +365,15 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
         if all(mode is not own for own, _, _ in found):
             found.append((mode, left.pop(str(mode.name), None), None))
     found += [(None, m, None) for m in left.values()]
-    listed = {id(m) for one in (a, b) for m in one.modes.modes}
+    # a partner above the end of the other list is none that is missing
     tops = [max((m.frequency_hz for m in own), default=0.0) for own in (mine, its)]
+    listed = {id(m) for one in (a, b) for m in one.modes.modes}
     pairs = [
         ModePair(None if m is None else a.seen(m), None if n is None else b.seen(n), mac)
         for m, n, mac in found
-        if id(m) in listed or id(n) in listed
-    ]
-    # a partner above the end of the other list is none that is missing
-    pairs = [
-        p
-        for p in pairs
-        if not (p.b is None and p.a and p.a.frequency_hz > tops[1])
-        and not (p.a is None and p.b and p.b.frequency_hz > tops[0])
+        if (id(m) in listed or id(n) in listed)
+        and (n is not None or m is None or m.frequency_hz <= tops[1])
+        and (m is not None or n is None or n.frequency_hz <= tops[0])
     ]
     words = "by name, for both shafts are not told at the same places along the axis"
     if shared:

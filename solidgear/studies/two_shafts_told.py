@@ -29,7 +29,7 @@ def sentences(found: TwoShafts, units: Units = ENGINEERING) -> list[str]:
     return [
         beside.inputs(found.inputs),
         *_numbers(found, units),
-        *beside.modes(found.modes, "shaft"),
+        *beside.modes(found.modes, "among the modes solved of the other"),
         *_alone(found),
         *_solved(found),
     ]

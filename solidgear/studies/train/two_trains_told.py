@@ -37,7 +37,7 @@ def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
         _models(found),
         *_largest_force(found, units),
         *_loudest(found, units),
-        *beside.modes(found.modes, "train"),
+        *beside.modes(found.modes, "in the other train"),
         *_largest_reactions(found, units),
         *_at_rest(found, units),
         _sure(found),
