@@ -41,6 +41,7 @@ def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
     told, _ = thicker
     assert [d["path"] for d in told["differences"]] == ["segment.shaft.diameter"]
     assert told["sentences"][0] == "1 entry of the input differs: segment.shaft.diameter."
+    assert [told["shafts"][key]["file"] for key in "ab"] == ["pinion_overhung", "b"]
     numbers = told["numbers"]
     assert set(numbers) == {"mass", *map(str, sg.quantity.QUANTITIES)}
     up = ("mass", "K_zz", "K_thx", "K_yy", "bending 1", "torsion 1")

@@ -295,11 +295,11 @@ def _solved(
     )
     told("how sure its frequencies are")
     bars = bars_of_modes(scene, body, _all(found.modes), settled)
-    for name in (q for q in settled.bars if q.is_frequency):
+    for asked in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
-        mode = found.modes.named(name)
+        mode = found.modes.named(asked)
         if mode is not None:
-            bars.setdefault(str(mode.name), settled.bars[name])
+            bars.setdefault(str(mode.name), settled.bars[asked])
     round_ = body.mesh.get("round", True)
     mass = mass_properties(scene.outline).mass if round_ else float(body.mass_matrix()[0, 0])
     said = tuple(cautions(scene, body))
