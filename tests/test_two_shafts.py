@@ -144,7 +144,10 @@ def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(thicker)
     for word in ("segment.shaft.diameter", "90 mm", "94.5 mm", "section through the axis"):
         assert word in text
     # both sections are drawn, wide and for a phone
-    assert len(re.findall(r'<svg class="(?:wide|narrow)"', page)) == 4
+    drawn = {f"shaft_{key}-{kind}" for key in "ab" for kind in ("wide", "narrow")}
+    assert drawn == set(re.findall(r'id="(shaft_[ab]-(?:wide|narrow))-', page))
+    # and the modes over one another, told apart when they are read
+    assert {"A: pinion_overhung", "B: b"} <= set(re.findall(r'aria-label="([^"&]*)&#xA;', page))
     assert not re.findall(r'(?:src|href|xlink:href)="(?!#|data:)([^"]*)"', page)
 
 

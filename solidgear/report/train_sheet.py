@@ -32,6 +32,10 @@ WORDS = {
     ),
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
+    "shapes": (
+        "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
+        "largest, which is one."
+    ),
     "shares": "Strain energy of every mode by what it is in.",
 }
 

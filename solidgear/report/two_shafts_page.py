@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from solidgear.report.sheet_files import write_json
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.two_shafts_chart import shapes_chart
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import is_number, percent, seconds
 
@@ -117,12 +119,13 @@ def _sections(found: Any, results: Mapping[str, Any], units: Units) -> list[Sect
         for one, (key, shaft) in zip(found.both, results["shafts"].items())
     }
     solved = [pairs_of(_facts(one), f"Solution of {one.label}") for one in found.both]
+    shapes = partial(shapes_chart, found, units)
     same = "" if found.inputs else beside_tables.SAME
     return [
         Section("input", "Input", same, tables=[beside_tables.inputs(found)]),
         Section("shafts", "Both shafts", SECTIONS, drawings=drawings),
         Section("numbers", "Numbers", "", tables=[numbers(found, units)]),
-        Section("modes", "Modes", "", tables=[beside_tables.modes(found)]),
+        Section("modes", "Modes", "", {"shapes": shapes}, [beside_tables.modes(found)]),
         Section(
             "run",
             "Run",

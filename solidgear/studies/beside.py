@@ -61,11 +61,11 @@ def modes(found: Sequence[ModePair[Any]], where: str) -> Iterator[str]:
     """
     pairs = [(p, p.change) for p in found if p.change is not None]
     yield from resolved([change for _, change in pairs], "pairs of modes")
-    moved = max(pairs, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
+    # a name alone does not make two shapes one, where shapes can be told
+    alike = [pair for pair in pairs if pair[0].mac is not None] or pairs
+    moved = max(alike, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
     if moved is not None and moved[1].verdict != "not resolved":
-        by_shape = any(pair.mac is not None for pair in found)
-        by_name = ", paired by name" * (by_shape and moved[0].mac is None)
-        yield f"Moves most: {_moved(*moved)}{by_name}."
+        yield f"Moves most: {_moved(*moved)}."
     for letter, alone in (
         ("A", [p.a for p in found if p.b is None]),
         ("B", [p.b for p in found if p.a is None]),
