@@ -75,6 +75,7 @@ def test_a_shaft_beside_itself_differs_nowhere_and_nothing_is_resolved():
     scene = sg.load(SCENE)
     found = sg.compare(scene, scene)
     assert found.inputs == () and len(found.changes) == 13
+    assert "A: pinion_overhung beside B: pinion_overhung" in repr(found)
     assert {one.verdict for one in found.changes} == {"not resolved"}
     assert all(one.change.difference == 0.0 for one in found.changes)
     for pair in found.modes:
@@ -169,8 +170,11 @@ def test_what_cannot_be_compared_is_refused_in_a_sentence(words, said, tmp_path)
     assert not (tmp_path / "out").exists()
 
 
-def test_settings_of_two_scenes_are_refused():
+def test_settings_of_two_scenes_and_trains_are_refused():
     scene = sg.load(SCENE)
+    for pair in ((scene, sg.load_train(TRAIN)), (sg.load_train(TRAIN), scene)):
+        with pytest.raises(sg.SolidgearError, match="scenes of one shaft"):
+            sg.compare(*pair)
     with pytest.raises(sg.SolidgearError, match="of two the judge chooses"):
         sg.compare(scene, scene, settings={"harmonic": {"order": 2}})
 

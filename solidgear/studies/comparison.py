@@ -148,7 +148,7 @@ def compare(
     Raises
     ------
     SolidgearError
-        For an unknown model, or settings of two scenes.  A model that fails is reported as not valid, and the others go on.
+        For an unknown model, a train, or settings of two scenes.  A model that fails is reported as not valid, and the others go on.
 
     Examples
     --------
@@ -163,7 +163,13 @@ def compare(
     ('resolved', 0.21)
     """
     from solidgear.scene import Scene
+    from solidgear.scene.train import Train
 
+    if isinstance(scene, Train) or isinstance(models, Train):
+        raise SolidgearError(
+            "compare takes scenes of one shaft; trains are compared by the command: "
+            "solidgear compare A.toml B.toml"
+        )
     if isinstance(models, Scene):
         from solidgear.studies.two_shafts import two_shafts
 
