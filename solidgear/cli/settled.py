@@ -58,28 +58,6 @@ def _largest(settled: Settled, where: str) -> list[str]:
     return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
 
-def bars_of_modes(
-    scene: Scene, body: Body, found: ModeSet, settled: Settled | None
-) -> dict[str, float]:
-    """Relative bars of frequencies by the names of their modes: of a harmonic solid of all, of
-    others of those that were judged, and none of a mesh that was set, which may be as large as one
-    likes.
-    """
-    from solidgear.body import as_supports
-    from solidgear.judge.bounded import mode_bars
-    from solidgear.ladder.registry import LADDER
-    from solidgear.quantity import Quantity
-
-    if settled is None:
-        return {}
-    bars: dict[str, float] = {}
-    if LADDER[body.fidelity].bounded:
-        bars = mode_bars(scene, body, as_supports(scene), found)
-    # what the mesh was chosen by keeps the bar it was chosen with
-    asked = [name for name in map(Quantity, found.names) if name in settled.bars]
-    return bars | {name: settled.bars[name] for name in asked}
-
-
 def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:
     """Names of elastic modes that have none."""
     return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in bars]

@@ -12,7 +12,6 @@ import typer
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.settled import (
     bar_lines,
-    bars_of_modes,
     beyond,
     ended,
     heading,
@@ -39,7 +38,9 @@ def compare(
     scene: SceneFile,
     more: Annotated[
         list[Path] | None,
-        typer.Argument(help="A second train, to be held beside the first.", show_default=False),
+        typer.Argument(
+            help="A second file of its kind, to be held beside the first.", show_default=False
+        ),
     ] = None,
     *,
     out: Annotated[
@@ -84,7 +85,7 @@ def compare(
     run: Shown,
 ) -> None:
     """Solve a scene with every model and write a report on which to trust; a train as well, or two
-    trains beside each other.
+    of a kind beside each other.
     """
     from solidgear.scene.toml_file import is_train
 
@@ -166,6 +167,7 @@ def modes(
     """Natural frequencies on the bearings, with the evidence for them."""
     from solidgear.cli.reading import load
     from solidgear.judge.completeness import cut_short
+    from solidgear.judge.settle import bars_of_modes
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
     from solidgear.studies.check import cautions

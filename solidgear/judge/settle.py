@@ -20,18 +20,21 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from solidgear.body import Body
+from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.answer import climbed, usable
+from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question
 from solidgear.judge.refinement import Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
+from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
+from solidgear.solve.modes import ModeSet
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -189,6 +192,23 @@ def settle(
         point=scene.port.name,
         mesh=climb.mesh if climb.model.bounded else None,
     )
+
+
+def bars_of_modes(
+    scene: Scene, body: Body, found: ModeSet, settled: Settled | None
+) -> dict[str, float]:
+    """Relative bars of frequencies by the names of their modes: of a harmonic solid of all, of
+    others of those that were judged, and none of a mesh that was set, which may be as large as one
+    likes.
+    """
+    if settled is None:
+        return {}
+    bars: dict[str, float] = {}
+    if LADDER[body.fidelity].bounded:
+        bars = mode_bars(scene, body, as_supports(scene), found)
+    # what the mesh was chosen by keeps the bar it was chosen with
+    asked = [name for name in map(Quantity, found.names) if name in settled.bars]
+    return bars | {name: settled.bars[name] for name in asked}
 
 
 class Whole(Climb):

@@ -209,3 +209,16 @@ def answered(answer: Any) -> Table:
         ("quantity", "value", "unit", "bar"),
         rows,
     )
+
+
+def two_shafts(found: Any) -> Table:
+    """Numbers of two shafts, their differences and what of them is resolved."""
+    rows = [
+        (one.name, one.change.a, one.change.b, one.unit, percent(one.relative), one.verdict)
+        for one in found.changes
+    ]
+    return Table(
+        f"{found.a.label} beside {found.b.label}",
+        ("number", "A", "B", "unit", "difference", ""),
+        rows,
+    )

@@ -32,6 +32,10 @@ WORDS = {
     ),
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
+    "shapes": (
+        "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
+        "largest, which is one."
+    ),
     "shares": "Strain energy of every mode by what it is in.",
 }
 
@@ -47,6 +51,8 @@ class Section:
         say what is written there, others the title.
     tables : sequence of Table
         Those without rows are left out.
+    drawings : mapping of str to bytes or None
+        SVG by what it says in words, before the charts.
     """
 
     anchor: str
@@ -54,6 +60,7 @@ class Section:
     words: str = ""
     charts: Mapping[str, Make] = field(default_factory=dict)
     tables: Sequence[Table] = ()
+    drawings: Mapping[str, bytes | None] = field(default_factory=dict)
 
 
 def write_sheet(
@@ -93,7 +100,8 @@ def write_sheet(
     from markupsafe import Markup
 
     shown = [
-        (s, [table for table in s.tables if table], _drawn(s.charts, s.title)) for s in sections
+        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        for s in sections
     ]
     page = template("train_sheet.html").render(
         title=title,
@@ -117,6 +125,13 @@ def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
     return [
         (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
     ]
+
+
+def _given(section: Section) -> list[tuple[str, str]]:
+    """Drawings as they stand in the page, and their words."""
+    from markupsafe import Markup
+
+    return [(Markup(svg.decode()), words) for words, svg in section.drawings.items() if svg]
 
 
 def _words(name: str) -> str:

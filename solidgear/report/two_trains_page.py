@@ -11,7 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solidgear.report import train_tables
+from solidgear.report import beside_tables, train_tables
 from solidgear.report import two_trains_tables as tables
 from solidgear.report.folder import begun
 from solidgear.report.plot import Make
@@ -32,7 +32,6 @@ MOST_PANELS = 8
 SIDES = ("pinion", "gear")
 #: charts that are files as well; those of many panels are read on the page
 FILED = ("response", "shares")
-SAME = "Nothing differs between the two files."
 EXCITED = "Steady response to the transmission error of each file."
 REACTIONS = (
     f"Those of {100 * LARGE:g} % of the largest of their kind or more, and the largest of every "
@@ -84,7 +83,7 @@ def write_two_trains(
         return write_sheet(
             folder / "report.html",
             _title(results),
-            f"solidgear report on two trains: {tables.who(found)}.",
+            f"solidgear report on two trains: {beside_tables.who(found)}.",
             verdict=sentences,
             cautions=found.cautions,
             sections=_sections(found, results, charts, shown),
@@ -191,9 +190,14 @@ def _sections(
         return Section(name, title, words, own, told)
 
     return [
-        section("input", "Input", "" if found.inputs else SAME, tables.inputs(found)),
+        section(
+            "input",
+            "Input",
+            "" if found.inputs else beside_tables.SAME,
+            beside_tables.inputs(found),
+        ),
         section("response", "Mesh force", EXCITED, tables.peaks(found, units)),
-        section("modes", "Modes", "", tables.modes(found)),
+        section("modes", "Modes", "", beside_tables.modes(found)),
         section(
             "reactions",
             "Bearing reactions",

@@ -7,84 +7,24 @@ from functools import partial
 from math import degrees
 from typing import Any
 
+from solidgear.report.beside_tables import band, its
 from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import DASH, hertz, percent
+from solidgear.report.words import hertz, percent
 
-#: letters of an entry of a file on a page and in a terminal
-LONG, SHORT = 60, 34
 #: of a share that is shown: less is no place of a mode
 LEAST_SHARE = 0.0005
-
-
-def who(found: Any) -> str:
-    """Both letters and what they stand for."""
-    return "; ".join(one.label for one in found.both)
-
-
-def inputs(found: Any, width: int = LONG) -> Table:
-    """Entries in which the files differ, each in at most so many letters."""
-    columns = [text("entry"), text("A"), text("B")]
-    rows = [[one.path, *one.written(width)] for one in found.inputs]
-    note = "A dash: not in that file, where something else holds without it."
-    if any(str(cell).endswith("...") for row in rows for cell in row):
-        note += " What ends in dots is whole in results.json."
-    return Table("Input that differs", columns, rows, note, style="ruled")
-
-
-def modes(found: Any) -> Table:
-    """Natural frequencies side by side, with what of their differences is resolved."""
-    columns = [
-        text("mode", _name),
-        Column("A, Hz", lambda p: _of(p.a, "frequency_hz"), hertz),
-        Column("B, Hz", lambda p: _of(p.b, "frequency_hz"), hertz),
-        Column("difference", lambda p: _difference(p.change)),
-    ]
-    note = f"Paired {found.pairing}. "
-    if any(p.change is not None and p.change.band is not None for p in found.modes):
-        columns.append(Column("both bars", lambda p: _band(p.change)))
-        columns.append(word("", lambda p: None if p.change is None else p.change.verdict))
-        note += (
-            "Both bars: the sum of the error bars of both frequencies, relative to A; a difference "
-            "below it is not resolved, which is not agreement. "
-        )
-    columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
-    note += "MAC: how alike the motions of both are; a dash: paired by name, or without a partner."
-    return Table("Natural frequencies", columns, found.modes, note, style="ruled")
-
-
-def _of(one: Any, key: str) -> Any:
-    return None if one is None else getattr(one, key)
-
-
-def _name(pair: Any) -> str:
-    """A mode as A calls it, and as B does where that is another name."""
-    names = [one.name for one in (pair.a, pair.b) if one is not None]
-    return names[0] if len(set(names)) == 1 else f"{names[0]} (B: {names[1]})"
-
-
-def _difference(change: Any) -> str | Cell | None:
-    if change is None:
-        return None
-    told = percent(change.relative) if change.relative is not None else DASH
-    return Cell(told, "unresolved") if change.verdict == "not resolved" else told
-
-
-def _band(change: Any) -> str | None:
-    if change is None or change.band is None or not change.a:
-        return None
-    return percent(change.band / abs(change.a), signed=False)
 
 
 def peaks(found: Any, units: Units = ENGINEERING) -> Table:
     """Peaks of the mesh force side by side."""
     columns = [
         text("mode that makes it", _of_peaks),
-        Column("A, Hz", lambda p: _of(p.a, "frequency_hz"), hertz),
-        Column("B, Hz", lambda p: _of(p.b, "frequency_hz"), hertz),
+        Column("A, Hz", lambda p: its(p.a, "frequency_hz"), hertz),
+        Column("B, Hz", lambda p: its(p.b, "frequency_hz"), hertz),
         Column("difference", _shift),
-        quantity("A", "N", units, lambda p: _of(p.a, "force"), 4),
-        quantity("B", "N", units, lambda p: _of(p.b, "force"), 4),
+        quantity("A", "N", units, lambda p: its(p.a, "force"), 4),
+        quantity("B", "N", units, lambda p: its(p.b, "force"), 4),
         Column("B over A", lambda p: _decibels(p.decibels)),
     ]
     note = "Peaks of one mode stand in one row. A dash: no peak there in the other train."
@@ -171,7 +111,7 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     meant = "; ".join(f"{name}: {meaning}" for name, _, meaning, _ in told)
     note = f"{meant}."
     if any(change.band is not None for *_, change in told):
-        columns.append(Column("both bars", lambda row: _band(row[3])))
+        columns.append(Column("both bars", lambda row: band(row[3])))
         columns.append(word("", lambda row: row[3].verdict))
         note += " Both bars: the sum of what the meshes of both leave, relative to A."
     for letter, ranges in zip("AB", opens):

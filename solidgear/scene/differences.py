@@ -13,13 +13,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isclose
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError, show
 from solidgear.scene import file, train_file
 from solidgear.scene.toml_file import describes_train, parse
 from solidgear.scene.train import SIDES
 from solidgear.scene.units import DIMENSIONS, quantity
+
+if TYPE_CHECKING:
+    from solidgear.scene.model import Scene
 
 #: relative; an angle in degrees and the same in radians differ by rounding
 ROUNDING = 1e-12
@@ -90,7 +93,62 @@ def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference,
     return tuple(_Files(os.fspath(a), os.fspath(b)).found())
 
 
-class _Files:
+def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
+    """Fields in which two scenes differ, SI, whatever files they come from.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> long, short = (sg.Segment.cylinder("rod", length=x, diameter=0.02) for x in (0.6, 0.5))
+    >>> found = scene_differences(*(sg.Scene.from_parts([rod]) for rod in (long, short)))
+    >>> (found[0].path, found[0].a, found[0].b)
+    ('segments.rod.y1', 0.6, 0.5)
+    """
+    one, other = (scene.model_dump(mode="json") for scene in (a, b))
+    return tuple(_Tables().differing("", one, other, left_out=("name",)))
+
+
+class _Tables:
+    """Two tables, entry by entry."""
+
+    prefix = ""
+
+    def differing(
+        self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()
+    ) -> Iterator[Difference]:
+        """Their differences, by paths that begin with one."""
+        for key in dict.fromkeys([*a, *b]):
+            if key not in left_out and not self._holds_anyway(a, b, key):
+                own = f"{path}.{key}" if path else key
+                yield from self._entries(own, key, a.get(key), b.get(key))
+
+    def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
+        if isinstance(a, dict) and isinstance(b, dict):
+            yield from self.differing(path, a, b)
+        elif _are_tables(a) and _are_tables(b):
+            yield from self._lists(path, a, b)
+        elif not _alike(a, b) or self._other_file(key, a, b):
+            yield Difference(self.prefix + path, a, b)
+
+    def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
+        """Differences of lists of tables, by names or numbers."""
+        names = _names(a), _names(b)
+        keys = names if all(names) else (range(len(a)), range(len(b)))
+        mine, its = dict(zip(keys[0], a)), dict(zip(keys[1], b))
+        for key in dict.fromkeys([*mine, *its]):
+            own = f"{path}.{key + 1 if isinstance(key, int) else key}"
+            yield from self._entries(own, "", mine.get(key), its.get(key))
+
+    def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
+        """True for a key that one has alone, and that would change nothing in the other."""
+        return False
+
+    def _other_file(self, key: str, a: Any, b: Any) -> bool:
+        """True for a name that means two files which hold something else."""
+        return False
+
+
+class _Files(_Tables):
     """Two files of the same kind, and where they stand in the files that name them."""
 
     def __init__(self, a: str, b: str, prefix: str = ""):
@@ -105,7 +163,7 @@ class _Files:
     def found(self) -> Iterator[Difference]:
         """Their differences."""
         a, b = self.raw
-        yield from self._tables("", a, b, left_out=("ask",) if self.prefix else ())
+        yield from self.differing("", a, b, left_out=("ask",) if self.prefix else ())
 
     def _meaning(self, k: int) -> Any:
         """Scene or train of a file, whatever it leaves out; None where it cannot be read alone."""
@@ -115,16 +173,7 @@ class _Files:
         except SceneError:
             return None
 
-    def _tables(
-        self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()
-    ) -> Iterator[Difference]:
-        for key in dict.fromkeys([*a, *b]):
-            if key not in left_out and not self._holds_anyway(a, b, key):
-                own = f"{path}.{key}" if path else key
-                yield from self._entries(own, key, a.get(key), b.get(key))
-
     def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
-        """True for a key that one file has alone, and that would change nothing in the other."""
         if key in a and key in b:
             return False
         k, without, value = (1, b, a[key]) if key in a else (0, a, b[key])
@@ -134,24 +183,10 @@ class _Files:
         return same
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
-        if isinstance(a, dict) and isinstance(b, dict):
-            yield from self._tables(path, a, b)
-        elif _are_tables(a) and _are_tables(b):
-            yield from self._lists(path, a, b)
-        elif not _alike(a, b) or self._other_file(key, a, b):
-            yield Difference(self.prefix + path, a, b)
+        yield from super()._entries(path, key, a, b)
         if path in [f"{side}.scene" for side in SIDES]:
             side = path.removesuffix("scene")
             yield from _Files(*self._beside(a, b), self.prefix + side).found()
-
-    def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
-        """Differences of lists of tables, by names or numbers."""
-        names = _names(a), _names(b)
-        keys = names if all(names) else (range(len(a)), range(len(b)))
-        mine, its = dict(zip(keys[0], a)), dict(zip(keys[1], b))
-        for key in dict.fromkeys([*mine, *its]):
-            own = f"{path}.{key + 1 if isinstance(key, int) else key}"
-            yield from self._entries(own, "", mine.get(key), its.get(key))
 
     def _beside(self, a: str, b: str) -> tuple[str, str]:
         """Files that both name."""
@@ -159,7 +194,6 @@ class _Files:
         return mine, its
 
     def _other_file(self, key: str, a: Any, b: Any) -> bool:
-        """True for a name that means two files which hold something else."""
         if key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
             return False
         files = [Path(path) for path in self._beside(a, b)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from solidgear.judge.deviations import resolution
 
@@ -56,3 +57,53 @@ class Change:
         return told | {
             name: getattr(self, name) for name in ("difference", "relative", "band", "verdict")
         }
+
+
+@dataclass(frozen=True)
+class BarredMode:
+    """An elastic mode of one of two things.
+
+    Attributes
+    ----------
+    bar : float or None
+        Largest relative error of its frequency; None where nothing tells it.
+    """
+
+    name: str
+    frequency_hz: float
+    bar: float | None
+
+    @property
+    def width(self) -> float | None:
+        """Its error bar, Hz."""
+        return None if self.bar is None else self.bar * self.frequency_hz
+
+
+M = TypeVar("M", bound=BarredMode)
+
+
+@dataclass(frozen=True)
+class ModePair(Generic[M]):
+    """A mode of one thing and its partner in the other; either may be missing.
+
+    Attributes
+    ----------
+    mac : float or None
+        Modal assurance criterion of their motions; None for a mode alone, and for modes that belong
+        together by name.
+    """
+
+    a: M | None
+    b: M | None
+    mac: float | None = None
+
+    @property
+    def change(self) -> Change | None:
+        """Of the frequency, Hz; None for a mode alone."""
+        if self.a is None or self.b is None:
+            return None
+        return Change(self.a.frequency_hz, self.b.frequency_hz, self.a.width, self.b.width)
+
+    def within(self, highest: float) -> bool:
+        """Tell whether either of them lies below a frequency, Hz."""
+        return any(m is not None and m.frequency_hz <= highest for m in (self.a, self.b))

@@ -8,7 +8,7 @@ import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
@@ -30,6 +30,7 @@ from solidgear.machine.threads import pinned
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
+    from solidgear.studies.two_shafts import TwoShafts
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
@@ -96,15 +97,29 @@ class Comparison(Displayed):
         return write_all(self, out, renders=renders, progress=progress)
 
 
-@pinned
+@overload
+def compare(scene: Scene, other: Scene, /, *, progress: Progress = ...) -> TwoShafts: ...
+
+
+@overload
 def compare(
     scene: Scene,
     models: tuple[str, ...] | None = None,
     *,
     settings: dict[str, dict] | None = None,
+    progress: Progress = ...,
+) -> Comparison: ...
+
+
+@pinned
+def compare(
+    scene: Scene,
+    models: Scene | tuple[str, ...] | None = None,
+    *,
+    settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
-) -> Comparison:
-    """Solve a scene with several models and compare them.
+) -> Comparison | TwoShafts:
+    """Solve a scene with several models and compare them; or two scenes beside each other.
 
     Solids are solved on ever finer meshes until their error bars meet the tolerance of the scene: that
     of the harmonic solid, which judges, a tenth of it, that of the 3D solid the whole.
@@ -114,7 +129,8 @@ def compare(
     scene : Scene
     models : tuple of str, optional
         Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
-        lumped one needs one of the others to rest on.
+        lumped one needs one of the others to rest on. Another scene in their place is held beside
+        the first, each solved by the model that the judge chooses.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
         mesh fix it: that mesh and two coarser ones are solved.
@@ -125,11 +141,14 @@ def compare(
     -------
     Comparison
         After Ctrl-C with the models solved so far, ``record.complete`` False.
+    TwoShafts
+        Of two scenes: ``inputs`` that differ, ``changes`` of numbers with both bars, ``modes`` in
+        pairs, ``sentences``, ``write_report(out)``.
 
     Raises
     ------
     SolidgearError
-        For an unknown model.  A model that fails is reported as not valid, and the others go on.
+        For an unknown model, a train, or settings of two scenes.  A model that fails is reported as not valid, and the others go on.
 
     Examples
     --------
@@ -138,7 +157,25 @@ def compare(
     >>> comparison = sg.compare(sg.Scene.from_parts([rod]), models=("euler",))
     >>> comparison.record.verdict.sentences
     ['Not judged: no solid was run, and a beam cannot judge itself.']
+    >>> thicker = sg.Segment.cylinder("rod", length=0.6, diameter=0.022)
+    >>> found = sg.compare(sg.Scene.from_parts([rod]), sg.Scene.from_parts([thicker]))
+    >>> found["mass"].verdict, round(found["mass"].relative, 4)
+    ('resolved', 0.21)
     """
+    from solidgear.scene import Scene
+    from solidgear.scene.train import Train
+
+    if isinstance(scene, Train) or isinstance(models, Train):
+        raise SolidgearError(
+            "compare takes scenes of one shaft; trains are compared by the command: "
+            "solidgear compare A.toml B.toml"
+        )
+    if isinstance(models, Scene):
+        from solidgear.studies.two_shafts import two_shafts
+
+        if settings:
+            raise SolidgearError("settings are of models of one scene; of two the judge chooses")
+        return two_shafts((scene, models), progress=progress)
     models = LADDER.names if models is None else models
     check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.scene.train import SIDES
-from solidgear.studies.change import Change
+from solidgear.studies.change import BarredMode, ModePair
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import driven, mode_names
@@ -28,56 +28,23 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class SeenMode:
-    """An elastic mode of one of the trains.
+class SeenMode(BarredMode):
+    """An elastic mode of one of the trains; it has no bar without a harmonic shaft.
 
     Attributes
     ----------
-    bar : float or None
-        Largest relative error that meshes and reduction leave; None without a harmonic shaft.
     driven : bool
         Whether it moves a port at all.
     shares : dict of str to float
         Of its strain energy, as of :func:`solidgear.studies.train.strain.strain_shares`.
     """
 
-    name: str
-    frequency_hz: float
-    bar: float | None
     driven: bool
     shares: dict[str, float]
 
-    @property
-    def width(self) -> float | None:
-        """Its error bar, Hz."""
-        return None if self.bar is None else self.bar * self.frequency_hz
 
-
-@dataclass(frozen=True)
-class ModePair:
-    """A mode of one train and its partner in the other; either may be missing.
-
-    Attributes
-    ----------
-    mac : float or None
-        Modal assurance criterion of their motions of shared ports; None for a mode alone, and for
-        modes that belong together by name.
-    """
-
-    a: SeenMode | None
-    b: SeenMode | None
-    mac: float | None = None
-
-    @property
-    def change(self) -> Change | None:
-        """Of the frequency, Hz; None for a mode alone."""
-        if self.a is None or self.b is None:
-            return None
-        return Change(self.a.frequency_hz, self.b.frequency_hz, self.a.width, self.b.width)
-
-    def within(self, highest: float) -> bool:
-        """Tell whether either of them lies below a frequency, Hz."""
-        return any(m is not None and m.frequency_hz <= highest for m in (self.a, self.b))
+#: a pair of modes of two trains, told by the motions of shared ports
+SeenPair = ModePair[SeenMode]
 
 
 def shared_ports(one: Workshop, other: Workshop) -> tuple[list[str], list[str]]:
@@ -124,7 +91,7 @@ def mode_pairs(
     highest: float,
     *,
     by_shape: bool,
-) -> list[ModePair]:
+) -> list[SeenPair]:
     """All modes of both trains, with their partners where they have one, by frequency.
 
     Parameters
@@ -140,7 +107,7 @@ def mode_pairs(
     """
     first, other = modes
     hz = [np.array([mode.frequency_hz for mode in own]) for own in (first, other)]
-    pairs = []
+    pairs: list[SeenPair] = []
     if by_shape:
         # what moves no port has no shape to be told by
         mine, its = ([k for k, mode in enumerate(own) if mode.driven] for own in modes)
@@ -164,7 +131,7 @@ def mode_pairs(
     return sorted([*pairs, *alone], key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both
 
 
-def _by_name(first: Sequence[SeenMode], other: Sequence[SeenMode]) -> list[ModePair]:
+def _by_name(first: Sequence[SeenMode], other: Sequence[SeenMode]) -> list[SeenPair]:
     """Modes of both that are called after the same motion, in order of frequency."""
     waiting: dict[str, list[SeenMode]] = {}
     for mode in other:

@@ -19,8 +19,8 @@ from solidgear.studies.change import Change
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.mode_pairs import (
-    ModePair,
     SeenMode,
+    SeenPair,
     mode_pairs,
     shared_ports,
     told_modes,
@@ -93,7 +93,7 @@ class TwoTrains:
         Models of both.
     inputs : tuple of Difference
         Of their files.
-    modes : tuple of ModePair
+    modes : tuple of SeenPair
         By frequency; one of each pair at least lies in the range.
     peaks : tuple of PeakPair
         Of the mesh force, by frequency.
@@ -107,7 +107,7 @@ class TwoTrains:
     gear: str
     highest_hz: float
     inputs: tuple[Difference, ...]
-    modes: tuple[ModePair, ...]
+    modes: tuple[SeenPair, ...]
     peaks: tuple[PeakPair, ...]
     pairing: str
     seconds: float
@@ -263,7 +263,7 @@ def _one_train(
 
 
 def _peak_pairs(
-    first: Sequence[Peak], other: Sequence[Peak], pairs: Sequence[ModePair]
+    first: Sequence[Peak], other: Sequence[Peak], pairs: Sequence[SeenPair]
 ) -> tuple[PeakPair, ...]:
     partner = {p.a.name: p.b.name for p in pairs if p.a is not None and p.b is not None}
     left = list(other)

@@ -13,9 +13,8 @@ from solidgear.machine.environment import environment
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, percent
 from solidgear.scene.train import SIDES
-from solidgear.studies.change import Change
+from solidgear.studies import beside
 from solidgear.studies.train.comparison import described
-from solidgear.studies.train.mode_pairs import ModePair
 from solidgear.studies.train.modes import unpublished_lines
 from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains, decibels
 
@@ -23,12 +22,6 @@ from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains, de
 LOUDEST = 3
 #: column of the mesh force
 FORCE = "mesh force [N]"
-
-
-def same_file(a: str, b: str) -> str:
-    """Sentence on one file that is given twice."""
-    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
-    return f"{what}: nothing differs, and nothing was solved."
 
 
 def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
@@ -40,27 +33,15 @@ def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
         Of forces.
     """
     return [
-        _inputs(found),
+        beside.inputs(found.inputs),
         _models(found),
         *_largest_force(found, units),
         *_loudest(found, units),
-        *_modes(found),
+        *beside.modes(found.modes, "in the other train"),
         *_largest_reactions(found, units),
         *_at_rest(found, units),
         _sure(found),
     ]
-
-
-def _inputs(found: TwoTrains) -> str:
-    numbers = [d for d in found.inputs if not d.in_words]
-    if not found.inputs:
-        return "Nothing differs between the two files."
-    if not numbers:
-        return "The two files differ in words alone (titles, sources): no number can."
-    paths = [d.path for d in numbers[:LOUDEST]]
-    more = f" and {len(numbers) - LOUDEST} more" if len(numbers) > LOUDEST else ""
-    one = len(numbers) == 1
-    return f"{len(numbers)} entr{'y' if one else 'ies'} of the input differ{'s' * one}: {', '.join(paths)}{more}."
 
 
 def _models(found: TwoTrains) -> str:
@@ -122,42 +103,10 @@ def _loudest(found: TwoTrains, units: Units) -> Iterator[str]:
         shift = percent(b.frequency_hz / a.frequency_hz - 1)
         forces = f"{units.number(a.force, 'N', 4)} to {units.text(b.force, 'N', 4)}"
         yield (
-            f"The peak of {both_names(a.mode, b.mode)} moves from {hertz(a.frequency_hz)} to "
+            f"The peak of {beside.both_names(a.mode, b.mode)} moves from {hertz(a.frequency_hz)} to "
             f"{hertz(b.frequency_hz)} Hz ({shift}), its mesh force from {forces} "
             f"({pair.decibels:+.1f} dB)."
         )
-
-
-def both_names(a: str, b: str) -> str:
-    """A mode by its name, or by both of its names."""
-    return a if a == b else f"{a} (in B {b})"
-
-
-def _modes(found: TwoTrains) -> Iterator[str]:
-    pairs = [(p, p.change) for p in found.modes if p.change is not None]
-    verdicts = [change.verdict for _, change in pairs]
-    count, sure = len(pairs), verdicts.count("resolved")
-    if "no band" not in verdicts:
-        many = {0: "none", count: "all"}.get(sure, str(sure))
-        differ = "differs" if sure == 1 else "differ"
-        rest = ", the rest do not" if 0 < sure < count else ""
-        yield f"Of {count} pairs of modes {many} {differ} by more than both bars (resolved){rest}."
-    moved = max(pairs, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
-    if moved is not None and moved[1].verdict != "not resolved":
-        yield f"Moves most: {_moved(*moved)}."
-    for letter, alone in (
-        ("A", [p.a for p in found.modes if p.b is None]),
-        ("B", [p.b for p in found.modes if p.a is None]),
-    ):
-        told = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
-        if told:
-            yield f"Without a partner in the other train, of {letter}: {', '.join(told)}."
-
-
-def _moved(pair: ModePair, change: Change) -> str:
-    assert pair.a is not None and pair.b is not None
-    name = both_names(pair.a.name, pair.b.name)
-    return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
 
 
 def _largest_reactions(found: TwoTrains, units: Units) -> Iterator[str]:
@@ -235,7 +184,7 @@ def results(found: TwoTrains) -> dict[str, Any]:
         "differences": [asdict(one) for one in found.inputs],
         "sentences": sentences(found),
         "paired": found.pairing,
-        "modes": [_pair(pair) for pair in found.modes],
+        "modes": [beside.plain_pair(pair) for pair in found.modes],
         "peaks": [
             {
                 "a": None if pair.a is None else asdict(pair.a),
@@ -257,12 +206,6 @@ def results(found: TwoTrains) -> dict[str, Any]:
         "environment": environment(),
         "seconds_total": found.seconds,
     }
-
-
-def _pair(pair: ModePair) -> dict[str, Any]:
-    own = {key: None if m is None else asdict(m) for key, m in (("a", pair.a), ("b", pair.b))}
-    change = pair.change
-    return {**own, "mac": pair.mac, "frequency": None if change is None else change.as_dict()}
 
 
 def _largest(found: TwoTrains, column: str) -> dict[str, Any]:

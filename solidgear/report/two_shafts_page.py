@@ -1,0 +1,146 @@
+"""Everything that two shafts beside each other leave in a folder: numbers and one self-contained
+page.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solidgear.report import beside_tables
+from solidgear.report.folder import begun
+from solidgear.report.run_tables import pairs_of
+from solidgear.report.sheet_files import write_json
+from solidgear.report.sketch_page import sketch_svg
+from solidgear.report.table import Cell, Column, Table, text, word
+from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.two_shafts_chart import shapes_chart
+from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import is_number, percent, seconds
+
+SECTIONS = "Each drawn as wide as the page, and not to one scale."
+
+
+def numbers(found: Any, units: Units = ENGINEERING) -> Table:
+    """Mass, compliances, stiffnesses and first frequencies side by side."""
+    columns = [
+        text("number", lambda one: one.name + (f" (B: {one.partner})" if one.partner else "")),
+        Column("A", lambda one: _value(one, one.change.a, units)),
+        Column("B", lambda one: _value(one, one.change.b, units)),
+        text("unit", lambda one: units.unit(one.unit)),
+        Column("difference", _apart),
+        Column("bar of A", lambda one: _bar(one, one.change.bar_a, one.scale)),
+        Column("bar of B", lambda one: _bar(one, one.change.bar_b, one.scale)),
+        word("", _verdict),
+    ]
+    note = (
+        "Differences and bars are relative to A, of couplings to the geometric mean of both diagonal "
+        "entries of A. Resolved: more than the sum of both bars; not resolved is not agreement. The "
+        "mass is that of the shaft alone; of a round one it is exact and has no bar."
+    )
+    return Table("Numbers", columns, found.changes, note, style="ruled")
+
+
+def _exact_and_alike(one: Any) -> bool:
+    """True for a number without error that both have alike: there is nothing to resolve."""
+    return one.name == "mass" and one.change.difference == 0
+
+
+def _apart(one: Any) -> str | Cell | None:
+    return percent(0.0) if _exact_and_alike(one) else beside_tables.apart(one.change, one.scale)
+
+
+def _verdict(one: Any) -> str | None:
+    return None if _exact_and_alike(one) else one.verdict
+
+
+def _value(one: Any, value: float, units: Units) -> str:
+    # a coupling that symmetry forbids is nothing but rounding
+    return "0" if abs(value) <= 1e-9 * one.scale else units.number(value, one.unit, 6)
+
+
+def _bar(one: Any, width: float | None, scale: float) -> str | None:
+    if one.name == "mass" or not is_number(width) or not scale:
+        return None
+    return percent(width / scale, signed=False)
+
+
+def write_two_shafts(
+    found: Any,
+    results: Mapping[str, Any],
+    sentences: Sequence[str],
+    out: str | os.PathLike,
+    units: Units = ENGINEERING,
+) -> Path:
+    """Write results.json and report.html.
+
+    Parameters
+    ----------
+    results : mapping
+        The same as plain data, as of ``two_shafts_told.results``.
+    sentences : sequence of str
+        Its conclusions.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    SolidgearError
+        If the folder cannot be written.
+    """
+    with begun(out) as folder:
+        # Numbers first: whatever happens to drawings, they are there.
+        write_json(folder / "results.json", {**results, "files": ["report.html"]})
+        return write_sheet(
+            folder / "report.html",
+            _title(results),
+            f"solidgear report on two shafts: {beside_tables.who(found)}.",
+            verdict=sentences,
+            cautions=found.cautions,
+            sections=_sections(found, results, units),
+            notes=[f"Whole run: {seconds(found.seconds)} s."],
+        )
+
+
+def _title(results: Mapping[str, Any]) -> str:
+    titles = [shaft["title"] for shaft in results["shafts"].values()]
+    return titles[0] if len(set(titles)) == 1 else f"{titles[0]} beside {titles[1]}"
+
+
+def _sections(found: Any, results: Mapping[str, Any], units: Units) -> list[Section]:
+    drawings = {
+        f"{one.label}, section through the axis.": sketch_svg(f"shaft_{key}", shaft["scene"])
+        for one, (key, shaft) in zip(found.both, results["shafts"].items())
+    }
+    solved = [pairs_of(_facts(one), f"Solution of {one.label}") for one in found.both]
+    shapes = partial(shapes_chart, found, units)
+    same = "" if found.inputs else beside_tables.SAME
+    return [
+        Section("input", "Input", same, tables=[beside_tables.inputs(found)]),
+        Section("shafts", "Both shafts", SECTIONS, drawings=drawings),
+        Section("numbers", "Numbers", "", tables=[numbers(found, units)]),
+        Section("modes", "Modes", "", {"shapes": shapes}, [beside_tables.modes(found)]),
+        Section(
+            "run",
+            "Run",
+            "",
+            tables=[*solved, pairs_of(results["environment"], "Environment of the run")],
+        ),
+    ]
+
+
+def _facts(one: Any) -> dict[str, Any]:
+    """Model, mesh and size."""
+    return {
+        "model": one.settled.rung,
+        "mesh": one.settled.setting,
+        "unknowns": one.settled.body.size,
+        "bars asked for": percent(one.settled.tolerance, signed=False),
+        "reached": "yes" if one.settled.reached else "no",
+    }

@@ -1,0 +1,386 @@
+"""Two shafts beside each other: what differs in them, and what that does to their numbers.
+
+Both are solved until every bar is within a tenth of their tolerance, so that a difference which
+matters is more than the bars.  A frequency belongs to that of the mode of the same shape where
+both shafts are described at the same stations, else to the mode of the same name.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from solidgear.body import as_supports
+from solidgear.display import Displayed
+from solidgear.judge.answer import LEAST_TOLERANCE
+from solidgear.judge.correlation import pair_modes
+from solidgear.judge.quantities import Values, in_order, size
+from solidgear.judge.settle import Settled, bars_of_modes, settle
+from solidgear.judge.solving import answered
+from solidgear.machine.meter import Meter
+from solidgear.machine.threads import pinned
+from solidgear.quantity import QUANTITIES, Quantity
+from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.differences import ROUNDING, Difference, scene_differences
+from solidgear.solve.modes import Mode, ModeSet
+from solidgear.studies.change import BarredMode, Change, ModePair
+from solidgear.studies.check import cautions
+
+if TYPE_CHECKING:
+    from solidgear.scene import Scene
+
+Progress = Callable[[str], None]
+#: part of the tolerance that the bars of both are brought to
+SHARE = 0.1
+#: entries of the other plane that are those of the first unless bearings or features differ
+TWINS = {
+    Quantity(f"{kind}_{its}"): Quantity(f"{kind}_{own}")
+    for kind in "CK"
+    for its, own in (("xx", "zz"), ("x,thz", "z,thx"), ("thz", "thx"))
+}
+#: relative; twins closer than this are one number
+SAME = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class OneShaft:
+    """One of the two, solved.
+
+    Attributes
+    ----------
+    letter, name : str
+        ``A`` or ``B``, and what it is called.
+    values : dict of Quantity to float
+        SI.
+    modes : ModeSet
+        The list that the scene asks for, and what was solved above it.
+    bars : dict of str to float
+        Relative, of quantities and modes.
+    mass : float
+        Of the shaft without what sits on it, kg.
+    mass_bar : float or None
+        Relative; that of rounding where it has a closed form, None elsewhere.
+    """
+
+    letter: str
+    name: str
+    scene: Scene
+    settled: Settled
+    values: Values
+    modes: ModeSet
+    bars: dict[str, float]
+    mass: float
+    mass_bar: float | None
+    cautions: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """Letter and name."""
+        return f"{self.letter}: {self.name}"
+
+    def bar(self, name: Quantity) -> float | None:
+        """Bar of a quantity in its own unit; None where nothing is known."""
+        width = self.settled.bars.get(name, math.inf) * size(self.values, name)
+        return width if math.isfinite(width) else None
+
+    def seen(self, mode: Mode) -> BarredMode:
+        """A mode with its bar."""
+        bar = self.bars.get(mode.name, math.inf)
+        return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
+
+
+@dataclass(frozen=True)
+class NumberChange:
+    """A number of both shafts.
+
+    Attributes
+    ----------
+    name : str
+        Quantity, or ``mass``.
+    unit : str
+        SI.
+    scale : float
+        What its difference is relative to: of couplings the geometric mean of both diagonal entries
+        of A, of all else the number of A.
+    partner : str
+        Name of the mode of B where that is another one, else nothing.
+    """
+
+    name: str
+    unit: str
+    change: Change
+    scale: float
+    partner: str = ""
+
+    @property
+    def relative(self) -> float | None:
+        """Difference over the scale; None where that is zero."""
+        return self.change.difference / self.scale if self.scale else None
+
+    @property
+    def verdict(self) -> str:
+        """``resolved``, ``not resolved`` or ``no band``."""
+        return self.change.verdict
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class TwoShafts(Displayed):
+    """Two shafts beside each other.
+
+    Attributes
+    ----------
+    tolerance : float
+        Relative, that every bar was brought to.
+    inputs : tuple of Difference
+        Of their files, or fields.
+    changes : tuple of NumberChange
+        Mass, entries of C and K at the lumped points, first frequencies.
+    modes : tuple of ModePair
+        By frequency.
+    pairing : str
+        How modes belong together, in words.
+    alone : dict of str to tuple of str
+        Numbers that one has and the other does not, by letter.
+    """
+
+    shown: ClassVar[str] = "two_shafts"
+
+    a: OneShaft
+    b: OneShaft
+    tolerance: float
+    inputs: tuple[Difference, ...]
+    changes: tuple[NumberChange, ...]
+    modes: tuple[ModePair[BarredMode], ...]
+    pairing: str
+    alone: dict[str, tuple[str, ...]]
+    seconds: float
+
+    def __getitem__(self, name: str) -> NumberChange:
+        return next(one for one in self.changes if one.name == name)
+
+    @property
+    def both(self) -> tuple[OneShaft, OneShaft]:
+        """Both shafts."""
+        return self.a, self.b
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of both, each with whose it is unless it is of both."""
+        alike = [text for text in self.a.cautions if text in self.b.cautions]
+        own = [f"{one.letter}: {t}" for one in self.both for t in one.cautions if t not in alike]
+        return [*alike, *own]
+
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions."""
+        from solidgear.studies.two_shafts_told import sentences
+
+        return sentences(self)
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        from solidgear.studies.two_shafts_told import results
+
+        return results(self)
+
+    def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
+        """Write results.json and report.html into a folder.
+
+        Parameters
+        ----------
+        out : path
+            The folder.
+        units : {'engineering', 'si', 'us'}
+            Of the page; results.json is SI always.
+
+        Returns
+        -------
+        pathlib.Path
+            Of the page.
+
+        Raises
+        ------
+        SolidgearError
+            If the folder cannot be written, or units are unknown.
+        """
+        from solidgear.report.two_shafts_page import write_two_shafts
+        from solidgear.report.units import units_named
+        from solidgear.studies.two_shafts_told import results, sentences
+
+        shown = units_named(units)
+        return write_two_shafts(self, results(self), sentences(self, shown), out, shown)
+
+
+@pinned
+def two_shafts(
+    scenes: Sequence[Scene],
+    names: Sequence[str] = (),
+    inputs: Sequence[Difference] | None = None,
+    progress: Progress = lambda _: None,
+) -> TwoShafts:
+    """Two shafts beside each other, each by the cheapest solid whose bars are within a tenth of the
+    smaller tolerance of both.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Two.
+    names : sequence of str, optional
+        What they are called; by default as the scenes are.
+    inputs : sequence of Difference, optional
+        Of their files; by default of the scenes' fields.
+    progress : callable
+        Told of every stage.
+
+    Raises
+    ------
+    SolidgearError
+        For a scene that no model can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rods = [sg.Segment.cylinder("rod", length=0.6, diameter=d) for d in (0.02, 0.022)]
+    >>> found = two_shafts([sg.Scene.from_parts([rod]) for rod in rods])
+    >>> found["bending 1"].verdict, round(found["bending 1"].relative, 2)
+    ('resolved', 0.1)
+    """
+    start = perf_counter()
+    first, other = scenes
+    tol = max(SHARE * min(s.ask.tolerance for s in scenes), LEAST_TOLERANCE)
+    its = {port.name for port in other.further_ports}
+    points = [port.name for port in first.further_ports if port.name in its]
+    a, b = (
+        _solved(letter, name, scene, tol, points, progress)
+        for letter, name, scene in zip("AB", names or [s.name for s in scenes], scenes)
+    )
+    pairs, pairing = _paired(a, b)
+    changes = (_mass(a, b), *_statics(a, b), *_frequencies(a, b, pairs))
+    differ = tuple(scene_differences(first, other) if inputs is None else inputs)
+    alone = {
+        one.letter: tuple(str(q) for q in in_order(one.values) if q not in second.values)
+        for one, second in ((a, b), (b, a))
+    }
+    spent = perf_counter() - start
+    return TwoShafts(a, b, tol, differ, changes, tuple(pairs), pairing, alone, spent)
+
+
+def _solved(
+    letter: str, name: str, scene: Scene, tol: float, points: list[str], progress: Progress
+) -> OneShaft:
+    def told(text: str) -> None:
+        progress(f"{letter}: {text}")
+
+    settled = settle(scene, tol, points=points, progress=told)
+    body = settled.body
+    told("statics and modes")
+    found = answered(
+        body,
+        as_supports(scene),
+        [scene.port.name, *points],
+        n=scene.ask.modes,
+        max_frequency=scene.ask.max_frequency,
+        ovalising=True,
+        wanted=[q for q in QUANTITIES if q.is_frequency],
+        spare=True,
+        meter=Meter(),
+    )
+    told("how sure its frequencies are")
+    bars = bars_of_modes(scene, body, _all(found.modes), settled)
+    for asked in (q for q in settled.bars if q.is_frequency):
+        # bending may be called by its plane
+        mode = found.modes.named(asked)
+        if mode is not None:
+            bars.setdefault(str(mode.name), settled.bars[asked])
+    round_ = body.mesh.get("round", True)
+    mass = mass_properties(scene.outline).mass if round_ else float(body.mass_matrix()[0, 0])
+    said = tuple(cautions(scene, body))
+    body.cache.clear()
+    exact = ROUNDING if round_ else None
+    numbers = found.quantities, found.modes, bars
+    return OneShaft(letter, name, scene, settled, *numbers, mass, exact, said)
+
+
+def _all(found: ModeSet) -> ModeSet:
+    """All modes of a list and beyond it as one list."""
+    every = sorted((*found.modes, *found.beyond), key=lambda mode: mode.frequency_hz)
+    return replace(found, modes=tuple(every), beyond=())
+
+
+def _mass(a: OneShaft, b: OneShaft) -> NumberChange:
+    bars = [None if one.mass_bar is None else one.mass_bar * one.mass for one in (a, b)]
+    return NumberChange("mass", "kg", Change(a.mass, b.mass, *bars), a.mass)
+
+
+def _statics(a: OneShaft, b: OneShaft) -> Iterable[NumberChange]:
+    for name in in_order(a.values):
+        if name.is_frequency or name not in b.values or _twin(a, name) and _twin(b, name):
+            continue
+        change = Change(a.values[name], b.values[name], a.bar(name), b.bar(name))
+        yield NumberChange(str(name), name.unit, change, size(a.values, name))
+
+
+def _twin(one: OneShaft, name: Quantity) -> bool:
+    """True for an entry of the other plane that is that of the first plane over again."""
+    if name not in TWINS or TWINS[name] not in one.values:
+        return False
+    twin = TWINS[name]
+    apart = abs(abs(one.values[name]) - abs(one.values[twin]))
+    return apart <= SAME * size(one.values, twin)
+
+
+def _frequencies(
+    a: OneShaft, b: OneShaft, pairs: Sequence[ModePair[BarredMode]]
+) -> Iterable[NumberChange]:
+    """First frequencies, each beside that of the mode that its own belongs to."""
+    partners = {p.a.name: (p.b.name, p.change) for p in pairs if p.a and p.b and p.change}
+    for name in (q for q in QUANTITIES if q.is_frequency):
+        mode = a.modes.named(name)
+        if mode is None or str(mode.name) not in partners:
+            continue
+        its, change = partners[str(mode.name)]
+        other = "" if its == mode.name else its
+        yield NumberChange(str(name), "Hz", change, abs(change.a), other)
+
+
+def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
+    """Modes of both lists with their partners, and in words how they were found."""
+    mine, its = ([m for m in _all(one.modes).modes if m.frequency_hz > 0] for one in (a, b))
+    found: list[tuple[Mode | None, Mode | None, float | None]] = []
+    shared = _same_stations(a.modes, b.modes)
+    if shared:
+        for p in pair_modes(b.modes, a.modes):
+            partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
+            found += [(p.reference, m, p.mac or None) for m in partners]
+    left = {str(m.name): m for m in its if all(m is not other for _, other, _ in found)}
+    for mode in mine:
+        if all(mode is not own for own, _, _ in found):
+            found.append((mode, left.pop(str(mode.name), None), None))
+    found += [(None, m, None) for m in left.values()]
+    # a partner above the end of the other list is none that is missing
+    tops = [max((m.frequency_hz for m in own), default=0.0) for own in (mine, its)]
+    listed = {id(m) for one in (a, b) for m in one.modes.modes}
+    pairs = [
+        ModePair(None if m is None else a.seen(m), None if n is None else b.seen(n), mac)
+        for m, n, mac in found
+        if (id(m) in listed or id(n) in listed)
+        and (n is not None or m is None or m.frequency_hz <= tops[1])
+        and (m is not None or n is None or n.frequency_hz <= tops[0])
+    ]
+    words = "by name, for both shafts are not told at the same places along the axis"
+    if shared:
+        words = "by the motions of sections along the axis, and by name where no shape is certain"
+    return sorted(pairs, key=lambda p: (p.a or p.b).frequency_hz), words  # type: ignore[union-attr]  # never both
+
+
+def _same_stations(one: ModeSet, other: ModeSet) -> bool:
+    same = one.stations.shape == other.stations.shape
+    return same and bool(np.allclose(one.stations, other.stations))

@@ -1,0 +1,132 @@
+"""Conclusions of the comparison of two shafts in sentences, and all of it as plain data."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Any
+
+from solidgear.ladder.registry import LADDER
+from solidgear.machine.environment import environment
+from solidgear.report.units import ENGINEERING, Units
+from solidgear.report.words import is_number, percent
+from solidgear.studies import beside
+from solidgear.studies.two_shafts import NumberChange, OneShaft, TwoShafts
+
+#: numbers that a sentence names as not resolved
+NAMED = 4
+
+
+def sentences(found: TwoShafts, units: Units = ENGINEERING) -> list[str]:
+    """Conclusions: what differs, what that does, what of it is resolved, and how it was solved.
+
+    Parameters
+    ----------
+    units : Units, optional
+        Of the numbers in them.
+    """
+    return [
+        beside.inputs(found.inputs),
+        *_numbers(found, units),
+        *beside.modes(found.modes, "among the modes solved of the other"),
+        *_alone(found),
+        *_solved(found),
+    ]
+
+
+def _numbers(found: TwoShafts, units: Units) -> Iterator[str]:
+    statics = [one for one in found.changes if one.unit not in ("Hz", "kg")]
+    yield from beside.resolved([one.change for one in statics], "compliances and stiffnesses")
+    moved = [one for one in statics if one.verdict != "not resolved" and one.relative is not None]
+    if moved:
+        yield f"Moves most of them: {_told(max(moved, key=_size), units)}."
+    unsure = [
+        one for one in found.changes if one.verdict == "not resolved" and one.change.difference
+    ]
+    if unsure:
+        names = ", ".join(one.name for one in unsure[:NAMED])
+        more = f" and {len(unsure) - NAMED} more" if len(unsure) > NAMED else ""
+        yield f"Not resolved, for both bars hold their differences: {names}{more}."
+    yield f"Mass of the shaft: {_told(found['mass'], units)}."
+
+
+def _size(one: NumberChange) -> float:
+    return abs(one.relative or 0.0)
+
+
+def _told(one: NumberChange, units: Units) -> str:
+    change = one.change
+    if change.difference == 0.0:
+        return f"{units.text(change.a, one.unit, 5)} in both"
+    values = f"{units.number(change.a, one.unit, 5)} to {units.text(change.b, one.unit, 5)}"
+    band = f", both bars {percent(change.band / one.scale, signed=False)}" if change.band else ""
+    band = "" if one.unit == "kg" else band
+    name = "" if one.unit == "kg" else f"{one.name}, "
+    return f"{name}from {values} ({percent(one.relative)}{band}; {one.verdict})"
+
+
+def _alone(found: TwoShafts) -> Iterator[str]:
+    for letter, names in found.alone.items():
+        if names:
+            yield f"Only {letter} has {', '.join(names)}: the other has no such motion that is held, or no such mode."
+    points = [one.scene.port.name for one in found.both]
+    if points[0] != points[1]:
+        yield f"The lumped point is {points[0]} of A and {points[1]} of B."
+
+
+def _solved(found: TwoShafts) -> Iterator[str]:
+    titles = [LADDER[one.settled.rung].title for one in found.both]
+    by = f"Both by the {titles[0]}"
+    if titles[0] != titles[1]:
+        by = f"A by the {titles[0]}, B by the {titles[1]}"
+    asked = {one.scene.ask.tolerance for one in found.both}
+    smaller = "the smaller tolerance of both" if len(asked) > 1 else "the tolerance of both"
+    yield f"{by}, to bars of {percent(found.tolerance, signed=False)}: a tenth of {smaller}."
+    for one in found.both:
+        if not one.settled.reached:
+            yield _not_reached(one)
+    if any(b.catalogue is not None for one in found.both for b in one.scene.bearings):
+        yield "Bars are those of mesh and solver, not what data of catalogue bearings leave open."
+
+
+def _not_reached(one: OneShaft) -> str:
+    largest = one.settled.largest
+    if largest is None:
+        return f"{one.letter} has no bars."
+    name, bar = largest
+    width = percent(bar, signed=False) if is_number(bar) else "unknown"
+    return f"Not reached by {one.letter}: the largest bar is {width}, of {name}."
+
+
+def results(found: TwoShafts) -> dict[str, Any]:
+    """Plain data that JSON can hold, SI: all numbers of the page."""
+    return {
+        "kind": "two shafts",
+        "shafts": {one.letter.lower(): _shaft(one) for one in found.both},
+        "tolerance": found.tolerance,
+        "differences": [asdict(one) for one in found.inputs],
+        "sentences": sentences(found),
+        "numbers": {one.name: _plain(one) for one in found.changes},
+        "paired": found.pairing,
+        "modes": [beside.plain_pair(pair) for pair in found.modes],
+        "alone": {letter.lower(): list(names) for letter, names in found.alone.items()},
+        "cautions": found.cautions,
+        "environment": environment(),
+        "seconds_total": found.seconds,
+    }
+
+
+def _shaft(one: OneShaft) -> dict[str, Any]:
+    return {
+        "file": one.name,
+        "title": one.scene.title or one.scene.name,
+        "scene": one.scene.as_dict(),
+        "solved": one.settled.as_dict(),
+    }
+
+
+def _plain(one: NumberChange) -> dict[str, Any]:
+    told = one.change.as_dict() | {"relative": one.relative, "unit": one.unit}
+    scale = one.scale if math.isfinite(one.scale) else None
+    return told | {"scale": scale} | ({"mode_of_b": one.partner} if one.partner else {})

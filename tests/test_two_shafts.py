@@ -1,0 +1,186 @@
+"""Two shafts beside each other: what differs in them is told, signs are those of mechanics, and
+nothing inside the bars is called a difference.
+"""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import solidgear as sg
+from solidgear.scene.differences import differences, scene_differences
+from solidgear.studies.two_shafts import two_shafts
+from tests.command import command
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+SCENE, OTHER, TRAIN = (
+    GEOMETRY / f"{name}.toml" for name in ("pinion_overhung", "gear_shaft", "axle_overhung")
+)
+STATIC = ("m/N", "rad/N", "rad/(N m)", "N/m", "N/rad", "N m/rad")
+
+
+def copied(folder, old='diameter = "90 mm"', new='diameter = "94.5 mm"'):
+    """The overhung pinion with another entry: by default a shaft 5 % thicker."""
+    text = SCENE.read_text()
+    assert old in text
+    (folder / "b.toml").write_text(text.replace(old, new))
+    return folder / "b.toml"
+
+
+@pytest.fixture(scope="module")
+def thicker(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("two")
+    done = command("compare", SCENE, copied(folder), "--out", folder / "out", "--json")
+    assert done.exit_code == 0, done.output
+    return json.loads(done.stdout), folder / "out"
+
+
+# --------------------------------------------------------------------------- numbers
+def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
+    told, _ = thicker
+    assert [d["path"] for d in told["differences"]] == ["segment.shaft.diameter"]
+    assert told["sentences"][0] == "1 entry of the input differs: segment.shaft.diameter."
+    assert [told["shafts"][key]["file"] for key in "ab"] == ["pinion_overhung", "b"]
+    numbers = told["numbers"]
+    assert set(numbers) == {"mass", *map(str, sg.quantity.QUANTITIES)}
+    up = ("mass", "K_zz", "K_thx", "K_yy", "bending 1", "torsion 1")
+    for name in up:
+        assert numbers[name]["difference"] > 0, name
+    for name in ("C_zz", "C_thx", "C_yy"):
+        assert numbers[name]["difference"] < 0, name
+    assert {one["verdict"] for one in numbers.values()} == {"resolved"}
+    # the shaft is 208 mm of 90 mm, 7850 kg/m^3: pi/4 (94.5^2 - 90^2) mm^2 more
+    assert numbers["mass"]["difference"] == pytest.approx(1.0649, rel=1e-3)
+
+
+def test_numbers_are_those_of_each_shaft_alone_within_both_bars(thicker):
+    told, _ = thicker
+    alone = sg.answer(sg.load(SCENE), 0.01, "C_zz,K_zz,bending")
+    for value in alone.values:
+        mine = told["numbers"][value.quantity]
+        band = mine["bar_a"] + value.bar * value.size
+        assert abs(mine["a"] - value.value) <= band
+
+
+def test_every_bar_is_within_a_tenth_of_the_tolerance(thicker):
+    told, _ = thicker
+    assert told["tolerance"] == pytest.approx(sg.load(SCENE).ask.tolerance / 10)
+    for name, one in told["numbers"].items():
+        if name != "mass":
+            assert 0 < one["bar_a"] <= told["tolerance"] * one["scale"]
+
+
+def test_a_shaft_beside_itself_differs_nowhere_and_nothing_is_resolved():
+    scene = sg.load(SCENE)
+    found = sg.compare(scene, scene)
+    assert found.inputs == () and len(found.changes) == 13
+    assert "A: pinion_overhung beside B: pinion_overhung" in repr(found)
+    assert {one.verdict for one in found.changes} == {"not resolved"}
+    assert all(one.change.difference == 0.0 for one in found.changes)
+    for pair in found.modes:
+        assert pair.a.name == pair.b.name and pair.mac == pytest.approx(1.0)
+    assert found.sentences[0] == "Nothing differs in the input."
+    assert any("none differ by more than both bars" in one for one in found.sentences)
+    assert not any("Moves most" in one for one in found.sentences)
+
+
+def test_a_diameter_changed_by_1e_7_moves_nothing_beyond_the_bars(tmp_path):
+    path = copied(tmp_path, new='diameter = "90.000009 mm"')
+    found = two_shafts([sg.load(SCENE), sg.load(path)], inputs=differences(SCENE, path))
+    assert [one.path for one in found.inputs] == ["segment.shaft.diameter"]
+    numbers = [one for one in found.changes if one.name != "mass"]
+    assert all(one.verdict == "not resolved" for one in numbers)
+    assert any(one.change.difference != 0.0 for one in numbers)
+    assert found["mass"].verdict == "resolved"  # a closed form has no bar but rounding
+    assert any("Not resolved, for both bars hold" in one for one in found.sentences)
+
+
+def test_springs_of_the_other_plane_alone_are_seen():
+    scene = sg.load(SCENE)
+    stiffness = scene.bearings[0].stiffness.copy()
+    stiffness[0, 0] *= 1.2
+    harder = scene.bearings[0].with_changes(matrix=stiffness.tolist())
+    found = sg.compare(scene, scene.with_changes(bearings=(harder, scene.bearings[1])))
+    assert found["C_xx"].relative < 0 and found["C_xx"].verdict == "resolved"
+    assert abs(found["C_zz"].relative) < 1e-6 and found["C_zz"].verdict == "not resolved"
+
+
+def test_shafts_of_other_lengths_have_their_modes_paired_by_name_and_it_is_told():
+    rods = [sg.Segment.cylinder("rod", length=x, diameter=0.02) for x in (0.6, 0.3)]
+    found = sg.compare(*(sg.Scene.from_parts([rod]) for rod in rods))
+    assert "by name" in found.pairing and {pair.mac for pair in found.modes} == {None}
+    assert {one.name for one in found.changes} == {
+        "mass", "bending 1", "bending 2", "axial 1", "torsion 1",
+    }  # fmt: skip
+    # half as long: axial and torsion of a rod twice as high, bending of a slender one nearly 4 times
+    for name in ("axial 1", "torsion 1"):
+        assert found[name].relative == pytest.approx(1.0, abs=5e-3)
+    assert 2.8 < found["bending 1"].relative < 3.0
+
+
+def test_fields_of_scenes_made_in_python_are_told_by_their_paths():
+    scene = sg.load(SCENE)
+    moved = scene.with_port(y=0.05)
+    assert {one.path for one in scene_differences(scene, moved)} >= {"port.y"}
+    assert scene_differences(scene, scene) == ()
+
+
+# --------------------------------------------------------------------------- page and files
+def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(thicker):
+    told, out = thicker
+    stored = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    assert set(stored.pop("files")) | {"results.json"} == {p.name for p in out.iterdir()}
+    assert stored == told
+    page = (out / "report.html").read_text(encoding="utf-8")
+    text = " ".join(re.sub(r"<[^>]+>", " ", page).split())
+    for sentence in told["sentences"]:
+        assert " ".join(sentence.split()) in text
+    for one in told["numbers"].values():
+        if one["unit"] == "Hz":
+            assert f"{one['a']:.2f}" in text and f"{one['b']:.2f}" in text
+        assert one["verdict"] in text
+    for pair in told["modes"]:
+        assert pair["a"]["name"] in text and f"{pair['a']['frequency_hz']:.1f}" in text
+    for word in ("segment.shaft.diameter", "90 mm", "94.5 mm", "section through the axis"):
+        assert word in text
+    # both sections are drawn, wide and for a phone
+    drawn = {f"shaft_{key}-{kind}" for key in "ab" for kind in ("wide", "narrow")}
+    assert drawn == set(re.findall(r'id="(shaft_[ab]-(?:wide|narrow))-', page))
+    # and the modes over one another, told apart when they are read
+    assert {"A: pinion_overhung", "B: b"} <= set(re.findall(r'aria-label="([^"&]*)&#xA;', page))
+    assert not re.findall(r'(?:src|href|xlink:href)="(?!#|data:)([^"]*)"', page)
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ([SCENE, OTHER, SCENE], "compare takes one file, or two of a kind; 3 are given"),
+        ([SCENE, TRAIN], "is a train and .* one shaft: compare takes two trains, two shafts"),
+        ([SCENE, OTHER, "--models", "euler"], "--models does not apply to two shafts"),
+        ([SCENE, OTHER, "--set", "harmonic.order=3"], "--set does not apply to two shafts"),
+        ([SCENE, OTHER, "--pinion", "euler"], "--pinion does not apply to two shafts"),
+        ([SCENE, "missing.toml"], "there is no such file"),
+    ],
+    ids=lambda w: "" if isinstance(w, list) else w[:30],
+)
+def test_what_cannot_be_compared_is_refused_in_a_sentence(words, said, tmp_path):
+    done = command("compare", *words, "--out", tmp_path / "out")
+    assert done.exit_code == 1 and re.search(said, str(done.exception))
+    assert not (tmp_path / "out").exists()
+
+
+def test_settings_of_two_scenes_and_trains_are_refused():
+    scene = sg.load(SCENE)
+    for pair in ((scene, sg.load_train(TRAIN)), (sg.load_train(TRAIN), scene)):
+        with pytest.raises(sg.SolidgearError, match="scenes of one shaft"):
+            sg.compare(*pair)
+    with pytest.raises(sg.SolidgearError, match="of two the judge chooses"):
+        sg.compare(scene, scene, settings={"harmonic": {"order": 2}})
+
+
+def test_one_file_given_twice_is_told_so_and_nothing_is_solved(tmp_path):
+    done = command("compare", SCENE, SCENE, "--out", tmp_path / "out", "--json")
+    told = json.loads(done.stdout)
+    assert told["kind"] == "two shafts" and "nothing differs" in told["sentences"][0]
+    assert not (tmp_path / "out").exists()
