@@ -38,13 +38,13 @@ def modes(found: Any) -> Table:
     note = f"Paired {found.pairing}. "
     if any(p.change is not None and p.change.band is not None for p in found.modes):
         columns.append(Column("both bars", lambda p: band(p.change)))
-        columns.append(word("", lambda p: None if p.change is None else p.change.verdict))
+        columns.append(word("", lambda p: p.verdict))
         note += (
             "Both bars: the sum of the error bars of both frequencies, relative to A; a difference "
             "below it is not resolved, which is not agreement. "
         )
     columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
-    note += "MAC: how alike the motions of both are; a dash: paired by name, or without a partner."
+    note += "MAC: how alike the motions of both are; a dash: paired by name, whose shapes may differ, or without a partner."
     return Table("Natural frequencies", columns, found.modes, note, style="ruled")
 
 

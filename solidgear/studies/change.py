@@ -104,6 +104,21 @@ class ModePair(Generic[M]):
             return None
         return Change(self.a.frequency_hz, self.b.frequency_hz, self.a.width, self.b.width)
 
+    @property
+    def verdict(self) -> str | None:
+        """That of the change, and what holds the pair together where that is its name alone; None
+        for a mode alone.
+
+        Examples
+        --------
+        >>> one = BarredMode("bending 3", 900.0, 1e-4), BarredMode("bending 3", 660.0, 1e-4)
+        >>> ModePair(*one, mac=0.98).verdict, ModePair(*one).verdict
+        ('resolved', 'resolved, by name')
+        """
+        if self.change is None:
+            return None
+        return self.change.verdict + ", by name" * (self.mac is None)
+
     def within(self, highest: float) -> bool:
         """Tell whether either of them lies below a frequency, Hz."""
         return any(m is not None and m.frequency_hz <= highest for m in (self.a, self.b))
