@@ -324,7 +324,7 @@ def test_solid_alone_is_its_own_reference(overhung):
 )
 def test_unknown_models_are_refused_before_any_work(overhung, models, word):
     with pytest.raises(
-        SolidgearError, match=f"{word}.*choose from .*euler, timoshenko, harmonic, .*solid"
+        SolidgearError, match=f"{word}.*choose from .*euler, .*timoshenko, .*harmonic, .*solid"
     ):
         compare(overhung, models, progress=lambda text: pytest.fail(text))
 
