@@ -107,7 +107,7 @@ def _place(found: Solved, bearing: Bearing) -> Place:
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
-    """What is not known of the bearings of scenes that share their loads.
+    """Choices that data leave open of the bearings of scenes that share their loads.
 
     Parameters
     ----------
