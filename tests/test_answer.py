@@ -388,6 +388,9 @@ def test_an_unknown_quantity_is_refused_and_the_nearest_offered(scenes):
 def test_couplings_may_be_asked_for_by_name(scenes):
     found = answer(scenes["pinion_overhung"], 0.1, "C_z,thx,bending")
     assert [v.quantity for v in found.values] == ["C_z,thx", "bending 1"]
+    # the comma of any entry is its own, whether it is known or not
+    with pytest.raises(sg.SolidgearError, match='no quantity "C_x,y"'):
+        answer(scenes["pinion_overhung"], 0.1, "C_zz, C_x,y,bending")
 
 
 def test_what_does_not_exist_is_said_to_be_missing():

@@ -1,6 +1,7 @@
 """Bearings made from catalogue data: inside, clearance, preload, pairs, speed."""
 
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -11,12 +12,12 @@ from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range, mounting_change
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
-from solidgear.bearings.rating import ball_rating, roller_rating
+from solidgear.bearings.rating import ball_rating, ratings, roller_rating
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
-from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.catalogue import Catalogue, Kind
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
 KNOWN_BALLS = (
@@ -187,6 +188,20 @@ def test_needle_of_the_reducer():
     stiffness = made.bearing.tangent(state(data, made))
     assert not stiffness[1].any() and isinstance(made.bearing.rows[0], RollerRow)
     assert 1e8 < stiffness[2, 2] < 4e8
+
+
+@pytest.mark.parametrize("kind", get_args(Kind))
+def test_every_kind_carries_load_and_is_rated_by_its_boundary_dimensions_alone(kind):
+    size = {"kind": kind, "bore": 0.04, "outer_diameter": 0.08, "width": 0.018}
+    along = 2e3 if Catalogue(**size).angled else 0.0
+    data = Catalogue(**size, load={"y": along, "z": 2e3})
+    made = catalogued(data)
+    stiffness = made.bearing.tangent(state(data, made))
+    # rolling bearings of this size: published ones lie between 1e8 and 2e9 N/m
+    assert 5e7 < stiffness[2, 2] < 5e9
+    found = ratings(data, made.inside)
+    # catalogues of this size give C from 30 kN (balls) to 75 kN (rollers) with C0 near it
+    assert 15e3 < found.dynamic < 150e3 and 0.5 < found.static / found.dynamic < 2.0
 
 
 BAD = (

@@ -19,7 +19,7 @@ from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
-from solidgear.studies.guards.notice import against, everything
+from solidgear.studies.guards.notice import against, beams, everything
 from solidgear.studies.guards.probe import Probe
 from validation.shipped import shafts_of_revolution
 
@@ -165,7 +165,7 @@ class Case:
     miss_options: dict[str, Any] | None = None
 
 
-BEAMS = ("euler", "timoshenko", "lumped")
+BEAMS = beams()
 SOLIDS = ("harmonic", "solid")
 OVERHUNG, STRADDLE = (
     sg.load(ROOT / "geometry" / f"pinion_{name}.toml") for name in ("overhung", "straddle")

@@ -11,6 +11,7 @@ import solidgear as sg
 from solidgear.judge.race.cases import plan
 from solidgear.judge.race.timing import race
 from solidgear.ladder.beams import Timoshenko
+from solidgear.ladder.harmonic import Harmonic
 from solidgear.ladder.model import Model
 from solidgear.ladder.registry import LADDER
 from solidgear.report.html import render_page
@@ -34,6 +35,14 @@ class Coarse(Timoshenko):
     colour = "#123456"
     marker = "X"
     series = Model.series
+
+
+class Quadratic(Harmonic):
+    """The harmonic solid on elements of order 2, whatever its bars."""
+
+    name = "quadratic"
+    title = "harmonic solid of order 2"
+    preset = {"order": 2}
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +104,19 @@ def test_guards_have_a_verdict_on_it(ladder, scene):
     verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
     # what is made for features alone has no verdict on a scene without
     assert set(verdicts) == {model.name for model in ladder if not model.for_features}
+    # held against a solid as every beam: of more elements it is off by as much
+    assert verdicts["coarse"] == verdicts["timoshenko"]
+
+
+def test_a_solid_with_options_of_its_own_keeps_them_where_meshes_follow_bars(scene, monkeypatch):
+    monkeypatch.setattr(LADDER, "models", (*LADDER.models, Quadratic()))
+    found = sg.compare(scene, ("quadratic", "harmonic"))
+    assert found.solutions["quadratic"].options["order"] == 2
+    assert found.solutions["harmonic"].options["order"] > 2
+    # too stiff by what its order leaves out, and it says so: the other lies within its bar
+    coarse, fine = (found.record.models[m] for m in ("quadratic", "harmonic"))
+    gap = fine.compliance[2][2] / coarse.compliance[2][2] - 1
+    assert 0 < gap < coarse.band.each["C_zz"]
 
 
 @pytest.mark.long

@@ -165,6 +165,10 @@ def test_what_the_scene_asks_for_is_among_the_numbers():
     scene["ask"]["quantities"] = ["torsion 1", "C_z,thx"]
     told = [row[0] for row in front.numbers(record_of(scene=scene), ENGINEERING).rows]
     assert "First torsion mode" in told and any("C_z,thx" in label for label in told)
+    # one that has no words is told by its symbol, not left out
+    scene["ask"]["quantities"] = ["C_x,thz", "bending 3"]
+    told = [row[0] for row in front.numbers(record_of(scene=scene), ENGINEERING).rows]
+    assert "C_x,thz" in told and "bending 3" in told
 
 
 def test_two_directions_across_are_told_apart():

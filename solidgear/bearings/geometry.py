@@ -5,8 +5,8 @@ elements are the maker's.  Three things tie them down: room (an element takes a 
 ``D - d``), filling (how many are usually put in), and the rating, of which ISO 281:2007 and
 ISO 76:2006 say how it is computed from them (:mod:`solidgear.bearings.rating`).  The shares were
 read off bearings whose inside is published (6203 to 6311, 7208, 218, NU205 to NU312, 30206 to
-32310): :data:`SHARES` holds their middle and their spread.  What is estimated is marked, and comes
-with a softer and a stiffer inside at the ends of the spread.
+32310): :mod:`solidgear.bearings.kinds` holds their middle and their spread.  What is estimated is
+marked, and comes with a softer and a stiffer inside at the ends of the spread.
 """
 
 from __future__ import annotations
@@ -16,49 +16,12 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
+from solidgear.bearings.kinds import SHARES, Share
 from solidgear.bearings.rating import RATED_CONFORMITY, rated, static_roller_rating
 from solidgear.errors import SceneError
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.designation import usual_angle
 
-
-class Share(NamedTuple):
-    """Middle and half spread of a usual proportion."""
-
-    middle: float
-    spread: float
-
-
-class Shares(NamedTuple):
-    """Usual proportions of a kind.
-
-    Attributes
-    ----------
-    diameter : Share
-        Element diameter over ``D - d``.
-    length : Share
-        Effective roller length over width.
-    filling : Share
-        Elements over those that would touch all around.
-    angle : float
-        Contact angle where nothing tells it, rad.  It has no spread here: a steeper one is stiffer
-        along y and softer across it.
-    """
-
-    diameter: Share
-    length: Share
-    filling: Share
-    angle: float = 0.0
-
-
-NONE = Share(0.0, 0.0)
-SHARES = {
-    "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06)),
-    "angular_contact": Shares(Share(0.30, 0.02), NONE, Share(0.88, 0.05), math.radians(40)),
-    "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06)),
-    "tapered": Shares(Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), math.radians(15)),
-    "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10)),
-}
 #: groove radius over ball diameter: ISO 281's own, and the range in use
 CONFORMITY = {"middle": RATED_CONFORMITY, "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}
 #: of a filling slot-free deep groove the balls span this much of the circle, rad

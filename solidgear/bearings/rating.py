@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.bearings.ball import BallRow
+from solidgear.bearings.kinds import SHARES
 from solidgear.scene.catalogue import Catalogue
 
 if TYPE_CHECKING:
@@ -26,14 +27,6 @@ STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
 RATED_CONFORMITY = (0.52, 0.53)
 #: Pa, of ISO 76
 _STATIC_E = 207e9
-#: b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today
-RATING_FACTOR = {
-    "deep_groove": 1.3,
-    "angular_contact": 1.3,
-    "cylindrical": 1.1,
-    "tapered": 1.1,
-    "needle": 1.0,
-}
 #: of several rows in one rating
 ROW_POWER = {True: 0.7, False: 7 / 9}
 
@@ -140,7 +133,7 @@ def rated(data: Catalogue, inside: Inside) -> float:
 
 
 def _factor(data: Catalogue) -> float:
-    return data.rating_factor or RATING_FACTOR[data.kind]
+    return data.rating_factor or SHARES[data.kind].rating_factor
 
 
 class Ratings(NamedTuple):

@@ -82,7 +82,7 @@ def print_life(found: BearingLife) -> None:
 
 
 def _sources(one: Life) -> Iterator[str]:
-    """Sources of the lives of a bearing, in sentences."""
+    """Sentences on how the lives of a bearing come about."""
     from solidgear.report.words import engineering
 
     p, own = one.equivalent, one.modified

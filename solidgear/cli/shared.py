@@ -139,7 +139,7 @@ class Chosen(Group):
         return self.settings or []
 
     def automatic(self) -> bool:
-        """True where the mesh is to be chosen; what does not go together is refused.
+        """Tell whether the mesh is to be chosen; refuse what does not go together.
 
         Raises
         ------

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
+from solidgear.frames import DOF_NAMES
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import judged, own_name
 from solidgear.judge.refinement import Progress
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 
 C = TypeVar("C", bound=Climb)
 
+#: between two quantities
+COMMA = rf",(?!\s*(?:{'|'.join(DOF_NAMES)})\b)"
 #: what tables head the first frequencies with
 SHORT = {"f1": FIRST_BENDING, "f2": Quantity("bending 2")}
 #: short words for quantities
@@ -223,15 +226,15 @@ def usable(tol: float) -> float:
 
 
 def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
-    # C_z,thx has a comma of its own
-    given = re.split(r",(?!\s*th[xz])", ask) if isinstance(ask, str) else list(ask)
+    # C_z,thx has a comma of its own, and no quantity is called as a component alone
+    given = re.split(COMMA, ask) if isinstance(ask, str) else list(ask)
     given = [name.strip() for name in given if name.strip()]
     if not given:
         return judged(scene)
     out = []
     for name in given:
         asked = Quantity(name)
-        symbol = asked.symbol.replace("_1", " 1").replace("_2", " 2")
+        symbol = re.sub(r"_(\d)", r" \1", asked.symbol)  # bending_1
         word = WORDS.get(asked.symbol) or Quantity(symbol)
         if asked.points and word in QUANTITIES:
             if word.is_frequency:

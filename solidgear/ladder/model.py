@@ -153,7 +153,7 @@ class Model:
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
         """Meshes for a scene, coarse to fine; parameters as for :meth:`size`."""
-        return self.meshes(self.given(scene, options))
+        return self.meshes({**self.preset, **self.given(scene, options)})
 
     def series(self, scene: Any, full: bool) -> list[Series]:
         """Lines of a chart of error against cost; its one usual mesh unless told otherwise.

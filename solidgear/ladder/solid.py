@@ -115,7 +115,7 @@ class Solid(Volume):
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
         """The one mesh of a file, or a list."""
-        given = self.given(scene, options)
+        given = {**self.preset, **self.given(scene, options)}
         if getattr(getattr(scene, "body", None), "one_mesh", False):
             return Sequence((given,), True, False)
         return self.meshes(given)

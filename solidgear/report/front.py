@@ -12,7 +12,7 @@ from typing import Any
 from solidgear.body.mode_names import ModeName
 from solidgear.judge.record import ModelRecord, Record, VerdictRecord
 from solidgear.judge.ties import SCENE
-from solidgear.quantity import COMPLIANCE, FIRST_BENDING, Quantity
+from solidgear.quantity import AT, COMPLIANCE, FIRST_BENDING, Quantity
 from solidgear.report.reading import (
     BEAM,
     LUMPED,
@@ -43,7 +43,7 @@ ROWS: dict[str, str] = {
     "C_yy": "Compliance along the shaft",
     "C_thx": "Compliance against tilting",
 }
-#: told only where the scene asks for them
+#: told only where the scene asks for them; one without words by its symbol
 ON_REQUEST: dict[str, str] = {
     "K_z,thx": "Stiffness, motion across with tilting",
     "C_z,thx": "Compliance, motion across with tilting",
@@ -82,7 +82,7 @@ def numbers(record: Record, units: Units) -> Table:
     key = shown_model(record)
     model = model_of(record, key)
     asked = (record.scene.get("ask") or {}).get("quantities") or []
-    names = [Quantity(q) for q in (*ROWS, *(q for q in asked if q in ON_REQUEST))]
+    names = [Quantity(q) for q in (*ROWS, *(q for q in asked if AT not in q))]
     # by the names that results have: a scene may write those of points in another way
     names += [q for q in (record.verdict.judged if asked else ()) if q.points]
     cells = [_number(model, name, _label(name), units) for name in dict.fromkeys(names)]
@@ -104,10 +104,10 @@ def numbers(record: Record, units: Units) -> Table:
 
 def _label(name: Quantity) -> str:
     """A quantity in words, with its points, and its symbol."""
-    words = {**ROWS, **ON_REQUEST}[name.symbol]
-    if name.points:
-        words += f", {' under loads on '.join(name.points)}"
-    return words if name.is_frequency else f"{words}, {name.symbol}"
+    said = {**ROWS, **ON_REQUEST}.get(name.symbol, "")
+    at = " under loads on ".join(name.points)
+    symbol = "" if said and name.is_frequency else name.symbol
+    return ", ".join(filter(None, (said, at, symbol)))
 
 
 def _number(model: ModelRecord, name: Quantity, label: str, units: Units) -> list[Any]:

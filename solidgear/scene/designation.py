@@ -79,11 +79,32 @@ _SUFFIX = {"": None, "C": 15.0, "AC": 25.0, "A5": 25.0, "B": 40.0, "BE": 40.0}
 _CUPS = {4: 8, 5: 9, 6: 10, 7: 11, 8: 12, 9: 13, 10: 14, 12: 18, 13: 19, 14: 20, 15: 21, 16: 22}
 _CUPS |= {18: 24, 20: 26, 22: 28, 25: 32, 28: 35, 30: 37, 35: 42, 40: 47, 45: 52, 50: 58}
 
+#: kind, pattern, sizes by series, and how a refusal tells them
 _WRITTEN = (
-    ("deep_groove", r"(?P<series>60|62|63)(?P<code>\d\d)", _BALLS),
-    ("angular_contact", r"(?P<series>70|72|73)(?P<code>\d\d)(?P<angle>C|AC|A5|BE?)?", _ANGULAR),
-    ("cylindrical", r"(?:NU|NJ|NUP|N)(?P<series>10|22|2|3)(?P<code>\d\d)(?:EC?)?", _ROLLERS),
-    ("tapered", r"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?", _TAPERED),
+    (
+        "deep_groove",
+        r"(?P<series>60|62|63)(?P<code>\d\d)",
+        _BALLS,
+        "deep groove 60, 62, 63",
+    ),
+    (
+        "angular_contact",
+        r"(?P<series>70|72|73)(?P<code>\d\d)(?P<angle>C|AC|A5|BE?)?",
+        _ANGULAR,
+        "angular contact 70, 72, 73 (C, AC, B)",
+    ),
+    (
+        "cylindrical",
+        r"(?:NU|NJ|NUP|N)(?P<series>10|22|2|3)(?P<code>\d\d)(?:EC?)?",
+        _ROLLERS,
+        "cylindrical N, NU, NJ, NUP 10, 2, 3, 22",
+    ),
+    (
+        "tapered",
+        r"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?",
+        _TAPERED,
+        "tapered 302, 303, 320, 322, 323",
+    ),
 )
 
 
@@ -115,7 +136,7 @@ def boundary(designation: str) -> Boundary:
     Boundary(kind='cylindrical', bore=0.03, outer_diameter=0.062, width=0.016, contact_angle=None)
     """
     plain = re.sub(r"[\s-]", "", designation.upper())
-    for kind, pattern, table in _WRITTEN:
+    for kind, pattern, table, _ in _WRITTEN:
         match = re.fullmatch(pattern, plain)
         if not match:
             continue
@@ -153,9 +174,9 @@ def _bore(code: str) -> int:
 
 
 def _unknown(designation: str) -> SceneError:
+    known = ", ".join(told for *_, told in _WRITTEN)
     return SceneError(
-        "this designation is not understood; known are deep groove 60, 62, 63, angular contact 70, "
-        "72, 73 (C, AC, B), cylindrical N, NU, NJ, NUP 10, 2, 3, 22, tapered 302, 303, 320, 322, "
-        "323 and drawn cups HK, BK, bores 10 to 120 mm; or write kind, bore, outer_diameter, width",
+        f"this designation is not understood; known are {known} and drawn cups HK, BK, bores 10 to "
+        "120 mm; or write kind, bore, outer_diameter, width",
         value=show(designation),
     )

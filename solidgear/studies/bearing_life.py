@@ -101,7 +101,7 @@ def _place(found: Solved, bearing: Bearing) -> Place:
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
-    """Unknowns of the bearings of scenes that share their loads.
+    """Choices that data leave open of the bearings of scenes that share their loads.
 
     Parameters
     ----------

@@ -25,8 +25,9 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.bearings.catalogued import catalogued
-from solidgear.bearings.geometry import SHARES, Inside
+from solidgear.bearings.geometry import Inside
 from solidgear.bearings.hertz import LINE_POWER, line_constant, line_pressure
+from solidgear.bearings.kinds import SHARES
 from solidgear.bearings.rating import static_roller_rating
 from solidgear.bearings.solved import solved
 from solidgear.scene import Bearing, BearingLoad, Catalogue, Scene

@@ -54,6 +54,8 @@ class _Toothed(OnSegment):
 
     sort: ClassVar[str] = "cyclic"
     toothed: ClassVar[bool] = True
+    #: a cone has them as well as a cylinder
+    on_cones: ClassVar[bool] = True
 
     count: Count
     addendum: Height = 1.0
@@ -142,6 +144,13 @@ class _Toothed(OnSegment):
         return math.tan(self.spiral_angle) * (1 if self.hand == "right" else -1)
 
     def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        if here.outer0 != here.outer1 and not self.on_cones:
+            yield SceneError(
+                f'"{here.name}" is a cone, and a {self.what} is cut into a cylinder; '
+                'use kind = "teeth"',
+                path=("segment",),
+            )
+            return
         for end, outer, inner in (
             ("start", here.outer0, here.inner0),
             ("end", here.outer1, here.inner1),
@@ -215,13 +224,6 @@ class Spline(_Toothed):
     True
     """
 
-    kind: Literal["spline"] = "spline"
+    on_cones: ClassVar[bool] = False
 
-    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        if here.outer0 != here.outer1:
-            yield SceneError(
-                f'"{here.name}" is a cone, and a spline is cut into a cylinder; use kind = "teeth"',
-                path=("segment",),
-            )
-            return
-        yield from super()._fits(here, segments)
+    kind: Literal["spline"] = "spline"

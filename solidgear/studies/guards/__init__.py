@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.studies.guards import data, edges, elements, models
+from solidgear.studies.guards import data, edges, elements, lumped, models
 from solidgear.studies.guards.notice import LEVELS, Notice, Notices
 from solidgear.studies.guards.probe import Probe
 
@@ -32,9 +32,9 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         models.thin_joint,
         models.point_beyond_surface,
         models.ovalising,
-        models.effective_mass,
-        models.lumped_against_solid,
-        models.frequency_range,
+        lumped.effective_mass,
+        lumped.lumped_against_solid,
+        lumped.frequency_range,
         elements.narrow_seat,
         elements.rigid_seats,
         elements.linear_elements,

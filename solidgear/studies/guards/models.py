@@ -1,6 +1,4 @@
-"""Guards on what a model leaves out: beams, ovalising, lumped models.  Limits are those of steel
-(nu = 0.3).
-"""
+"""Guards on what beams leave out, and on ovalising.  Limits are those of steel (nu = 0.3)."""
 
 from __future__ import annotations
 
@@ -10,38 +8,38 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.judge import deviations
-from solidgear.judge.deviations import TIES, gap_verdict
-from solidgear.judge.lumped import preferred
+from solidgear.judge.deviations import TIES
 from solidgear.judge.quantities import in_words
-from solidgear.judge.ties import SCENE
-from solidgear.ladder.model import BEAM, LUMPED
+from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.models.beam.shoulder import MISSING, grown
-from solidgear.quantity import COMPLIANCE, FIRST_BENDING
-from solidgear.studies.guards.notice import Notice, Notices, against, beams, beyond
+from solidgear.quantity import COMPLIANCE
+from solidgear.studies.guards.notice import (
+    Notice,
+    Notices,
+    against,
+    beams,
+    of_theory,
+    sure,
+    with_lumped,
+)
 from solidgear.studies.guards.probe import Probe
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-BEAM_OR_SOLID = "a beam or a solid"
-
-
-def _sure(bar: float | None) -> str:
-    return f", give or take {100 * bar:.1g} %" if bar else ""
-
 
 def beam_against_solid(probe: Probe) -> Notices:
-    """Both beams held against a light harmonic solid of the same scene, tied as in the scene and by
+    """Every beam held against a light harmonic solid of the same scene, tied as in the scene and by
     section means.
     """
     tolerance = probe.scene.ask.tolerance
-    for model, concerned in (("euler", ("euler",)), ("timoshenko", ("timoshenko", "lumped"))):
+    for model in LADDER.of(BEAM):
         try:
             gaps = probe.gaps(model)
         except SolidgearError as error:
-            # One beam that cannot be made says nothing of the other.
+            # One beam that cannot be made says nothing of the others.
             yield Notice(
                 "avoid", (model,), f"there is no {LADDER[model].title} of this shaft: {error}"
             )
@@ -63,23 +61,23 @@ def beam_against_solid(probe: Probe) -> Notices:
         called = in_words(name, probe.main)
         text = (
             f"{called} of the {LADDER[model].title} is {told} that of a "
-            f"light harmonic solid {TIES[worst.attachment]}{_sure(worst.band)}"
+            f"light harmonic solid {TIES[worst.attachment]}{sure(worst.band)}"
         )
         if kind == deviations.BEYOND:
             yield Notice(
                 "avoid",
-                concerned,
+                with_lumped(model),
                 f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead()}",
             )
         elif kind == deviations.OPEN:
             yield Notice(
                 "open",
-                concerned,
+                with_lumped(model),
                 f"{text}, and the light solid is too coarse to tell whether that is within the "
                 f"{100 * tolerance:g} % asked for; run compare to find out",
             )
         else:
-            yield Notice("fact", concerned, f"{text}, the largest gap of what is compared")
+            yield Notice("fact", with_lumped(model), f"{text}, the largest gap of what is compared")
 
 
 # slenderness.py: where the last of first bending free, on bearings, and C_zz on bearings passes 1 %
@@ -95,10 +93,10 @@ def slenderness(probe: Probe) -> Notices:
         (
             "Euler-Bernoulli",
             EULER,
-            ("euler",),
+            of_theory(shear=False),
             probe.instead("the Timoshenko beam or a solid", "timoshenko"),
         ),
-        ("Timoshenko", TIMOSHENKO, ("timoshenko", "lumped"), probe.instead()),
+        ("Timoshenko", TIMOSHENKO, of_theory(shear=True), probe.instead()),
     ):
         if ratio < one:
             yield Notice(
@@ -127,10 +125,9 @@ STEP, STEEP = 1.17, 1.53
 
 def shoulder(probe: Probe) -> Notices:
     """Steps of the outer radius beyond which stress does not fill the thick part at once."""
-    soft = {model for model in LADDER.of(BEAM) if probe.asked(model).get("shoulder")}
+    bent = [model for model in LADDER.of(BEAM) if probe.asked(model).get("shoulder")]
+    soft = [name for model in bent for name in with_lumped(model)]
     better = probe.instead("the harmonic solid, or the beam's option shoulder")
-    if "timoshenko" in soft:
-        soft |= {*LADDER.of(LUMPED)}  # which rest on it
     stiff = tuple(model for model in beams() if model not in soft)
     segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
     for a, b in zip(segments, segments[1:]):
@@ -300,100 +297,3 @@ def _two_waves(probe: Probe) -> float:
     ]
     rings = [np.sqrt(0.6) * (outer - inner) / ((outer + inner) / 2) ** 2 for outer, inner in walls]
     return float(min(discs + rings) * speed / (2 * np.pi))
-
-
-# effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is
-# right to 0.24 of first bending only
-ENERGY = 0.95
-
-
-def effective_mass(probe: Probe) -> Notices:
-    """Lumped model that there is, and whether the first mode is nearly the static shape it rests
-    on.
-    """
-    try:
-        point, found = probe.lumped
-    except SolidgearError as error:
-        yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
-        return
-    if not found["thesis"].feasible and probe.scene.ask.lumped:
-        yield Notice(
-            "fact",
-            ("lumped",),
-            f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
-        )
-    better = probe.instead("the beam", *LADDER.of(BEAM))
-    whose = "its beam" if probe.beam_fits else "the beam of the plain part"
-    matched = found["mode-matched"]
-    if not (matched.feasible and matched.first):
-        off = found["guyan"].frequency_error
-        assert off is not None  # its mass is always positive definite
-        why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
-        yield Notice(
-            beyond(off, probe.scene.ask.tolerance),
-            ("lumped",),
-            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending "
-            f"{100 * off:+.3g} % off {whose}; use {better}",
-        )
-    if point.static_share < ENERGY:
-        yield Notice(
-            "caution",
-            ("lumped",),
-            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} "
-            f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
-            f"elsewhere, and a lumped model is good for stiffness only; use {better}",
-        )
-
-
-def lumped_against_solid(probe: Probe) -> Notices:
-    """First bending of the lumped model, of its beam and of lumping together, held against a light
-    harmonic solid.
-    """
-    try:
-        _, found = probe.lumped
-    except SolidgearError:
-        return  # `effective_mass` says so
-    lumped, solid = preferred(found), probe.solution("harmonic")
-    truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
-    if not truth or lumped is None or lumped.frequency_hz is None:
-        return
-    gap = lumped.frequency_hz / truth - 1
-    bars = solid.error_bars.get(SCENE, {})
-    bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
-    kind = gap_verdict(gap, bar, tolerance)
-    text = (
-        f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
-        f"that of a light harmonic solid{_sure(bar)}"
-    )
-    if kind == deviations.BEYOND:
-        yield Notice(
-            "avoid",
-            ("lumped",),
-            f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead(BEAM_OR_SOLID, *beams())}",
-        )
-    elif kind == deviations.OPEN:
-        yield Notice(
-            "open",
-            ("lumped",),
-            f"{text}, and the light solid is too coarse to tell whether that is within the "
-            f"{100 * tolerance:g} % asked for; run compare to find out",
-        )
-
-
-# guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with
-# the lumped point held
-HOLDS, DRIFTS = 0.39, 0.63
-
-
-def frequency_range(probe: Probe) -> Notices:
-    """The range asked for against the first mode that a condensed model cannot have."""
-    asked = probe.scene.ask.max_frequency
-    if asked and (pole := probe.fixed_interface) and asked > HOLDS * pole:
-        yield Notice(
-            "avoid" if asked > pole else "caution",
-            ("lumped",),
-            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
-            f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
-            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
-            f"{probe.instead(BEAM_OR_SOLID, *beams())} above",
-        )

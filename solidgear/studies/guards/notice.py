@@ -11,6 +11,8 @@ from solidgear.ladder.registry import LADDER
 #: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong
 LEVELS = ("fact", "caution", "open", "avoid", "fault")
+#: the beam that lumped models of a check rest on
+LUMPED_ON = "timoshenko"
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,17 @@ def beams() -> tuple[str, ...]:
     return (*LADDER.of(BEAM), *LADDER.of(LUMPED))
 
 
+def of_theory(shear: bool) -> tuple[str, ...]:
+    """Beams whose sections shear, or do not, and the lumped models that rest on them."""
+    own = [m for m in LADDER.of(BEAM) if LADDER[m].defaults()["shear"] is shear]
+    return tuple(name for beam in own for name in with_lumped(beam))
+
+
+def with_lumped(beam: str) -> tuple[str, ...]:
+    """A beam, with the lumped models where it is the one that they rest on."""
+    return (beam, *LADDER.of(LUMPED)) if beam == LUMPED_ON else (beam,)
+
+
 def solids() -> tuple[str, ...]:
     """Solids that model a plain shaft: guards look at nothing else."""
     return tuple(name for name in LADDER.of(SOLID) if not LADDER[name].for_features)
@@ -53,6 +66,11 @@ def everything() -> tuple[str, ...]:
 def beyond(error: float, tolerance: float) -> str:
     """``avoid`` for an error out of the tolerance, else ``caution``."""
     return "avoid" if abs(error) > tolerance else "caution"
+
+
+def sure(bar: float | None) -> str:
+    """An error bar as the end of a clause; nothing where there is none."""
+    return f", give or take {100 * bar:.1g} %" if bar else ""
 
 
 def slip_in_units(

@@ -34,6 +34,7 @@ from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.outline import TOUCH
 from solidgear.solve.modes import ModeSet, modes
+from solidgear.studies.guards.notice import LUMPED_ON
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -182,7 +183,7 @@ class Probe:
         """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is
         nothing to lump.
         """
-        body, found, _ = self.beam("timoshenko")
+        body, found, _ = self.beam(LUMPED_ON)
         try:
             with np.errstate(divide="raise", invalid="raise"):
                 return synthesise(body, self.supports, self.scene.port.name, found)
@@ -197,7 +198,7 @@ class Probe:
         """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
         None without a lumped model.
         """
-        body, _, _ = self.beam("timoshenko")
+        body, _, _ = self.beam(LUMPED_ON)
         try:
             point, _ = self.lumped
         except SolidgearError:

@@ -151,7 +151,7 @@ def expected_mass(scene: sg.Scene, smeared: bool) -> tuple[np.ndarray, float]:
     removed = removed_mass(scene)
     share = float(np.max(np.diag(removed) / np.diag(plain)))
     for f in scene.features:
-        if f.kind not in ("teeth", "spline") or (f.smeared and smeared):
+        if not f.toothed or (f.smeared and smeared):
             continue
         here = next(s for s in scene.segments if s.name == f.segment)
         assert here.outer0 == here.outer1, "teeth are drawn on cylinders here"

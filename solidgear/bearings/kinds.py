@@ -1,0 +1,53 @@
+"""Kinds of rolling bearings: what their inside usually is, and the factor of their ratings."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+
+class Share(NamedTuple):
+    """Middle and half spread of a usual proportion."""
+
+    middle: float
+    spread: float
+
+
+class Shares(NamedTuple):
+    """Usual inside of a kind, and what its rating has of the kind.
+
+    Attributes
+    ----------
+    diameter : Share
+        Element diameter over ``D - d``.
+    length : Share
+        Effective roller length over width.
+    filling : Share
+        Elements over those that would touch all around.
+    rating_factor : float
+        b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today.
+    angle : float
+        Contact angle where nothing tells it, rad.  It has no spread here: a steeper one is stiffer
+        along y and softer across it.
+    """
+
+    diameter: Share
+    length: Share
+    filling: Share
+    rating_factor: float
+    angle: float = 0.0
+
+
+NONE = Share(0.0, 0.0)
+#: read off bearings whose inside is published, see :mod:`solidgear.bearings.geometry`
+SHARES = {
+    "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06), 1.3),
+    "angular_contact": Shares(
+        Share(0.30, 0.02), NONE, Share(0.88, 0.05), 1.3, angle=math.radians(40)
+    ),
+    "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06), 1.1),
+    "tapered": Shares(
+        Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), 1.1, angle=math.radians(15)
+    ),
+    "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10), 1.0),
+}

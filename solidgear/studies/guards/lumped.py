@@ -1,0 +1,111 @@
+"""Guards on lumped models."""
+
+from __future__ import annotations
+
+from solidgear.errors import SolidgearError
+from solidgear.judge import deviations
+from solidgear.judge.deviations import gap_verdict
+from solidgear.judge.lumped import preferred
+from solidgear.judge.ties import SCENE
+from solidgear.ladder.model import BEAM
+from solidgear.ladder.registry import LADDER
+from solidgear.quantity import FIRST_BENDING
+from solidgear.studies.guards.notice import Notice, Notices, against, beams, beyond, sure
+from solidgear.studies.guards.probe import Probe
+
+BEAM_OR_SOLID = "a beam or a solid"
+# effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is
+# right to 0.24 of first bending only
+ENERGY = 0.95
+
+
+def effective_mass(probe: Probe) -> Notices:
+    """Lumped model that there is, and whether the first mode is nearly the static shape it rests
+    on.
+    """
+    try:
+        point, found = probe.lumped
+    except SolidgearError as error:
+        yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
+        return
+    if not found["thesis"].feasible and probe.scene.ask.lumped:
+        yield Notice(
+            "fact",
+            ("lumped",),
+            f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
+        )
+    better = probe.instead("the beam", *LADDER.of(BEAM))
+    whose = "its beam" if probe.beam_fits else "the beam of the plain part"
+    matched = found["mode-matched"]
+    if not (matched.feasible and matched.first):
+        off = found["guyan"].frequency_error
+        assert off is not None  # its mass is always positive definite
+        why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
+        yield Notice(
+            beyond(off, probe.scene.ask.tolerance),
+            ("lumped",),
+            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending "
+            f"{100 * off:+.3g} % off {whose}; use {better}",
+        )
+    if point.static_share < ENERGY:
+        yield Notice(
+            "caution",
+            ("lumped",),
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} "
+            f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            f"elsewhere, and a lumped model is good for stiffness only; use {better}",
+        )
+
+
+def lumped_against_solid(probe: Probe) -> Notices:
+    """First bending of the lumped model, of its beam and of lumping together, held against a light
+    harmonic solid.
+    """
+    try:
+        _, found = probe.lumped
+    except SolidgearError:
+        return  # `effective_mass` says so
+    lumped, solid = preferred(found), probe.solution("harmonic")
+    truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
+    if not truth or lumped is None or lumped.frequency_hz is None:
+        return
+    gap = lumped.frequency_hz / truth - 1
+    bars = solid.error_bars.get(SCENE, {})
+    bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
+    kind = gap_verdict(gap, bar, tolerance)
+    text = (
+        f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
+        f"that of a light harmonic solid{sure(bar)}"
+    )
+    if kind == deviations.BEYOND:
+        yield Notice(
+            "avoid",
+            ("lumped",),
+            f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead(BEAM_OR_SOLID, *beams())}",
+        )
+    elif kind == deviations.OPEN:
+        yield Notice(
+            "open",
+            ("lumped",),
+            f"{text}, and the light solid is too coarse to tell whether that is within the "
+            f"{100 * tolerance:g} % asked for; run compare to find out",
+        )
+
+
+# guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with
+# the lumped point held
+HOLDS, DRIFTS = 0.39, 0.63
+
+
+def frequency_range(probe: Probe) -> Notices:
+    """The range asked for against the first mode that a condensed model cannot have."""
+    asked = probe.scene.ask.max_frequency
+    if asked and (pole := probe.fixed_interface) and asked > HOLDS * pole:
+        yield Notice(
+            "avoid" if asked > pole else "caution",
+            ("lumped",),
+            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
+            f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
+            f"{probe.instead(BEAM_OR_SOLID, *beams())} above",
+        )
