@@ -30,6 +30,7 @@ from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.differences import ROUNDING, Difference, scene_differences
 from solidgear.solve.modes import Mode, ModeSet
+from solidgear.studies import two_shafts_told as told
 from solidgear.studies.change import BarredMode, Change, ModePair
 from solidgear.studies.check import cautions
 
@@ -180,16 +181,12 @@ class TwoShafts(Displayed):
     @property
     def sentences(self) -> list[str]:
         """Conclusions."""
-        from solidgear.studies.two_shafts_told import sentences
-
-        return sentences(self)
+        return told.sentences(self)
 
     @property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, SI."""
-        from solidgear.studies.two_shafts_told import results
-
-        return results(self)
+        return told.results(self)
 
     def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
         """Write results.json and report.html into a folder.
@@ -213,10 +210,10 @@ class TwoShafts(Displayed):
         """
         from solidgear.report.two_shafts_page import write_two_shafts
         from solidgear.report.units import units_named
-        from solidgear.studies.two_shafts_told import results, sentences
 
         shown = units_named(units)
-        return write_two_shafts(self, results(self), sentences(self, shown), out, shown)
+        sentences = told.sentences(self, shown)
+        return write_two_shafts(self, self.results, sentences, out, shown)
 
 
 @pinned
@@ -276,12 +273,12 @@ def two_shafts(
 def _solved(
     letter: str, name: str, scene: Scene, tol: float, points: list[str], progress: Progress
 ) -> OneShaft:
-    def told(text: str) -> None:
+    def say(text: str) -> None:
         progress(f"{letter}: {text}")
 
-    settled = settle(scene, tol, points=points, progress=told)
+    settled = settle(scene, tol, points=points, progress=say)
     body = settled.body
-    told("statics and modes")
+    say("statics and modes")
     found = answered(
         body,
         as_supports(scene),
@@ -293,7 +290,7 @@ def _solved(
         spare=True,
         meter=Meter(),
     )
-    told("how sure its frequencies are")
+    say("how sure its frequencies are")
     bars = bars_of_modes(scene, body, _all(found.modes), settled)
     for asked in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane

@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.environment import environment
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import is_number, percent
 from solidgear.studies import beside
-from solidgear.studies.two_shafts import NumberChange, OneShaft, TwoShafts
+
+if TYPE_CHECKING:
+    from solidgear.studies.two_shafts import NumberChange, OneShaft, TwoShafts
 
 #: numbers that a sentence names as not resolved
 NAMED = 4
