@@ -44,7 +44,7 @@ def deflect(
             help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
         ),
     ] = None,
-    fidelity: Annotated[
+    models: Annotated[
         list[str] | None,
         typer.Option(
             *BY_MODEL,
@@ -68,10 +68,10 @@ def deflect(
             _refuse({"--load": load}, "a shaft", file, "a train takes --torque")
             how = _point(file, torque, of, point, weight)
             every = torque is None and point is None and len(how[0].operation) > 1
-            told = _train(file, *how, fidelity, out, run.units, progress, every)
+            told = _train(file, *how, models, out, run.units, progress, every)
         else:
             _refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
-            told = _shaft(file, load, fidelity, out, run.units, progress)
+            told = _shaft(file, load, models, out, run.units, progress)
     data, lines = told
     if run.as_json:
         print(json.dumps(data, allow_nan=False))

@@ -97,7 +97,7 @@ def sweep(
             )
         name, given = settled.rung, settled.options
     else:
-        name = str(model.fidelity)
+        name = str(model.name)
         given = LADDER[name].checked(options(model.pairs))
     terminal = Console(stderr=True, highlight=False)
     bar = Progress(

@@ -13,7 +13,7 @@ import typer
 from solidgear.cli.app import Group, caution, command, say
 from solidgear.cli.at_speed import Speed, say_at_speed
 from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
-from solidgear.cli.shared import FIDELITY, UNITS, Shown
+from solidgear.cli.shared import MODEL, UNITS, Shown
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
 
@@ -94,9 +94,9 @@ class Mix(Group):
 
     pinion: Annotated[
         str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
-    ] = FIDELITY
+    ] = MODEL
     gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
-        FIDELITY
+        MODEL
     )
     settings: ShaftSettings = None
 
