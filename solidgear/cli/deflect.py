@@ -24,7 +24,7 @@ def deflect(
     file: AtRestFile,
     *,
     acting: Acting,
-    fidelity: Annotated[
+    models: Annotated[
         list[str] | None,
         typer.Option(
             *BY_MODEL,
@@ -45,9 +45,9 @@ def deflect(
     with held(out) if out else nullcontext(), run.progress() as progress:
         if isinstance(given, tuple):
             every = acting.torque is None and acting.point is None and len(given[0].operation) > 1
-            data, lines = _train(*given, fidelity, out, run.units, progress, every)
+            data, lines = _train(*given, models, out, run.units, progress, every)
         else:
-            data, lines = _shaft(file, given, fidelity, out, run.units, progress)
+            data, lines = _shaft(file, given, models, out, run.units, progress)
     if run.as_json:
         print(json.dumps(data, allow_nan=False))
         return

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 #: the model that commands solve with unless told otherwise
-FIDELITY = "harmonic"
+MODEL = "harmonic"
 #: the word for the cheapest mesh that keeps a tolerance, instead of a model
 AUTO = "auto"
 #: spellings of the option that names a model
@@ -103,19 +103,19 @@ class Shown(Run):
 class Fixed(Group):
     """A model and its mesh."""
 
-    fidelity: Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")] = FIDELITY
+    name: Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")] = MODEL
     settings: Settings = None
 
     def body(self, scene: Scene) -> Body:
         """Body of a scene."""
-        return build_body(scene, self.fidelity, self.settings)
+        return build_body(scene, self.name, self.settings)
 
 
 @dataclass(frozen=True)
 class Chosen(Group):
     """A model and its mesh, or the cheapest that keeps a tolerance."""
 
-    fidelity: Annotated[
+    name: Annotated[
         AutoChoice,
         typer.Option(
             *BY_MODEL,
@@ -147,15 +147,15 @@ class Chosen(Group):
             For a tolerance of a fixed model, which must not look as if it kept it, or a mesh that
             is to be chosen and is set as well.
         """
-        if self.fidelity != AUTO:
+        if self.name != AUTO:
             if self.tol is not None:
                 raise SolidgearError(
-                    f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.fidelity} is set by --set"
+                    f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.name} is set by --set"
                 )
             return False
         if options(self.pairs):  # which says so where one is no key=value
             raise SolidgearError(
-                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f {FIDELITY}"
+                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f {MODEL}"
             )
         return True
 
@@ -189,7 +189,7 @@ class Solved(Chosen):
             As for :func:`solidgear.judge.settle.settle`.
         """
         if not self.automatic():
-            return build_body(scene, self.fidelity, self.pairs), None
+            return build_body(scene, self.name, self.pairs), None
         from solidgear.judge.settle import settle
 
         # A second or less for most scenes: lines are for those who watch.
@@ -238,10 +238,10 @@ def _value(text: str):
     return {"true": True, "false": False}.get(text, text)
 
 
-def build_body(scene: Scene, fidelity: str, pairs: list[str] | None) -> Body:
+def build_body(scene: Scene, name: str, pairs: list[str] | None) -> Body:
     """Body of a scene by one model, with ``--set`` options."""
     from solidgear.ladder import build
 
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.
-    return build(scene, fidelity, **LADDER[fidelity].checked(options(pairs)))
+    return build(scene, name, **LADDER[name].checked(options(pairs)))

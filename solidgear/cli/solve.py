@@ -19,7 +19,7 @@ from solidgear.cli.settled import (
     without_bar,
 )
 from solidgear.cli.shared import (
-    FIDELITY,
+    MODEL,
     Choice,
     Fixed,
     Run,
@@ -77,7 +77,7 @@ def compare(
     ] = False,
     pinion: Annotated[
         str | None,
-        typer.Option("--pinion", help=f"Of two trains: model of both pinions, {FIDELITY} else."),
+        typer.Option("--pinion", help=f"Of two trains: model of both pinions, {MODEL} else."),
     ] = None,
     gear: Annotated[
         str | None, typer.Option("--gear", help="Of two trains: model of both gears, as --pinion.")
@@ -289,10 +289,10 @@ def render(
         )
     loaded = load(scene)
     drawn = []
-    for one in [model, *([Fixed(beside)] if beside not in (None, model.fidelity) else [])]:
+    for one in [model, *([Fixed(beside)] if beside not in (None, model.name) else [])]:
         body = one.body(loaded)
         found = solve(body, loaded, max(loaded.ask.modes, 10))
-        drawn.append(Drawn(body, found, LADDER[one.fidelity].title))
+        drawn.append(Drawn(body, found, LADDER[one.name].title))
     if turn is None:
         print(render_mode(drawn[0].body, drawn[0].modes, mode, out, drawn[0].title))
         return
@@ -317,7 +317,7 @@ def check(
     if is_train(scene):
         from solidgear.cli.checked import check_train
 
-        given = {"--model": model.fidelity != FIDELITY, "--set": bool(model.settings)}
+        given = {"--model": model.name != MODEL, "--set": bool(model.settings)}
         check_train(scene, run.as_json, given)
         return
     from solidgear.cli.checked import print_check
@@ -326,7 +326,7 @@ def check(
 
     loaded = load(scene)
     # a model of revolution is looked at on the plain part, and the check says so
-    shown = loaded.plain if LADDER[model.fidelity].unfit(loaded) else loaded
+    shown = loaded.plain if LADDER[model.name].unfit(loaded) else loaded
     found = check_scene(loaded, model.body(shown))
     if run.as_json:
         print(json.dumps(found, default=float))

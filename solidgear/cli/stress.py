@@ -12,7 +12,7 @@ import typer
 
 from solidgear.cli.acting import Acting, AtRestFile, load_in_words, refuse
 from solidgear.cli.app import NOT_REACHED, Group, caution, command, say
-from solidgear.cli.shared import BY_MODEL, FIDELITY, Choice, Shown, share
+from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, share
 from solidgear.errors import SceneError, SolidgearError, show
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def stress(
     ] = None,
     fidelity: Annotated[
         Choice, typer.Option(*BY_MODEL, help="Model on which shafts and bearings settle.")
-    ] = FIDELITY,
+    ] = MODEL,
     tol: Annotated[
         float,
         typer.Option("--tol", parser=share, metavar="FLOAT", help="Bar allowed of a form factor."),

@@ -12,7 +12,7 @@ import typer
 from solidgear.cli.app import Progress as Steps
 from solidgear.cli.app import command
 from solidgear.cli.settled import ended, over_the_sweep
-from solidgear.cli.shared import AUTO, FIDELITY, Chosen, Run, options
+from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
 from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
@@ -63,7 +63,7 @@ def sweep(
 
     if is_train(scene):
         of_shaft = {
-            "--model": model.fidelity != AUTO,
+            "--model": model.name != AUTO,
             "--tol": model.tol is not None,
             "--tolerance": tolerance != TOLERANCE,
         }
@@ -71,8 +71,8 @@ def sweep(
         sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
         return
     of_train = {
-        "--pinion": pair.pinion != FIDELITY,
-        "--gear": pair.gear != FIDELITY,
+        "--pinion": pair.pinion != MODEL,
+        "--gear": pair.gear != MODEL,
         **told.given,
         **reduced.given,
     }
@@ -104,7 +104,7 @@ def _sweep_shaft(
             )
         name, given = settled.rung, settled.options
     else:
-        name = str(model.fidelity)
+        name = str(model.name)
         given = LADDER[name].checked(options(model.pairs))
     with rows.counted(run.as_json) as (show, tell):
         found = swept(

@@ -11,7 +11,7 @@ import typer
 
 from solidgear.cli.app import Group
 from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
-from solidgear.cli.shared import FIDELITY
+from solidgear.cli.shared import MODEL
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
 
@@ -108,9 +108,9 @@ class Pair(Group):
 
     pinion: Annotated[
         str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
-    ] = FIDELITY
+    ] = MODEL
     gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
-        FIDELITY
+        MODEL
     )
 
 

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 from solidgear.cli.app import caution, say
-from solidgear.cli.shared import FIDELITY, Shown
+from solidgear.cli.shared import MODEL, Shown
 from solidgear.cli.train_options import Reduced, refuse_given
 from solidgear.errors import SolidgearError
 
@@ -56,7 +56,7 @@ def compare_two(
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
     elif trains[0]:
-        _two_trains(a, b, out, (models[0] or FIDELITY, models[1] or FIDELITY), run)
+        _two_trains(a, b, out, (models[0] or MODEL, models[1] or MODEL), run)
     else:
         _two_shafts(a, b, out, run)
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from solidgear.solve.modes import Mode
 
 
-def completeness(evidence: dict, fidelity: str) -> str:
+def completeness(evidence: dict, model: str) -> str:
     """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet`
     carries.
 
@@ -22,7 +22,7 @@ def completeness(evidence: dict, fidelity: str) -> str:
     ----------
     evidence : dict
         With ``count``: modes must have been asked for with it.
-    fidelity : str
+    model : str
         A beam has no other families than its own, and says so.
     """
     bad = [part["why"] for part in evidence["count"] if not part["checked"]]
@@ -34,7 +34,7 @@ def completeness(evidence: dict, fidelity: str) -> str:
         f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of "
         f"a second factor): {_listed(counted)}"
     )
-    if LADDER[fidelity].family == BEAM:
+    if LADDER[model].family == BEAM:
         return f"{text}; a beam knows no others."
     left = _left([row for row in rows if not row["counted"]])
     return f"{text}; {left}." if left else f"{text}."
