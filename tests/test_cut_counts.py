@@ -54,7 +54,9 @@ def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
     assert 1 / 4 < LADDER["solid"].rough_unknowns(PARTS[name], given) / found < 4
 
 
-@pytest.mark.parametrize("name", ["small hole", "three that share no plane"])
+@pytest.mark.parametrize(
+    "name", ["small hole", pytest.param("three that share no plane", marks=pytest.mark.long)]
+)
 def test_check_tells_of_the_part_with_its_features(name):
     scene = PARTS[name]
     probe = Probe(scene.plain, sg.build(scene.plain, "timoshenko"), whole=scene)
