@@ -44,7 +44,10 @@ def modes(found: Any) -> Table:
             "below it is not resolved, which is not agreement. "
         )
     columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
-    note += "MAC: how alike the motions of both are; a dash: paired by name, whose shapes may differ, or without a partner."
+    note += (
+        "MAC: how alike the motions of both are; a dash: paired by name, whose shapes may differ, "
+        "or without a partner."
+    )
     return Table("Natural frequencies", columns, found.modes, note, style="ruled")
 
 
