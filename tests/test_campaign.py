@@ -14,10 +14,11 @@ from validation.campaign import __main__ as command
 from validation.campaign import results, scoreboard, table
 from validation.campaign import run as running
 from validation.campaign.case import Run
-from validation.campaign.cases import CASES, answers, claims, shafts
+from validation.campaign.cases import CASES, answers, claims, pairs, shafts
 from validation.campaign.cases.answers import goals_of, kind_of
 from validation.campaign.rows import (
     AGREES,
+    CLAIM,
     CONTRADICTS,
     DECIDED,
     FALSE_VALID,
@@ -25,6 +26,7 @@ from validation.campaign.rows import (
     UNCERTAIN,
     VALID,
     Found,
+    Row,
     Said,
     Truth,
     found_of,
@@ -379,3 +381,17 @@ def test_random_shafts_end_to_end(tmp_path):
         found.add(CASES["shafts"].judge(run, *body))
     assert {row.tags["model"] for row in found.rows} == {"harmonic", "hex20", "tet10"}
     assert not found.wrong and not found.problems
+
+
+def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
+    rows = [Row(rule=CLAIM, **row) for row in pairs.judged(2)]
+    assert {row.quantity for row in rows} >= {"C_zz", "K_zz", "bending 1"}
+    assert all(row.held for row in rows)
+    # a bearing that is stiffer by 0.1, told as one that is softer: every number is on the wrong side
+    monkeypatch.setattr(pairs, "between", lambda *_: 0.1)
+    monkeypatch.setattr(
+        pairs, "_wrong_way", lambda *given, right=pairs._wrong_way: right(*given[:-1], -given[-1])
+    )
+    wrong = [Row(rule=CLAIM, **row) for row in pairs.judged(2)]
+    assert not any(row.held for row in wrong if row.tags["verdict"] == "resolved")
+    assert any(row.tags["verdict"] == "resolved" for row in wrong)

@@ -129,7 +129,7 @@ def test_files_of_a_factor_go_with_it():
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
     def sizes(scene):
-        body = sg.build(scene, "solid")
+        body = sg.build(scene, "solid", refinement=0.85)
         asked = ({}, {"precision": "single"}, {"out_of_core": True})
         return [needed_mb(body, Factoring(**more)) for more in asked]
 
@@ -191,12 +191,12 @@ OFFERED = (
     ("pinion_overhung", {}, ["-f harmonic", "--set refinement="], SMALLER),
     (
         "pinion_keyed",
-        {"half": False},
+        {"half": False, "refinement": 0.6},
         ["--set half=true", "-f corrected", "--set refinement=", *SMALLER],
         (),
     ),
-    ("pinion_toothed", {"refinement": 0.7}, ["-f sector", "--set refinement=", *SMALLER], ()),
-    ("shaft_step", {}, ["--set refinement=", *SMALLER], ["-f "]),
+    ("pinion_toothed", {"refinement": 0.5}, ["-f sector", "--set refinement=", *SMALLER], ()),
+    ("shaft_step", {"refinement": 0.6}, ["--set refinement=", *SMALLER], ["-f "]),
 )
 
 

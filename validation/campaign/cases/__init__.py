@@ -5,8 +5,9 @@ from validation.campaign.cases.claims import Claims
 from validation.campaign.cases.features import Features
 from validation.campaign.cases.fillets import Fillets
 from validation.campaign.cases.modes import Modes
+from validation.campaign.cases.pairs import Pairs
 from validation.campaign.cases.points import Points
 from validation.campaign.cases.shafts import Shafts
 
-DRAWN = (Answers(), Shafts(), Points(), Features(), Claims(), Modes(), Fillets())
+DRAWN = (Answers(), Shafts(), Pairs(), Points(), Features(), Claims(), Modes(), Fillets())
 CASES = {case.name: case for case in DRAWN}
