@@ -49,8 +49,7 @@ def changed(scene: Scene, seed: int) -> tuple[Scene, str, str, float]:
     if what == "bearing":
         k = int(rng.choice(held))
         bearings = list(scene.bearings)
-        stiffness = (1 + by) * np.asarray(bearings[k].stiffness)
-        bearings[k] = bearings[k].with_changes(matrix=tuple(map(tuple, stiffness)))
+        bearings[k] = bearings[k].scaled(1 + by)
         return scene.with_changes(bearings=tuple(bearings)), what, STIFFER, by
     segments = list(scene.segments)
     k = int(rng.integers(len(segments)))
