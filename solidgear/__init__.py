@@ -52,6 +52,7 @@ _WHERE = {
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
     "compare": "solidgear.studies.comparison",
+    "sweep": "solidgear.studies.sweep.table",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
@@ -95,6 +96,7 @@ __all__ = [
     "modes",
     "rubin",
     "shaft_stress",
+    "sweep",
     "torsion_spring",
     "turn",
 ]
@@ -126,6 +128,7 @@ if TYPE_CHECKING:
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
     from solidgear.studies.stress.shaft import shaft_stress
+    from solidgear.studies.sweep.table import sweep
     from solidgear.system import (
         BearingSpring,
         Inertia,

@@ -14,7 +14,8 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.scene.paths import changed, keys_of, label_of
 from solidgear.scene.toml_file import parse
-from solidgear.studies.sweep import train_run as runner
+from solidgear.studies.sweep import running
+from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.train_run import sweep_train
 from solidgear.studies.train import models
 from solidgear.studies.train.deflection import deflection
@@ -33,7 +34,8 @@ MODES, AT_REST = ["system-modes"], ["deflect"]
 
 def swept(train, vary, out, **how):
     """Account and rows of a sweep, numbers as numbers."""
-    found = sweep_train(train, vary, out, **{**LIGHT, **how})
+    drawn = {k: how.pop(k) for k in ("sample", "seed") if k in how}
+    found = sweep_train(train, Design(tuple(vary), **drawn), out, **{**LIGHT, **how})
     return found, rows_of(out)
 
 
@@ -248,7 +250,7 @@ def test_harmonics_at_the_teeth_are_found_once_for_a_mesh_point(tmp_path, monkey
 def test_a_refused_variant_says_why_and_the_others_are_solved(tmp_path):
     vary = ["pinion.bearing.2.position=150 mm,175 mm,900 mm", "losses.mesh=0.1,3"]
     found, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES)
-    assert found.refused == 5 and found.why == rows[1]["status"]
+    assert found.refused == 5 and rows[1]["status"] in found.whys
     assert rows[0]["status"] == "ok" and rows[0]["f1_hz"] > 0
     assert "losses.mesh = 3: a loss factor lies between 0 and 1" in rows[1]["status"]
     for row in rows[2:]:
@@ -389,7 +391,7 @@ def test_the_command_draws_curves_over_one_number(ending, tmp_path):
 
 
 def test_the_command_refuses_what_it_cannot_draw_before_anything_is_solved(tmp_path, monkeypatch):
-    monkeypatch.setattr(runner, "RowFile", None)
+    monkeypatch.setattr(running, "RowFile", None)
     two = ("--vary", "mesh.stiffness=1e8,2e8", "--vary", "losses.mesh=0.1,0.2")
     for words, says in (
         ((*two, "--chart", "a.png"), "here vary: mesh.stiffness, losses.mesh"),
@@ -413,4 +415,4 @@ def test_the_command_ends_with_an_error_where_no_variant_finds_its_rest(tmp_path
     )
     told = json.loads(done.stdout)
     assert done.exit_code == 1 and told["refused"] == told["total"] == 2
-    assert "beyond what the reduction resolves" in told["why"]
+    assert "beyond what the reduction resolves" in "".join(told["whys"])

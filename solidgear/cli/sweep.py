@@ -1,4 +1,4 @@
-"""Command ``sweep``: one body, many bearing sets; or a train, many variants of its file."""
+"""Command ``sweep``: one body, many bearing sets; or many variants of the file of a shaft or train."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from solidgear.cli.app import command
 from solidgear.cli.settled import ended, over_the_sweep
 from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
+from solidgear.cli.sweep_scene import sweep_scene
 from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.errors import SolidgearError
@@ -36,11 +37,10 @@ def sweep(
         list[str] | None,
         typer.Option(
             "--vary",
-            help="Of a scene bearing.NAME.FIELD=VALUES, repeatable. FIELD: position (from y = 0), "
-            "scale, or an entry such as kxx or kx_thz. "
-            "bearing.NAME.housing.FIELD and housing.FIELD vary what the scene gives a housing. "
-            "Of a train PATH=VALUES: any entry of its file or of a side's scene, such as "
-            "mesh.stiffness, operation.torque, pinion.bearing.2.position. "
+            help="PATH=VALUES, repeatable: any entry of the file, such as segment.neck.diameter, "
+            "bearing.A.seat_width, mesh.stiffness, pinion.bearing.2.position; PATH+PATH gives several "
+            "one value. Where bearing.NAME.FIELD (position from y = 0, scale, or an entry such as kxx), "
+            "bearing.NAME.housing.FIELD or housing.FIELD of a shaft vary alone, one body does for all. "
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
     ] = None,
@@ -58,8 +58,9 @@ def sweep(
     reduced: Reduced,
     run: Run,
 ) -> None:
-    """Thousands of bearing sets on one body, or of variants of a train, as rows of a file."""
+    """Thousands of bearing sets on one body, or variants of a shaft or train, as rows of a file."""
     from solidgear.scene.toml_file import is_train
+    from solidgear.studies.sweep.vary import of_bearings_alone
 
     if is_train(scene):
         of_shaft = {
@@ -73,13 +74,20 @@ def sweep(
     of_train = {
         "--pinion": pair.pinion != MODEL,
         "--gear": pair.gear != MODEL,
-        **told.given,
+        "--ask": bool(told.ask),
+        "--every-point": told.every_point,
         **reduced.given,
     }
     for option, there in of_train.items():
         if there:
             raise SolidgearError(f"{option} is for a train, and {scene} is the scene of one shaft")
-    _sweep_shaft(scene, vary or [], rows, model, tolerance, run)
+    of_bearings = None if rows.of_files or told.chart else of_bearings_alone(vary or [])
+    if of_bearings is not None:
+        _sweep_shaft(scene, of_bearings, rows, model, tolerance, run)
+        return
+    if tolerance != TOLERANCE:
+        raise SolidgearError("--tolerance is that of one body for many bearing sets; give --tol")
+    sweep_scene(scene, vary or [], rows, model, told.chart, run)
 
 
 def _sweep_shaft(
@@ -116,6 +124,8 @@ def _sweep_shaft(
             build=build,
             progress=show,
             tell=tell,
+            sample=rows.sample,
+            seed=rows.seed,
             **rows.how,
         )
     if run.as_json:
@@ -131,6 +141,7 @@ def _sweep_shaft(
     print(rows_there(found))
     if new:
         print(
+            "Bearings alone vary: one body does for all, reduced to its seats.\n"
             f"{found.unknowns} unknowns with {found.seats} seats solved once in "
             f"{found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
             f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."

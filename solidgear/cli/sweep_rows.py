@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +16,19 @@ from solidgear.cli.app import Group
 
 if TYPE_CHECKING:
     from solidgear.studies.sweep import Summary
+    from solidgear.studies.sweep.curves import Curves
+    from solidgear.studies.sweep.design import Design
+    from solidgear.studies.sweep.scene_run import SceneSummary
     from solidgear.studies.sweep.train_run import TrainSummary
 
+    Swept = Summary | SceneSummary | TrainSummary
+
+#: rows that are told on the terminal as well
+FEW = 40
+#: ending of a chart that is a page
+PAGE = ".html"
+#: reasons of refusals that are told
+REASONS = 5
 #: told rows that are there, rows in all and what is done
 Show = Callable[[int, int, str], None]
 #: told a sentence on what was mended
@@ -46,6 +58,27 @@ class Rows(Group):
         ),
     ] = None
     seed: Annotated[int, typer.Option("--seed", help="Of the random sample.")] = 0
+    one_at_a_time: Annotated[
+        bool,
+        typer.Option(
+            "--one-at-a-time",
+            help="The file as it is, then each value of each entry with all others as in the file.",
+        ),
+    ] = False
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            "--table",
+            help="Variants of your own, in place of --vary: a CSV file with paths as heads.",
+        ),
+    ] = None
+    keep_sum: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--keep-sum",
+            help="PATH+PATH: their sum stays as in the file; the one that does not vary gives way.",
+        ),
+    ] = None
     jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes on this machine.")] = 1
     dask: Annotated[
         str | None,
@@ -59,8 +92,22 @@ class Rows(Group):
 
     @property
     def how(self) -> dict[str, Any]:
-        """The same as arguments of a sweep."""
-        return dict(vars(self))
+        """Arguments of a sweep on its rows."""
+        kept = ("out", "n", "jobs", "dask", "overwrite")
+        return {name: getattr(self, name) for name in kept}
+
+    @property
+    def of_files(self) -> bool:
+        """Tell whether options are given that are for variants of files."""
+        return bool(self.one_at_a_time or self.table or self.keep_sum)
+
+    def design(self, vary: Sequence[str]) -> Design:
+        """What varies, and in which combinations."""
+        from solidgear.studies.sweep.design import Design
+
+        sums = tuple(self.keep_sum or ())
+        drawn = self.sample, self.seed, self.one_at_a_time
+        return Design(tuple(vary), *drawn, self.table, sums)
 
     @contextmanager
     def counted(self, silent: bool) -> Iterator[tuple[Show, Tell]]:
@@ -107,15 +154,63 @@ class Rows(Group):
             raise
 
 
-def rows_there(found: Summary | TrainSummary) -> str:
+def rows_there(found: Swept) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     return f"{path}: {found.total} rows, {found.skipped} of them there before."
 
 
-def refusals(found: Summary | TrainSummary) -> list[str]:
-    """Sentence on variants that were refused, if any were."""
-    if not found.why:
+def refusals(found: Swept) -> list[str]:
+    """Sentences on variants that were refused, if any were: a reason each, the commonest first."""
+    most = sorted(found.whys.items(), key=lambda why: -why[1])
+    told = [
+        f"Refused{f' ({count} variants)' * (count > 1)}: {why}" for why, count in most[:REASONS]
+    ]
+    if len(most) > REASONS:
+        left = sum(count for _, count in most[REASONS:])
+        told.append(f"{left} more are refused for other reasons (column status).")
+    return told
+
+
+def record_of(found: Swept) -> str:
+    """The account as JSON, without the rows."""
+    record = {k: v for k, v in vars(found).items() if k not in ("curves", "columns")}
+    return json.dumps(record, default=str)
+
+
+def ended_rows(found: Swept) -> None:
+    """An exit code of its own where no variant could be solved."""
+    if found.refused == found.total:
+        raise typer.Exit(1)
+
+
+def checked_chart(file: Path | None) -> None:
+    """Refuse a chart of an unknown format before anything is solved."""
+    from solidgear.report.plot import FORMATS, check_ending
+
+    if file is not None:
+        check_ending(file, (*FORMATS, PAGE))
+
+
+def drawn(
+    curves: Curves | None, title: str, lead: str, file: Path | None, cautions: Sequence[str] = ()
+) -> list[str]:
+    """Sentence on the curves, once they are drawn into a picture or a page; none if none was asked
+    for.
+    """
+    from functools import partial
+
+    from solidgear.report.sweep_chart import sweep_chart, sweep_table
+    from solidgear.report.train_sheet import write_sheet
+    from solidgear.report.units import ENGINEERING
+
+    if file is None:
         return []
-    others = "; others say theirs" if found.refused > 1 else ""
-    return [f"Refused: {found.why} (column status{others})."]
+    if curves is None or curves.empty:
+        return ["Chart: none"]
+    title = f"{title}: sweep over {curves.over}"
+    if file.suffix.lower() != PAGE:
+        return [f"Chart: {sweep_chart(curves, title).write(file)}"]
+    charts = {"sweep": partial(sweep_chart, curves, "", ENGINEERING)}
+    told = [sweep_table(curves)]
+    return [f"Chart: {write_sheet(file, title, lead, told, charts=charts, cautions=cautions)}"]

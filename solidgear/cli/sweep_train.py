@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,16 +11,20 @@ import typer
 from solidgear.cli.app import Group, caution, say
 from solidgear.cli.shaft_settings import of_shafts
 from solidgear.cli.shared import Run
-from solidgear.cli.sweep_rows import Rows, refusals, rows_there
+from solidgear.cli.sweep_rows import (
+    FEW,
+    Rows,
+    checked_chart,
+    drawn,
+    ended_rows,
+    record_of,
+    refusals,
+    rows_there,
+)
 from solidgear.cli.train_options import Pair, Reduced
 
 if TYPE_CHECKING:
     from solidgear.studies.sweep.train_run import TrainSummary
-
-#: rows that are told on the terminal as well
-FEW = 40
-#: ending of a chart that is a page
-PAGE = ".html"
 
 
 @dataclass(frozen=True)
@@ -43,18 +46,9 @@ class Told(Group):
         Path | None,
         typer.Option(
             "--chart",
-            help="Of a train: curves over the number that varies, as .png, .svg or .html.",
+            help="Curves over the number that varies, as .png, .svg or .html.",
         ),
     ] = None
-
-    @property
-    def given(self) -> dict[str, bool]:
-        """Options, and whether they were given."""
-        return {
-            "--ask": bool(self.ask),
-            "--every-point": self.every_point,
-            "--chart": self.chart is not None,
-        }
 
 
 def sweep_train(
@@ -68,17 +62,15 @@ def sweep_train(
     run: Run,
 ) -> None:
     """Sweep a train and tell of it."""
-    from solidgear.report.plot import FORMATS, check_ending
     from solidgear.studies.sweep.train_run import sweep_train as swept
     from solidgear.studies.sweep.train_task import ASKED
 
-    if told.chart is not None:
-        check_ending(told.chart, (*FORMATS, PAGE))
+    checked_chart(told.chart)
     reduced.checked()
     with rows.counted(run.as_json) as (show, tell):
         found = swept(
             train,
-            vary,
+            rows.design(vary),
             pinion=pair.pinion,
             gear=pair.gear,
             settings=of_shafts(settings, pair.pinion, pair.gear),
@@ -94,13 +86,11 @@ def sweep_train(
             tell=tell,
             **rows.how,
         )
-    curves, written = found.curves, []
-    if told.chart is not None:
-        nothing = curves is None or curves.empty
-        written = [f"Chart: {'none' if nothing else _drawn(found, pair, told.chart)}"]
+    curves = found.curves
+    written = drawn(curves, found.title, _lead(found, pair), told.chart, found.cautions)
     if run.as_json:
-        print(json.dumps({k: v for k, v in vars(found).items() if k != "curves"}, default=str))
-        _ended(found)
+        print(record_of(found))
+        ended_rows(found)
         return
     say(f"{found.title}: pinion {pair.pinion}, gear {pair.gear}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
@@ -109,13 +99,7 @@ def sweep_train(
         say(sweep_table(curves))
     say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, pair), *written)
     say(*map(caution, found.cautions))
-    _ended(found)
-
-
-def _ended(found: TrainSummary) -> None:
-    """An exit code of its own where no variant could be solved."""
-    if found.refused == found.total:
-        raise typer.Exit(1)
+    ended_rows(found)
 
 
 def _work(found: TrainSummary) -> list[str]:
@@ -148,20 +132,5 @@ def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
     return lines
 
 
-def _drawn(found: TrainSummary, pair: Pair, file: Path) -> Path:
-    """Draw the curves into a picture or a page."""
-    from functools import partial
-
-    from solidgear.report.sweep_chart import sweep_chart, sweep_table
-    from solidgear.report.train_sheet import write_sheet
-    from solidgear.report.units import ENGINEERING
-
-    assert found.curves is not None  # or the sweep would have been refused
-    title = f"{found.title}: sweep over {found.curves.over}"
-    make = partial(sweep_chart, found.curves, title)
-    if file.suffix.lower() != PAGE:
-        return make().write(file)
-    lead = f"Pinion {pair.pinion}, gear {pair.gear}; rows in {found.path.name}."
-    told = [sweep_table(found.curves)]
-    charts = {"sweep": partial(sweep_chart, found.curves, "", ENGINEERING)}
-    return write_sheet(file, title, lead, told, charts=charts, cautions=found.cautions)
+def _lead(found: TrainSummary, pair: Pair) -> str:
+    return f"Pinion {pair.pinion}, gear {pair.gear}; rows in {found.path.name}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -209,6 +209,22 @@ def answered(answer: Any) -> Table:
         ("quantity", "value", "unit", "bar"),
         rows,
     )
+
+
+def swept(rows: Any) -> Table:
+    """What varies, the first natural frequencies with their bars, and why a row has none."""
+    heads = [*rows.varied, *(name for name in ("f1_hz", "f2_hz", "f3_hz") if name in rows.columns)]
+    columns = [*heads, "status"]
+    told = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]
+    return Table("Rows of a sweep, SI", columns, told)
+
+
+def _told(columns: Mapping[str, list], head: str, k: int) -> str:
+    """A number of a row with its bar, where it has one."""
+    value, bar = (columns[name][k] if name in columns else None for name in (head, f"{head} bar"))
+    if value is None or isinstance(value, str):
+        return (value or "-")[:60]
+    return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
 
 
 def two_shafts(found: Any) -> Table:

@@ -58,10 +58,26 @@ def load(path: str | os.PathLike) -> Scene:
     >>> [bearing.name for bearing in scene.bearings], scene.port.name
     (['1', '2'], 'pinion')
     """
-    scene = file.load(path, part_of)
-    if all(bearing.catalogue is None for bearing in scene.bearings):
+    return scene_of(parse(os.fspath(path)), path)
+
+
+def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
+    """Scene that tables of a file describe; errors as of :func:`load`.
+
+    Parameters
+    ----------
+    path : str or path
+        What the tables name lies relative to it.
+    alone : bool
+        Whether catalogue bearings settle at the load of the scene, and not with a train.
+    """
+    scene = file.scene_of(dict(tables), os.fspath(path), part_of)
+    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
-    return read(path, scene).scene
+    from solidgear.bearings.solved import solved
+
+    with explained(path, tables):
+        return solved(scene, shaft(scene)).scene
 
 
 def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> Train:

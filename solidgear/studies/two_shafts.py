@@ -7,37 +7,30 @@ both shafts are described at the same stations, else to the mode of the same nam
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from solidgear.body import as_supports
 from solidgear.display import Displayed
 from solidgear.judge.answer import LEAST_TOLERANCE
 from solidgear.judge.correlation import pair_modes
-from solidgear.judge.quantities import Values, in_order, size
-from solidgear.judge.settle import Settled, bars_of_modes, settle
-from solidgear.judge.solving import answered
-from solidgear.machine.meter import Meter
+from solidgear.judge.quantities import in_order, size
 from solidgear.machine.threads import pinned
 from solidgear.quantity import QUANTITIES, Quantity
-from solidgear.scene.closed_form import mass_properties
-from solidgear.scene.differences import ROUNDING, Difference, scene_differences
+from solidgear.scene.differences import Difference, scene_differences
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.studies import two_shafts_told as told
 from solidgear.studies.change import BarredMode, Change, ModePair
-from solidgear.studies.check import cautions
+from solidgear.studies.one_shaft import OneShaft, Progress, all_modes, one_shaft
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-Progress = Callable[[str], None]
 #: part of the tolerance that the bars of both are brought to
 SHARE = 0.1
 #: entries of the other plane that are those of the first unless bearings or features differ
@@ -48,53 +41,6 @@ TWINS = {
 }
 #: relative; twins closer than this are one number
 SAME = 1e-9
-
-
-@dataclass(frozen=True, eq=False)
-class OneShaft:
-    """One of the two, solved.
-
-    Attributes
-    ----------
-    letter, name : str
-        ``A`` or ``B``, and what it is called.
-    values : dict of Quantity to float
-        SI.
-    modes : ModeSet
-        The list that the scene asks for, and what was solved above it.
-    bars : dict of str to float
-        Relative, of quantities and modes.
-    mass : float
-        Of the shaft without what sits on it, kg.
-    mass_bar : float or None
-        Relative; that of rounding where it has a closed form, None elsewhere.
-    """
-
-    letter: str
-    name: str
-    scene: Scene
-    settled: Settled
-    values: Values
-    modes: ModeSet
-    bars: dict[str, float]
-    mass: float
-    mass_bar: float | None
-    cautions: tuple[str, ...]
-
-    @property
-    def label(self) -> str:
-        """Letter and name."""
-        return f"{self.letter}: {self.name}"
-
-    def bar(self, name: Quantity) -> float | None:
-        """Bar of a quantity in its own unit; None where nothing is known."""
-        width = self.settled.bars.get(name, math.inf) * size(self.values, name)
-        return width if math.isfinite(width) else None
-
-    def seen(self, mode: Mode) -> BarredMode:
-        """A mode with its bar."""
-        bar = self.bars.get(mode.name, math.inf)
-        return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
 
 
 @dataclass(frozen=True)
@@ -256,7 +202,7 @@ def two_shafts(
     its = {port.name for port in other.further_ports}
     points = [port.name for port in first.further_ports if port.name in its]
     a, b = (
-        _solved(letter, name, scene, tol, points, progress)
+        _settled(scene, tol, letter, name, points, progress)
         for letter, name, scene in zip("AB", names or [s.name for s in scenes], scenes)
     )
     pairs, pairing = _paired(a, b)
@@ -270,46 +216,12 @@ def two_shafts(
     return TwoShafts(a, b, tol, differ, changes, tuple(pairs), pairing, alone, spent)
 
 
-def _solved(
-    letter: str, name: str, scene: Scene, tol: float, points: list[str], progress: Progress
+def _settled(
+    scene: Scene, tol: float, letter: str, name: str, points: list[str], progress: Progress
 ) -> OneShaft:
-    def say(text: str) -> None:
-        progress(f"{letter}: {text}")
-
-    settled = settle(scene, tol, points=points, progress=say)
-    body = settled.body
-    say("statics and modes")
-    found = answered(
-        body,
-        as_supports(scene),
-        [scene.port.name, *points],
-        n=scene.ask.modes,
-        max_frequency=scene.ask.max_frequency,
-        ovalising=True,
-        wanted=[q for q in QUANTITIES if q.is_frequency],
-        spare=True,
-        meter=Meter(),
-    )
-    say("how sure its frequencies are")
-    bars = bars_of_modes(scene, body, _all(found.modes), settled)
-    for asked in (q for q in settled.bars if q.is_frequency):
-        # bending may be called by its plane
-        mode = found.modes.named(asked)
-        if mode is not None:
-            bars.setdefault(str(mode.name), settled.bars[asked])
-    round_ = body.mesh.get("round", True)
-    mass = mass_properties(scene.outline).mass if round_ else float(body.mass_matrix()[0, 0])
-    said = tuple(cautions(scene, body))
-    body.cache.clear()
-    exact = ROUNDING if round_ else None
-    numbers = found.quantities, found.modes, bars
-    return OneShaft(letter, name, scene, settled, *numbers, mass, exact, said)
-
-
-def _all(found: ModeSet) -> ModeSet:
-    """All modes of a list and beyond it as one list."""
-    every = sorted((*found.modes, *found.beyond), key=lambda mode: mode.frequency_hz)
-    return replace(found, modes=tuple(every), beyond=())
+    found = one_shaft(scene, tol, letter, name, points, progress=progress)
+    found.settled.body.cache.clear()
+    return found
 
 
 def _mass(a: OneShaft, b: OneShaft) -> NumberChange:
@@ -350,7 +262,7 @@ def _frequencies(
 
 def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     """Modes of both lists with their partners, and in words how they were found."""
-    mine, its = ([m for m in _all(one.modes).modes if m.frequency_hz > 0] for one in (a, b))
+    mine, its = ([m for m in all_modes(one.modes).modes if m.frequency_hz > 0] for one in (a, b))
     found: list[tuple[Mode | None, Mode | None, float | None]] = []
     shared = _same_stations(a.modes, b.modes)
     if shared:

@@ -14,7 +14,8 @@ from solidgear.report.words import is_number, percent
 from solidgear.studies import beside
 
 if TYPE_CHECKING:
-    from solidgear.studies.two_shafts import NumberChange, OneShaft, TwoShafts
+    from solidgear.studies.one_shaft import OneShaft
+    from solidgear.studies.two_shafts import NumberChange, TwoShafts
 
 #: numbers that a sentence names as not resolved
 NAMED = 4

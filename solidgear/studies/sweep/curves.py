@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.scene.train import Train
 from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.file_variants import POINT, FileVariants
 from solidgear.studies.sweep.train_task import misaligned
-from solidgear.studies.sweep.train_variants import POINT
-from solidgear.studies.train.misalignment import measured_names
 
+#: rows that curves are made of
+MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
 
@@ -99,8 +99,34 @@ def varied_number(varied: Sequence[Entry]) -> Entry:
     return one
 
 
-def curves(columns: Mapping[str, list[Any]], one: Entry, train: Train) -> Curves:
-    """Curves of a finished sweep.
+def chartable(variants: FileVariants) -> None:
+    """Refuse a sweep of which no curves can be drawn, before it begins.
+
+    Raises
+    ------
+    SolidgearError
+    """
+    varied_number(variants.entries)
+    if len(variants) > MOST_CURVED:
+        raise SolidgearError(
+            f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
+        )
+
+
+def curves_of(
+    columns: Mapping[str, list[Any]], variants: FileVariants, measured: Sequence[str] = ()
+) -> Curves | None:
+    """Curves of a finished sweep; None of one that has none."""
+    if len(variants) > MOST_CURVED:
+        return None
+    try:
+        return curves(columns, varied_number(variants.entries), measured)
+    except SolidgearError:
+        return None
+
+
+def curves(columns: Mapping[str, list[Any]], one: Entry, measured: Sequence[str] = ()) -> Curves:
+    """Curves of a finished sweep over one of its entries.
 
     Parameters
     ----------
@@ -108,8 +134,8 @@ def curves(columns: Mapping[str, list[Any]], one: Entry, train: Train) -> Curves
         Values of all rows by the names of columns.
     one : Entry
         What varies; of operating points curves go over their torque.
-    train : Train
-        Any of its variants.
+    measured : sequence of str
+        Names of the numbers of the misalignment of a train.
     """
     of_points = one.label == POINT
     x = _numbers(columns["torque" if of_points else one.label])
@@ -151,7 +177,7 @@ def curves(columns: Mapping[str, list[Any]], one: Entry, train: Train) -> Curves
         mesh_force=told("mesh force", "mesh_force", "N"),
         misalignment=[
             curve
-            for name in measured_names(train)
+            for name in measured
             for curve in told(name, misaligned(name), UNITS.get(name, "m moved"))
         ],
         radial=radial,

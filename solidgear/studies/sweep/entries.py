@@ -1,15 +1,20 @@
 """Entries of a file that vary: ``PATH=VALUES`` texts, by paths of :mod:`solidgear.scene.paths`.
 
 VALUES are ``a:b:n``, ``log:a:b:n`` or a list ``a,b,c``; a number is plain (SI) or has a unit. A list
-may hold texts as well, such as designations; in quotes a number is a text too. What is put into the
-tables of the file is what a person would have written there, so that all rules of the file apply.
+may hold texts as well, such as designations; in quotes a number is a text too. ``PATH+PATH=VALUES``
+gives several entries the same value. What is put into the tables of the file is what a person would
+have written there, so that all rules of the file apply.
 """
 
 from __future__ import annotations
 
+import csv
+import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
 
 from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.scene.paths import Keys, Tables, changed, entries, entry, keys_of, label_of
@@ -21,9 +26,8 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S
 Owner = Callable[[str], tuple[str, str]]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Entry(Span):
-    """One entry of a file that varies.
+class Place(NamedTuple):
+    """Where an entry stands.
 
     Attributes
     ----------
@@ -33,6 +37,27 @@ class Entry(Span):
         Within that file.
     keys : tuple of str and int
         Where in the tables of the file as it is.
+    """
+
+    file: str
+    path: str
+    keys: Keys
+
+    @property
+    def label(self) -> str:
+        """The path with the name of its file."""
+        return f"{self.file}.{self.path}".removeprefix(".")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry(Span):
+    """One entry of a file that varies, or several with one value.
+
+    Attributes
+    ----------
+    places : tuple of Place
+    there : object
+        What the file holds at the first of them.
     unit : str
         Of the values of a range, as the user wrote it; empty of plain numbers.
     whole : bool
@@ -41,15 +66,28 @@ class Entry(Span):
         What is put in of a list, whose `values` count from 0; empty of a range.
     """
 
-    file: str
-    path: str
-    keys: Keys
+    places: tuple[Place, ...]
+    there: object = None
     unit: str = ""
     whole: bool = False
     words: tuple[str | float | bool, ...] = ()
 
+    @property
+    def file(self) -> str:
+        """Which of several files holds the first of them."""
+        return self.places[0].file
+
+    @property
+    def keys(self) -> Keys:
+        """Where that is in the tables of its file."""
+        return self.places[0].keys
+
+    def is_in(self, file: str) -> bool:
+        """Tell whether any of them stands in a file."""
+        return any(place.file == file for place in self.places)
+
     def put(self, value: float) -> str | float | bool:
-        """Tables of a file with a value put in."""
+        """What is written into a file for a value."""
         if self.words:
             return self.words[int(value)]
         plain = (self.whole or self.unit) and value == int(value) and abs(value) < 1e15
@@ -67,9 +105,13 @@ class Entry(Span):
         """True where every value is a number."""
         return all(in_si(word) is not None for word in self.words)
 
-    def told(self, value: float) -> str | float:
-        """A value as a row tells it: SI, or a text of a list that has any."""
-        put = self.put(value)
+    def told(self, value: float) -> str | float | None:
+        """A value as a row tells it: SI, or a text of a list that has any; that of the file where the
+        value is none.
+        """
+        put = self.there if math.isnan(value) else self.put(value)
+        if put is None or isinstance(put, (list, Mapping)):
+            return None
         number = in_si(put) if self.numeric else None
         return number if number is not None else str(put)
 
@@ -98,27 +140,170 @@ def entries_of(
             raise SolidgearError(
                 f'--vary {text}: write PATH=VALUES, such as "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"'
             )
-        file, within = owner(path.strip())
-        tables = files[file]
         try:
-            keys = keys_of(within, tables)
-            own = label_of(keys, tables)
-            label = f"{file}.{own}".removeprefix(".")
-            values = _listed(spec, entry(keys, tables)) if ":" not in spec else _range(spec)
+            places = _places(path.strip(), files, owner)
+            there = entry(places[0].keys, files[places[0].file])
+            values = _listed(spec.split(","), there) if ":" not in spec else _range(spec)
         except SceneError as error:
             raise SolidgearError(f"--vary {text}: {error}") from None
-        if any((one.file, one.keys) == (file, keys) for one in out):
-            raise SolidgearError(
-                f"--vary {text}: {label} is varied already; give all its values in one list"
-            )
-        out.append(Entry(label=label, file=file, path=own, keys=keys, **values))
+        made = Entry(
+            label="+".join(one.label for one in places), places=places, there=there, **values
+        )
+        _once(f"--vary {text}", [*out, made])
+        out.append(made)
     return tuple(out)
 
 
-def put_in(tables: Tables, varied: Sequence[Entry], row: Sequence[float]) -> Tables:
-    """Tables of a file, or of one like it, with a value of each entry put in."""
+def entries_of_table(
+    path: Path, files: Mapping[str, Tables], owner: Owner
+) -> tuple[tuple[Entry, ...], list[list[float]]]:
+    """Entries that a table of one's own varies, and the values of its rows.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV file: paths as heads, a variant a row, what is to be written into the file in its
+        cells; an empty one leaves an entry as it is.
+
+    Raises
+    ------
+    SolidgearError
+        A file that cannot be read, has no rows, or a head as :func:`entries_of`.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            heads, *rows = [row for row in csv.reader(file) if any(map(str.strip, row))] or [[]]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SolidgearError(f"--table {path}: cannot be read ({error})") from None
+    if not heads or not rows:
+        raise SolidgearError(
+            f"--table {path}: has no variants; write paths as heads and a variant a row"
+        )
+    out: list[Entry] = []
+    columns: list[list[float]] = []
+    for k, head in enumerate(heads):
+        try:
+            places = _places(head.strip(), files, owner)
+            there = entry(places[0].keys, files[places[0].file])
+        except SceneError as error:
+            raise SolidgearError(f"--table {path}: {head}: {error}") from None
+        cells = [row[k].strip() if k < len(row) else "" for row in rows]
+        listed = _listed([cell for cell in cells if cell], there)
+        words, texts = listed["words"], isinstance(there, str) and in_si(there) is None
+        label = "+".join(one.label for one in places)
+        out.append(Entry(label=label, places=places, there=there, **listed))
+        _once(f"--table {path}", out)
+        columns.append(
+            [float(words.index(_word(cell, texts))) if cell else math.nan for cell in cells]
+        )
+    return tuple(out), [list(row) for row in zip(*columns)]
+
+
+def _places(path: str, files: Mapping[str, Tables], owner: Owner) -> tuple[Place, ...]:
+    """Places that a path stands for, or several with a plus between them."""
+
+    def place(path: str) -> Place:
+        file, within = owner(path)
+        keys = keys_of(within, files[file])
+        return Place(file, label_of(keys, files[file]), keys)
+
+    if "+" not in path or _holds(path, files, owner):
+        return (place(path),)
+    return tuple(place(part.strip()) for part in path.split("+"))
+
+
+def _holds(path: str, files: Mapping[str, Tables], owner: Owner) -> bool:
+    """Tell whether a file holds an entry of that path: names may have a plus."""
+    try:
+        file, within = owner(path)
+        return entry(keys_of(within, files[file]), files[file]) is not None
+    except SolidgearError:
+        return False
+
+
+def _once(where: str, varied: Sequence[Entry]) -> None:
+    """Refuse an entry that varies twice."""
+    seen: set[tuple[str, Keys]] = set()
+    for place in (place for one in varied for place in one.places):
+        if (place.file, place.keys) in seen:
+            raise SolidgearError(
+                f"{where}: {place.label} is varied already; give all its values in one list"
+            )
+        seen.add((place.file, place.keys))
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A sum of entries of one file that stays what it is in the file: the last of them gives way.
+
+    Attributes
+    ----------
+    places : tuple of Place
+        The one that gives way last.
+    total : float
+        SI.
+    """
+
+    places: tuple[Place, ...]
+    total: float
+
+    @property
+    def label(self) -> str:
+        """Path of the entry that gives way."""
+        return self.places[-1].label
+
+    def left(self, tables: Tables) -> float:
+        """What is left for the last entry, SI."""
+        left = self.total - sum(_number_at(place, tables) for place in self.places[:-1])
+        return float(f"{left:.12g}")
+
+    def put(self, tables: Tables) -> Tables:
+        """Tables with the last entry given what is left."""
+        return changed(tables, keys_of(self.places[-1].path, tables), self.left(tables))
+
+
+def kept_of(
+    texts: Iterable[str], files: Mapping[str, Tables], owner: Owner, varied: Sequence[Entry]
+) -> tuple[Kept, ...]:
+    """Read all ``PATH+PATH`` texts of sums that are kept.
+
+    Raises
+    ------
+    SolidgearError
+        Fewer than two entries, of more than one file, no numbers, or none or all of them vary.
+    """
+    out = []
+    moved = {(place.file, place.keys) for one in varied for place in one.places}
+    for text in texts:
+        try:
+            places = _places(text.strip(), files, owner)
+            numbers = [_number_at(place, files[place.file]) for place in places]
+        except SceneError as error:
+            raise SolidgearError(f"--keep-sum {text}: {error}") from None
+        free = [place for place in places if (place.file, place.keys) not in moved]
+        if len(places) < 2 or len({place.file for place in places}) > 1 or len(free) != 1:
+            raise SolidgearError(
+                f"--keep-sum {text}: write entries of one file with + between them, such as "
+                "segment.a.length+segment.b.length, all but one of which vary; that one gives way"
+            )
+        fixed = [place for place in places if place not in free]
+        out.append(Kept((*fixed, *free), sum(numbers)))
+    return tuple(out)
+
+
+def _number_at(place: Place, tables: Tables) -> float:
+    value = in_si(entry(keys_of(place.path, tables), tables))
+    if value is None:
+        raise SceneError("is no number in the file, or has no unit that is known", field=place.path)
+    return value
+
+
+def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[float]) -> Tables:
+    """Tables of a file, or of one that takes its place, with the values of its entries put in."""
     for one, value in zip(varied, row):
-        tables = changed(tables, keys_of(one.path, tables), one.put(value))
+        for place in one.places:
+            if place.file == file and not math.isnan(value):
+                tables = changed(tables, keys_of(place.path, tables), one.put(value))
     return tables
 
 
@@ -136,7 +321,7 @@ def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
     return f"{said}{unknown}{hint}" if hint else error.sentence
 
 
-def in_si(value: str | float | bool) -> float | None:
+def in_si(value: object) -> float | None:
     """A number, or a text with a unit, in SI; None for what is neither.
 
     Examples
@@ -144,10 +329,10 @@ def in_si(value: str | float | bool) -> float | None:
     >>> in_si("20 mm"), in_si("3000 rpm") == in_si("50 Hz"), in_si("concave"), in_si(20)
     (0.02, False, None, 20.0)
     """
-    if isinstance(value, bool):
-        return None
-    if not isinstance(value, str):
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)
+    if not isinstance(value, str):
+        return None
     if not (found := _amount(value)) or not found[2]:
         return None
     for dimension in DIMENSIONS:
@@ -189,12 +374,12 @@ def _range(spec: str) -> dict:
     return fields | {"whole": whole}
 
 
-def _listed(spec: str, there: object) -> dict:
+def _listed(cells: Iterable[str], there: object) -> dict:
     """Fields of an entry with a list of values; what the file holds there says whether a number is
     a text.
     """
     texts = isinstance(there, str) and in_si(there) is None
-    words = tuple(dict.fromkeys(_word(part.strip(), texts) for part in spec.split(",")))
+    words = tuple(dict.fromkeys(_word(part.strip(), texts) for part in cells))
     return {"words": words, "values": tuple(map(float, range(len(words)))), "spacing": "list"}
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,8 +42,8 @@ class Summary:
         left to do.
     seconds_once, seconds_each : float
         Wall seconds for body and reduction, and per variant of this run.
-    why : str
-        Why the first of the refused ones is none; empty if none is refused.
+    whys : dict of str to int
+        Why variants are refused, and how many for that reason, of this run.
     repairs : tuple of str
         What was found damaged in the files and how it was mended, a sentence each.
     settling : str
@@ -60,7 +61,7 @@ class Summary:
     seconds_once: float = 0.0
     seconds_each: float = 0.0
     repairs: tuple[str, ...] = ()
-    why: str = ""
+    whys: dict[str, int] = field(default_factory=dict)
     settling: str = ""
 
 
@@ -165,25 +166,24 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
         solver.settle(range(total)[:: max(1, total // PROBES)])
         file.basis = solver.task.reduced.level
     once, start = time.perf_counter() - start, time.perf_counter()
-    refused, full, why = 0, 0, ""
+    full, whys = 0, Counter[str]()
     size = max(1, min(50, len(todo) // (4 * jobs)))
     for rows in team(lambda: solver.task, [todo[i : i + size] for i in range(0, len(todo), size)]):
         rows = [solver.repaired(row) for row in rows]
         file.append(rows)
-        whys = [row["status"] for row in rows if row["status"] != "ok"]
-        refused, why = refused + len(whys), why or next(iter(whys), "")
+        whys.update(row["status"] for row in rows if row["status"] != "ok")
         full += sum(row["how"] == "full" for row in rows)
         progress(len(file.done), total, "solving")
     return replace(
         found,
-        refused=refused,
+        refused=whys.total(),
         full=full,
         unknowns=body.size,
         seats=seats,
         basis=solver.task.largest.size,
         seconds_once=once,
         seconds_each=(time.perf_counter() - start) / len(todo),
-        why=why,
+        whys=dict(whys),
     )
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,21 +12,20 @@ from solidgear.errors import SolidgearError, nearest, show
 from solidgear.models.limits import number
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SIDES, Train
-from solidgear.studies.sweep.curves import Curves, curves, varied_number
-from solidgear.studies.sweep.rows import RowFile, tell_in_log
+from solidgear.studies.sweep.curves import Curves, chartable, curves_of
+from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.file_variants import OWN, plain
+from solidgear.studies.sweep.rows import tell_in_log
+from solidgear.studies.sweep.running import Made, make_rows
 from solidgear.studies.sweep.train_task import ASKED, MOST_MODES, TrainTask
-from solidgear.studies.sweep.train_variants import OWN, TrainVariants, train_variants
-from solidgear.studies.sweep.workers import workers
+from solidgear.studies.sweep.train_variants import TrainVariants, train_variants
 from solidgear.studies.train.contact import contact
+from solidgear.studies.train.misalignment import measured_names
 from solidgear.studies.train.models import KEPT
 from solidgear.studies.train.shaft import checked_rung
 
 #: most natural frequencies of a row
 MOST_SHAPES = 200
-#: rows that curves are made of
-MOST_CURVED = 5000
-#: variants that are sent to another process at once
-SENT = 8
 
 
 @dataclass(frozen=True)
@@ -38,8 +36,8 @@ class TrainSummary:
     ----------
     total, skipped, refused : int
         Variants; of these: rows that were there before, and refused ones.
-    why : str
-        Why the first of the refused ones is none; empty if none is refused.
+    whys : dict of str to int
+        Why variants are refused, and how many for that reason.
     bodies : int or None
         Shafts that were meshed and reduced; None where other processes did.
     seconds : float
@@ -54,13 +52,15 @@ class TrainSummary:
         Of the train.
     cautions : tuple of str
         What does not fit together in it but can be solved, of the first variant.
+    columns : dict of str to list
+        Values of all rows.
     """
 
     path: Path
     total: int
     skipped: int
     refused: int = 0
-    why: str = ""
+    whys: dict[str, int] = field(default_factory=dict)
     bodies: int | None = 0
     seconds: float = 0.0
     cut: int = 0
@@ -68,11 +68,12 @@ class TrainSummary:
     curves: Curves | None = None
     title: str = ""
     cautions: tuple[str, ...] = ()
+    columns: dict[str, list[Any]] = field(default_factory=dict)
 
 
 def sweep_train(
     train: Path | str,
-    vary_texts: Iterable[str],
+    design: Design,
     out: Path | str,
     *,
     pinion: str = "harmonic",
@@ -82,8 +83,6 @@ def sweep_train(
     max_frequency: float | None = None,
     point: str | None = None,
     every_point: bool = False,
-    sample: int | None = None,
-    seed: int = 0,
     reduction: str = "rubin",
     kept: int = KEPT,
     local_harmonics: Sequence[int] = (),
@@ -102,10 +101,10 @@ def sweep_train(
     ----------
     train : path
         Of the train file.
-    vary_texts : iterable of str
-        ``PATH=VALUES``, see :mod:`solidgear.studies.sweep.entries`: any number or word of the train
-        file, or of the scene of a side, such as ``pinion.bearing.2.position=140 mm:160 mm:5``. The
-        change is made to the tables of the file, and every rule of the file applies.
+    design : Design
+        Entries that vary: any number or word of the train file, or of the scene of a side, such as
+        ``pinion.bearing.2.position=140 mm:160 mm:5``. The change is made to the tables of the file,
+        and every rule of the file applies.
     out : path
         ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
         again.
@@ -122,8 +121,6 @@ def sweep_train(
         that varies.
     every_point : bool
         A row for each operating point of the file.
-    sample, seed : int, optional
-        Draw so many points of a Latin hypercube instead of taking all combinations.
     reduction, kept, settings
         As of :class:`solidgear.studies.train.models.Workshop`.
     local_harmonics : sequence of int
@@ -152,8 +149,8 @@ def sweep_train(
     --------
     >>> import tempfile
     >>> out = Path(tempfile.mkdtemp()) / "rows.csv"
-    >>> vary = ["mesh.stiffness=2e8 N/m:3e8 N/m:3"]
-    >>> found = sweep_train("geometry/axle_overhung.toml", vary, out, pinion="euler", gear="rigid")
+    >>> design = Design(("mesh.stiffness=2e8 N/m:3e8 N/m:3",))
+    >>> found = sweep_train("geometry/axle_overhung.toml", design, out, pinion="euler", gear="rigid")
     >>> found.total, found.refused, found.bodies  # the gear's is a harmonic solid, for its mass
     (3, 0, 2)
     """
@@ -164,46 +161,38 @@ def sweep_train(
     if n is not None:
         number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     number("sweep", "jobs", jobs, least=1, whole=True)
-    variants = train_variants(
-        Path(train), vary_texts, count=sample, seed=seed, point=point, every_point=every_point
-    )
+    variants = train_variants(Path(train), design, point=point, every_point=every_point)
     if local_harmonics:
         variants = variants.with_entry(OWN, ("mesh", "local_harmonics"), list(local_harmonics))
     if charted:
-        varied_number(variants.entries)
-        if len(variants) > MOST_CURVED:
-            raise SolidgearError(
-                f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
-            )
+        chartable(variants)
     how = reduction, kept, dict(settings or {})
     task = TrainTask(variants, pinion, gear, asked, n, max_frequency, *how)
-    team = workers(jobs, dask)
     first = variants.first_sound()
     usual = variants.train(first)
-    columns = task.columns(usual)
-    plan = _plan(task, first, usual, sample, seed)
-    repairs: list[str] = []
-
-    def mended(text: str) -> None:
-        repairs.append(text)
-        tell(text)
-
-    total = len(variants)
-    with RowFile(Path(out), columns, plan, total, overwrite, mended) as file:
-        found = TrainSummary(file.path, total, len(file.done), title=usual.title or usual.name)
-        found = replace(found, cautions=contact(usual).cautions)
-        todo = variants.in_turn(k for k in range(total) if k not in file.done)
-        progress(len(file.done), total, "solving")
-        size = 1 if jobs == 1 and dask is None else max(1, min(SENT, len(todo) // (4 * jobs)))
-        parts = [todo[k : k + size] for k in range(0, len(todo), size)]
-        for rows in team(lambda: task, parts):
-            file.append(rows)
-            progress(len(file.done), total, "solving")
-        file.finish()
-        found = _counted(found, file.by_column(), task, usual)
-    bodies = task.bench.made if jobs == 1 and dask is None else None
-    seconds = time.perf_counter() - start
-    return replace(found, bodies=bodies, seconds=seconds, repairs=tuple(repairs))
+    made = make_rows(
+        task,
+        len(variants),
+        Path(out),
+        task.columns(usual),
+        _plan(task, first, usual, design),
+        variants.in_turn,
+        jobs=jobs,
+        dask=dask,
+        overwrite=overwrite,
+        progress=progress,
+        tell=tell,
+    )
+    found = TrainSummary(made.path, len(variants), made.skipped, title=usual.title or usual.name)
+    found = _counted(found, made, task, usual)
+    return replace(
+        found,
+        cautions=contact(usual).cautions,
+        bodies=task.bench.made if jobs == 1 and dask is None else None,
+        seconds=time.perf_counter() - start,
+        repairs=made.repairs,
+        columns=made.columns,
+    )
 
 
 def _asked(ask: Iterable[str]) -> tuple[str, ...]:
@@ -220,28 +209,22 @@ def _asked(ask: Iterable[str]) -> tuple[str, ...]:
     return tuple(word for word in ASKED if word in given)
 
 
-def _counted(
-    found: TrainSummary, columns: dict[str, list[Any]], task: TrainTask, usual: Train
-) -> TrainSummary:
+def _counted(found: TrainSummary, made: Made, task: TrainTask, usual: Train) -> TrainSummary:
     """The account of all rows, and their curves where one number varies."""
-    whys = [status for status in columns["status"] if status != "ok"]
-    widest = max((count for count in columns.get("modes", []) if count), default=0)
-    drawn = None
-    if found.total <= MOST_CURVED:
-        with suppress(SolidgearError):
-            drawn = curves(columns, varied_number(task.variants.entries), usual)
+    widest = max((count for count in made.columns.get("modes", []) if count), default=0)
+    drawn = curves_of(made.columns, task.variants, measured_names(usual))
     cut = max(0, widest - MOST_MODES) if task.n is None else 0
-    return replace(found, refused=len(whys), why=next(iter(whys), ""), cut=cut, curves=drawn)
+    return replace(
+        found, refused=sum(made.refusals.values()), whys=made.refusals, cut=cut, curves=drawn
+    )
 
 
-def _plan(
-    task: TrainTask, first: int, usual: Train, sample: int | None, seed: int
-) -> dict[str, Any]:
+def _plan(task: TrainTask, first: int, usual: Train, design: Design) -> dict[str, Any]:
     """Facts that rows depend on, by the files of one variant."""
     from solidgear import __version__
 
     variants = task.variants
-    files = {name or "train": _plain(t) for name, t in variants.tables(first).items()}
+    files = {name or "train": plain(t) for name, t in variants.tables(first).items()}
     # what these files name
     cells = [cell.model_dump() for cell in usual.mesh.contact_cells]
     parts = [usual.member(side).scene.body for side in SIDES]
@@ -250,18 +233,15 @@ def _plan(
     return {
         **files,
         **named,
-        "scenes": {word: _plain(tables) for word, tables in _in_turn(variants)},
-        "vary": {
-            one.label: [one.spacing, one.unit, *(one.words or one.values)]
-            for one in variants.entries
-        },
+        "scenes": {word: plain(tables) for word, tables in _in_turn(variants)},
+        "vary": variants.plan,
         "point": variants.point,
-        "sample": None if sample is None else {"points": sample, "seed": seed},
+        "sample": design.plan,
         "models": [task.pinion, task.gear],
         "n": task.n,
         "max_frequency": task.max_frequency,
         "reduction": [task.reduction, task.kept],
-        "set": _plain(settings),
+        "set": plain(settings),
         "version": __version__,
     }
 
@@ -272,12 +252,3 @@ def _in_turn(variants: TrainVariants) -> Iterator[tuple[str, Any]]:
         if one.file == OWN and one.keys[-1] == "scene":
             for word in one.words:
                 yield str(word), parse(str(variants.path.parent / str(word)))
-
-
-def _plain(data: Any) -> Any:
-    """Data for JSON, without what no number depends on."""
-    if isinstance(data, Mapping):
-        return {k: _plain(v) for k, v in data.items() if k not in ("title", "source", "note")}
-    if isinstance(data, (list, tuple)):
-        return [_plain(one) for one in data]
-    return data if isinstance(data, (str, int, float, type(None))) else str(data)

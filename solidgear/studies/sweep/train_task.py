@@ -73,7 +73,7 @@ class TrainTask:
     def columns(self, train: Train) -> dict[str, type]:
         """Names and types of the columns of a row of such a train, in order."""
         out: dict[str, type] = {"variant": int}
-        out |= {one.label: float if one.numeric else str for one in self.variants.entries}
+        out |= self.variants.columns
         out["status"] = str
         if train.operation:
             out |= {"torque": float, "mesh_force": float}
@@ -107,8 +107,7 @@ class TrainTask:
             if {MODES, RESPONSE} & {*self.ask}:
                 found |= self._moving(at)
         except SolidgearError as error:
-            told = str(self.variants.located(error, index))
-            return row | {"status": " ".join(told.split())}
+            return row | {"status": self.variants.status(error, index)}
         return row | {"status": "ok"} | found
 
     # ------------------------------------------------------------------------------ at rest

@@ -9,61 +9,43 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.bearings.solved import solved
-from solidgear.errors import SceneError, SolidgearError, listed
+from solidgear.errors import SolidgearError, listed
 from solidgear.scene import Scene
-from solidgear.scene.file import KEYS, scene_of
+from solidgear.scene.file import KEYS
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.paths import Keys, Tables, changed
+from solidgear.scene.paths import Keys, Tables
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SIDES, Train
 from solidgear.scene.train_file import train_of
-from solidgear.studies.loading import explained, part_of, shaft
-from solidgear.studies.sweep.entries import Entry, entries_of, hinted, put_in
-from solidgear.studies.sweep.vary import product, sample
+from solidgear.studies.loading import scene_of
+from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.entries import Entry, Place
+from solidgear.studies.sweep.file_variants import OWN, POINT, FileVariants
 from solidgear.studies.train.contact import contact
 from solidgear.studies.train.operation import named_point
 
-#: name of the train's own file among those of its shafts
-OWN = ""
-#: table of operating points, and the label of those of a file where each has a row
-OPERATION, POINT = "operation", "point"
-#: variants that are looked at for one that the rules of the files let pass
-LOOKED = 2000
+#: table of operating points
+OPERATION = "operation"
 #: scenes that are kept
 KEPT = 500
 
 
 @dataclass(frozen=True)
-class TrainVariants:
+class TrainVariants(FileVariants):
     """Points of a sweep of a train.
 
     Attributes
     ----------
-    path : Path
-        Of the train file.
     files : mapping of str to mapping
         Tables by side, those of the train by an empty name.
     entries : tuple of Entry
         What varies; the last may be the operating points of the file.
-    values : (n, len(entries)) ndarray
     point : str or None
         Operating point that is looked at, by its name or number; the first by default.
     """
 
-    path: Path
-    files: Mapping[str, Tables]
-    entries: tuple[Entry, ...]
-    values: np.ndarray
     point: str | None = None
     _scenes: dict[tuple, Scene] = field(default_factory=dict, repr=False, compare=False)
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def told(self, index: int) -> dict[str, str | float]:
-        """Values that vary, by their labels."""
-        return {one.label: one.told(v) for one, v in zip(self.entries, self.values[index].tolist())}
 
     def train(self, index: int) -> Train:
         """Train of one variant as it would be read from its files: bearings that settle with it have
@@ -74,7 +56,7 @@ class TrainVariants:
         SceneError
             If files with these values would be refused.
         """
-        return self._read(self.entries, self.values[index].tolist())
+        return self.read(self.entries, self.values[index].tolist())
 
     def at(self, index: int, train: Train) -> OperatingPoint | None:
         """Operating point at which a variant is looked at; None of a train without any."""
@@ -86,7 +68,7 @@ class TrainVariants:
 
     def beside_operation(self, index: int) -> tuple[float, ...]:
         """Values of all that is no operating point."""
-        row = self.values[index].tolist()
+        row = _ranked(self.values[index]).tolist()
         return tuple(v for one, v in zip(self.entries, row) if not _of_operation(one))
 
     def in_turn(self, numbers: Iterable[int]) -> list[int]:
@@ -96,97 +78,48 @@ class TrainVariants:
         dear = {side: k for k, side in enumerate((*SIDES, OWN))}
         ranks = [len(dear) if _of_operation(one) else dear[one.file] for one in self.entries]
         order = np.argsort(ranks, kind="stable")
-        return sorted(numbers, key=lambda k: (*self.values[k, order].tolist(), k))
+        return sorted(numbers, key=lambda k: (*_ranked(self.values[k, order]).tolist(), k))
 
-    def first_sound(self) -> int:
-        """Number of the first variant that the rules of the files let pass.
-
-        Raises
-        ------
-        SolidgearError
-            If there is none, with the entry that is refused whatever its value, if there is one.
-        """
-        refusal: Exception | None = None
-        for index in dict.fromkeys(np.linspace(0, len(self) - 1, LOOKED).astype(int).tolist()):
-            try:
-                train = self.train(index)
-                self.at(index, train)
-                contact(train)
-                return index
-            except SolidgearError as error:
-                refusal = refusal or self.located(error, index)
-        for one in self.entries:
-            self._refuse_whatever_its_value(one)
-        raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
-
-    def _refuse_whatever_its_value(self, one: Entry) -> None:
-        first: SceneError | None = None
-        for value in one.values if one.label != POINT else ():
-            try:
-                self._read((one,), (value,))
-                return
-            except SceneError as error:
-                own = [found for found in error.problems if _meets(found.path, one.keys)]
-                if not own:
-                    return
-                first = first or own[0]
-        if first is not None:
-            raise SolidgearError(f"--vary {one.label}: {hinted(first, one.label, self.files)}")
+    def tried(self, index: int) -> None:
+        """Read a variant; SceneError if files with these values would be refused."""
+        train = self.train(index)
+        self.at(index, train)
+        contact(train)
 
     def with_entry(self, file: str, keys: Keys, value: Any) -> TrainVariants:
         """The same with an entry of a file replaced in all of them."""
-        files = {**self.files, file: changed(self.files[file], keys, value)}
-        return replace(self, files=files, _scenes={})
+        return replace(super().with_entry(file, keys, value), _scenes={})
 
-    def located(self, error: SolidgearError, index: int) -> SolidgearError:
-        """An error of one variant told with the key and the value of the train's file."""
-        if not isinstance(error, SceneError) or error.where:
-            return error
-        return error.located(self.tables(index)[OWN], where=str(self.path))
-
-    def tables(self, index: int) -> dict[str, Tables]:
-        """Tables of all files of one variant, by their names."""
-        row = self.values[index].tolist()
-        return {name: self._put(name, self.files[name], self.entries, row) for name in self.files}
-
-    @staticmethod
-    def _put(name: str, tables: Tables, varied: Sequence[Entry], row: Sequence[float]) -> Tables:
-        own = [p for p in zip(varied, row) if p[0].file == name and p[0].label != POINT]
-        return put_in(tables, *zip(*own)) if own else tables
-
-    def _read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
+    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
         def of_side(side: str, path: Path, alone: bool) -> Scene:
-            key = (side, str(path), alone, *(v for one, v in zip(varied, row) if one.file == side))
+            key = (
+                side,
+                str(path),
+                alone,
+                *(repr(v) for one, v in zip(varied, row) if one.is_in(side)),
+            )
             if key not in self._scenes:
                 if len(self._scenes) >= KEPT:
                     self._scenes.clear()
                 usual = path == self.path.parent / str(self.files[OWN][side]["scene"])
-                tables = self.files[side] if usual else parse(str(path))
-                self._scenes[key] = _scene(self._put(side, tables, varied, row), str(path), alone)
+                tables = self.put(side, varied, row, None if usual else parse(str(path)))
+                self._scenes[key] = scene_of(tables, path, alone)
             return self._scenes[key]
 
-        own = self._put(OWN, self.files[OWN], varied, row)
+        own = self.put(OWN, varied, row)
         return train_of(own, str(self.path), of_side)
 
 
 def train_variants(
-    path: Path,
-    texts: Iterable[str],
-    *,
-    count: int | None = None,
-    seed: int = 0,
-    point: str | None = None,
-    every_point: bool = False,
+    path: Path, design: Design, *, point: str | None = None, every_point: bool = False
 ) -> TrainVariants:
-    """Points of a sweep: all combinations of ``PATH=VALUES`` texts, or a sample of them.
+    """Points of a sweep of a train.
 
     Parameters
     ----------
     path : Path
         Of the train file.
-    texts : iterable of str
-    count, seed : int, optional
-        Of the sample.
+    design : Design
     point : str, optional
         Operating point that is looked at; the first by default, or the one that varies.
     every_point : bool
@@ -199,15 +132,15 @@ def train_variants(
     """
     own = parse(str(path))
     files = {OWN: own} | {side: _side(path, own, side) for side in SIDES}
-    varied = entries_of(texts, files, _owner)
-    if every_point:
-        varied += (_every_point(own, varied, point),)
-    if not varied:
-        raise SolidgearError(
-            'nothing is varied; give for example --vary "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"'
-        )
-    values = product(varied) if count is None else sample(varied, count, seed)
-    return TrainVariants(path, files, varied, values, point or _varied_point(own, varied))
+
+    def points(varied: tuple[Entry, ...]) -> tuple[Entry, ...]:
+        return (_every_point(own, varied, point),) if every_point else ()
+
+    varied, values, kept = design.points(
+        files, _owner, points, example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5"
+    )
+    at = point or _varied_point(own, varied)
+    return TrainVariants(path, files, varied, values, kept, at)
 
 
 def _side(path: Path, own: Tables, side: str) -> Tables:
@@ -250,9 +183,7 @@ def _every_point(own: Tables, varied: Sequence[Entry], point: str | None) -> Ent
     values = tuple(map(float, range(len(points))))
     return Entry(
         label=POINT,
-        file=OWN,
-        path=OPERATION,
-        keys=(OPERATION,),
+        places=(Place(OWN, OPERATION, (OPERATION,)),),
         values=values,
         spacing="list",
         words=tuple(names),
@@ -277,16 +208,6 @@ def _of_operation(one: Entry) -> bool:
     return one.file == OWN and one.keys[0] == OPERATION
 
 
-def _meets(path: tuple, keys: tuple) -> bool:
-    """True where a problem is of an entry, of what lies in it or of a table that it was put in."""
-    shared = min(len(path), len(keys))
-    return shared > 0 and path[:shared] == keys[:shared]
-
-
-def _scene(tables: Tables, where: str, alone: bool) -> Scene:
-    """Scene of a shaft: settled by itself, or to be settled with its train."""
-    scene = scene_of(dict(tables), where, part_of)
-    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
-        return scene
-    with explained(where, tables):
-        return solved(scene, shaft(scene)).scene
+def _ranked(values: np.ndarray) -> np.ndarray:
+    """Values that can be compared: what stays as it is in the file before all others."""
+    return np.where(np.isnan(values), -np.inf, values)

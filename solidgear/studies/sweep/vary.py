@@ -16,6 +16,7 @@ or a plain SI number.
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -102,6 +103,33 @@ class Axis(Span):
     def only_listed(self) -> bool:
         """Positions as well, because every seat is meshed."""
         return super().only_listed or self.field == "position"
+
+
+#: an entry of a bearing's own 6x6 as the file has it
+_IN_FILE = re.compile(r"(bearing\..+|bearing)\.stiffness\.(k\w+)")
+
+
+def of_bearings_alone(texts: Iterable[str]) -> list[str] | None:
+    """Texts that vary springs and positions of bearings alone, in the words of :func:`axes`; None
+    where one of them varies something else.
+
+    Examples
+    --------
+    >>> of_bearings_alone(["bearing.A.stiffness.kxx=1e8,2e8", "housing.kzz=1e8,2e8"])
+    ['bearing.A.kxx=1e8,2e8', 'housing.kzz=1e8,2e8']
+    >>> of_bearings_alone(["segment.neck.diameter=30 mm,40 mm"]) is None
+    True
+    """
+    out = []
+    for text in texts:
+        target, equals, spec = text.partition("=")
+        target = _IN_FILE.sub(r"\1.\2", target.strip())
+        head, _, field = target.rpartition(".")
+        of_them = head == HOUSING or head.startswith("bearing.")
+        if not of_them or field not in (*FIELDS, "axial"):
+            return None
+        out.append(f"{target}{equals}{spec}")
+    return out
 
 
 def axes(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:

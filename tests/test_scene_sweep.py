@@ -1,0 +1,126 @@
+"""Sweeps over any entry of a scene: what is changed, solved and told."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli.app import app
+from solidgear.studies.sweep.vary import of_bearings_alone
+
+SHAFT = "geometry/shaft_stepped.toml"
+BEAM = {"model": "timoshenko", "n": 2}
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["sweep", *map(str, arguments)])
+
+
+def by_hand(tmp_path, *changes):
+    """The same file with texts replaced, as a person would."""
+    text = open(SHAFT, encoding="utf-8").read()
+    for old, new in changes:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    path = tmp_path / "by_hand.toml"
+    path.write_text(text, encoding="utf-8")
+    return sg.load(path)
+
+
+def test_a_row_is_what_the_file_changed_by_hand_gives(tmp_path):
+    rows = sg.sweep(SHAFT, "segment.left.diameter=52 mm,54 mm", **BEAM)
+    scene = by_hand(tmp_path, ('diameter = "50 mm"', 'diameter = "54 mm"'))
+    body = sg.build(scene, "timoshenko")
+    statics = sg.condense(body, scene, scene.port.name)
+    assert rows["C_zz"][1] == pytest.approx(statics.compliance[2, 2], rel=1e-12)
+    assert rows["f1_hz"][1] == pytest.approx(sg.modes(body, scene, n=2).frequency_hz[-2], rel=1e-9)
+
+
+def test_a_bar_holds_what_a_tighter_tolerance_changes():
+    vary = "bearing.A.seat_width=20 mm"
+    loose, tight = (sg.sweep(SHAFT, vary, tolerance=tol, n=2) for tol in (0.05, 1e-3))
+    for name in ("C_zz", "f1_hz", "f2_hz"):
+        off = abs(loose[name] - tight[name])
+        assert off <= loose[f"{name} bar"] + tight[f"{name} bar"]
+        assert tight[f"{name} bar"] < 0.1 * loose[f"{name} bar"]
+
+
+def test_entries_with_a_plus_have_one_value_and_a_sum_is_kept():
+    both = "segment.left.diameter+segment.right.diameter=48 mm:52 mm:3"
+    rows = sg.sweep(SHAFT, both, **BEAM)
+    assert rows.varied == ("segment.left.diameter+segment.right.diameter",)
+    alone = sg.sweep(SHAFT, ["segment.left.diameter=52 mm", "segment.right.diameter=52 mm"], **BEAM)
+    assert rows["f1_hz"][2] == alone["f1_hz"][0]
+    kept = sg.sweep(
+        SHAFT,
+        "segment.left.length=110 mm,130 mm",
+        keep_sum=["segment.left.length+segment.middle.length"],
+        **BEAM,
+    )
+    assert kept["segment.middle.length"] == pytest.approx([0.17, 0.15], rel=1e-12)
+
+
+def test_one_at_a_time_begins_with_the_file_and_leaves_the_others_as_they_are():
+    vary = ["segment.left.diameter=45 mm,55 mm", "segment.middle.diameter=90 mm"]
+    rows = sg.sweep(SHAFT, vary, one_at_a_time=True, **BEAM)
+    assert len(rows) == 4
+    assert rows["segment.left.diameter"].tolist() == [0.05, 0.045, 0.055, 0.05]
+    assert rows["segment.middle.diameter"].tolist() == [0.08, 0.08, 0.08, 0.09]
+
+
+def test_a_table_of_ones_own_says_every_variant_and_an_empty_cell_leaves_the_file(tmp_path):
+    table = tmp_path / "mine.csv"
+    table.write_text("segment.left.diameter,bearing.A.seat_width\n52 mm,\n,20 mm\n-1 mm,\n")
+    rows = sg.sweep(SHAFT, table=table, **BEAM)
+    assert rows["segment.left.diameter"].tolist() == [0.052, 0.05, -0.001]
+    assert rows["bearing.A.seat_width"].tolist() == [0.025, 0.02, 0.025]
+    (why,) = rows.whys
+    assert "must be greater than zero" in why and math.isnan(rows["f1_hz"][2])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--vary", "segment.left.diamter=1 mm,2 mm"], "did you mean .segment.left.diameter"),
+        (["--vary", "segment.lef.diameter=1 mm,2 mm"], "there is no segment.lef"),
+        (["--vary", "segment.left.diameter=1 mm:2 s:3"], "is no known unit|1 mm:2 s:3"),
+        (
+            ["--vary", "segment.left.diameter=50 mm", "--keep-sum", "segment.left.length"],
+            "--keep-sum",
+        ),
+        (["--table", "nowhere.csv"], "nowhere.csv: cannot be read"),
+        (["--one-at-a-time"], "nothing is varied"),
+        (["--vary", "title=a,b", "--chart", "x.png"], "varies by words"),
+    ],
+)
+def test_bad_input_ends_in_a_sentence_and_leaves_nothing(tmp_path, arguments, said):
+    failed = run(SHAFT, "-o", tmp_path / "rows.csv", *arguments)
+    assert failed.exit_code == 1
+    with pytest.raises(sg.SolidgearError, match=said):
+        raise failed.exception
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_command_says_what_was_solved_and_why_variants_were_refused(tmp_path):
+    rows = tmp_path / "rows.csv"
+    vary = ("--vary", "segment.left.length=40 mm:60 mm:3", "-f", "timoshenko", "-o", rows)
+    told = " ".join(run(SHAFT, *vary).output.split())
+    assert "every variant is meshed and solved for itself. 3 variants" in told
+    assert "Refused:" in told and "across the step of the outer radius at 0.04 m" in told
+    with rows.open(newline="") as file:
+        assert [row["status"] == "ok" for row in csv.DictReader(file)] == [False, True, True]
+    assert "3 of them there before" in run(SHAFT, *vary).output
+
+
+def test_springs_alone_go_the_way_of_one_body(tmp_path):
+    assert of_bearings_alone(["bearing.A.stiffness.kzz=1e8,2e8"]) == ["bearing.A.kzz=1e8,2e8"]
+    assert of_bearings_alone(["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]) is None
+    told = run(
+        SHAFT, "--vary", "bearing.A.stiffness.kzz=1e8,2e8", "-f", "euler", "-o", tmp_path / "r.csv"
+    )
+    assert "one body does for all" in told.output
