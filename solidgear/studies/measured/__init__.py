@@ -1,0 +1,1 @@
+"""Measured resonances beside computed ones."""

@@ -1,0 +1,201 @@
+"""Measured resonances from a file: frequencies, how sure they are, and what is known of each.
+
+A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``.
+
+    title = "Tap test, hung on two cords"
+    uncertainty = "0.1 %"           # of all modes that say nothing else
+    mode = [
+        { frequency = "98.459 kHz", multiplicity = 2 },
+        { frequency = "121.2 kHz", uncertainty = "0.2 kHz", name = "torsion 1" },
+    ]
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from solidgear.errors import SceneError, show
+from solidgear.scene.toml_file import parse
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Frequency, quantity
+
+#: resonances of a file
+MOST = 2000
+#: head of a column: a word, and its unit in brackets
+_HEAD = re.compile(r"\s*(?P<word>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
+
+
+def _uncertainty(value: Any) -> tuple[float, str]:
+    """A share such as ``0.1 %`` or 0.001, or a frequency such as ``2 Hz``; and which of the two."""
+    if isinstance(value, tuple):  # read already
+        return value
+    try:
+        return quantity(value, "dimensionless"), "relative"
+    except SceneError:
+        return quantity(value, "frequency"), "Hz"
+
+
+def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
+    if not value[0] > 0:
+        raise SceneError(
+            'must be greater than zero: no frequency is known exactly; write for example "0.1 %"'
+        )
+    if value[1] == "relative" and value[0] >= 1:
+        raise SceneError('is more than all of the frequency; a number is a share, "0.1 %" is 0.001')
+    return value
+
+
+Uncertainty = Annotated[
+    tuple[float, str], BeforeValidator(_uncertainty), AfterValidator(_above_zero)
+]
+
+
+class MeasuredMode(Model):
+    """A measured resonance.
+
+    Attributes
+    ----------
+    frequency : float
+        Hz.
+    uncertainty : (float, {'relative', 'Hz'}) or None
+        One standard deviation.
+    multiplicity : int or None
+        1 for a single resonance, 2 for a pair at one frequency; None where nobody looked.
+    name : str
+        Of the mode where it is known, such as ``bending 1``, or only its family: ``bending``.
+    """
+
+    frequency: Frequency
+    uncertainty: Uncertainty | None = None
+    multiplicity: Annotated[int, Field(strict=True, ge=1, le=2)] | None = None
+    name: str = ""
+
+    @property
+    def width_hz(self) -> float | None:
+        """Its standard deviation, Hz."""
+        if self.uncertainty is None:
+            return None
+        value, kind = self.uncertainty
+        return value * self.frequency if kind == "relative" else value
+
+
+class Measured(Model):
+    """Measured resonances of a body.
+
+    Attributes
+    ----------
+    title, source : str
+    uncertainty : (float, {'relative', 'Hz'}) or None
+        Of all that say nothing else.
+    mode : tuple of MeasuredMode
+        By ascending frequency.
+    """
+
+    title: str = ""
+    source: str = ""
+    uncertainty: Uncertainty | None = None
+    mode: tuple[MeasuredMode, ...]
+
+    @model_validator(mode="after")
+    def _ascending(self) -> Measured:
+        if not 1 <= len(self.mode) <= MOST:
+            raise SceneError(f"holds {len(self.mode)} resonances; give 1 to {MOST}", path=("mode",))
+        for k, (one, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
+            if following.frequency < one.frequency:
+                raise SceneError(
+                    f"is below the one before it, {one.frequency:g} Hz: frequencies ascend",
+                    path=("mode", k, "frequency"),
+                    value=f"{following.frequency:g} Hz",
+                )
+        return self
+
+    @property
+    def modes(self) -> tuple[MeasuredMode, ...]:
+        """Resonances, each with the uncertainty of all where it has none of its own."""
+        return tuple(
+            one
+            if one.uncertainty is not None
+            else one.model_copy(update={"uncertainty": self.uncertainty})
+            for one in self.mode
+        )
+
+
+def load_measured(path: str | os.PathLike) -> Measured:
+    """Read measured resonances.
+
+    Parameters
+    ----------
+    path : str or path
+        ``.toml`` or ``.csv``.
+
+    Raises
+    ------
+    SceneError
+        The file, the entry, its value and what would be right.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "peaks.csv"
+    >>> _ = path.write_text("frequency [kHz],multiplicity\\n1.25,2\\n3.1,1\\n")
+    >>> [(one.frequency, one.multiplicity) for one in load_measured(path).modes]
+    [(1250.0, 2), (3100.0, 1)]
+    """
+    where = os.fspath(path)
+    tables: Mapping[str, Any] = _of_csv(Path(path)) if where.endswith(".csv") else parse(where)
+    try:
+        return Measured(**tables)
+    except SceneError as error:
+        raise error.located(tables, where=where) from None
+
+
+def _of_csv(path: Path) -> dict[str, Any]:
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError(f"cannot be read ({error})", where=os.fspath(path)) from None
+    if len(rows) < 2:
+        raise SceneError(
+            'holds no resonances; write a head such as "frequency [Hz]" and one a line',
+            where=os.fspath(path),
+        )
+    heads = [_head(path, head) for head in rows[0]]
+    if "frequency" not in [word for word, _ in heads]:
+        raise SceneError('has no column "frequency [Hz]"', where=os.fspath(path))
+    return {"mode": [_entry(heads, row) for row in rows[1:]]}
+
+
+def _head(path: Path, text: str) -> tuple[str, str]:
+    """Word and unit of a head."""
+    found = _HEAD.fullmatch(text)
+    known = tuple(MeasuredMode.model_fields)
+    if found is None or found["word"] not in known:
+        raise SceneError(
+            f"column {show(text)} is unknown; there are {', '.join(known)}, with a unit as in "
+            '"frequency [kHz]"',
+            where=os.fspath(path),
+        )
+    if found["word"] in ("frequency", "uncertainty") and not found["unit"]:
+        raise SceneError(
+            f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"',
+            where=os.fspath(path),
+        )
+    return found["word"], found["unit"] or ""
+
+
+def _entry(heads: Sequence[tuple[str, str]], row: Sequence[str]) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for (word, unit), cell in zip(heads, map(str.strip, row)):
+        if cell and unit:
+            out[word] = f"{cell} {unit}"
+        elif cell:
+            out[word] = int(cell) if cell.isdecimal() else cell
+    return out
