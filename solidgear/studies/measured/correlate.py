@@ -1,0 +1,283 @@
+"""Measured resonances beside those of a scene: which is which, how sure that is, and how far apart
+they are.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from solidgear.body.mode_names import ModeName
+from solidgear.display import Displayed
+from solidgear.scene import Scene
+from solidgear.studies.change import BarredMode
+from solidgear.studies.measured.alignment import Alignment, Peak, align
+from solidgear.studies.measured.computed import Computed, computed_up_to
+from solidgear.studies.measured.data import Measured, MeasuredMode
+
+#: a pair is sure from this probability on; below the second it is not told as a possibility
+SURE, POSSIBLE = 0.95, 0.05
+#: standard deviations of a measured frequency that count as its bar
+DEVIATIONS = 2.0
+#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing
+UNTOLD = 1e-4
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A measured resonance and the mode it is.
+
+    Attributes
+    ----------
+    number : int
+        Of the resonance in its file, from one.
+    computed : BarredMode or None
+        The likeliest mode; None where it is likelier that there is none.
+    probability : float
+        Of that.
+    others : tuple of (BarredMode, float)
+        Further modes that it may be, or be as well, with their probabilities.
+    """
+
+    number: int
+    measured: MeasuredMode
+    computed: BarredMode | None
+    probability: float
+    others: tuple[tuple[BarredMode, float], ...] = ()
+
+    @property
+    def sure(self) -> bool:
+        """Tell whether no other mode comes into question."""
+        return self.computed is not None and self.probability >= SURE and not self.others
+
+    @property
+    def relative(self) -> float | None:
+        """Computed over measured, less one."""
+        if self.computed is None:
+            return None
+        return self.computed.frequency_hz / self.measured.frequency - 1
+
+    @property
+    def band(self) -> float | None:
+        """Two standard deviations of the measured frequency and the bar of the computed one, relative
+        to the measured; None where one of them is not known.
+        """
+        width = self.measured.width_hz
+        if self.computed is None or width is None or self.computed.width is None:
+            return None
+        return (DEVIATIONS * width + self.computed.width) / self.measured.frequency
+
+    @property
+    def verdict(self) -> str:
+        """How both stand to each other, in words."""
+        if self.computed is None:
+            return "no mode"
+        doubt = "" if self.sure else ", pair not sure"
+        if self.band is None or self.relative is None:
+            return f"no band{doubt}"
+        return ("agrees" if abs(self.relative) <= self.band else "differs") + doubt
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Correlation(Displayed):
+    """Measured resonances beside computed modes.
+
+    Attributes
+    ----------
+    scene, title : str
+        Of the scene and of the measurement.
+    pairs : tuple of Pair
+        One for every measured resonance.
+    missed : tuple of (BarredMode, float)
+        Modes below the highest resonance that were not measured, with the probability of that.
+    shift, scatter : float
+        Of frequencies, relative: common to all, measured less computed, and what is left.
+    mesh : str
+        Model and mesh.
+    """
+
+    shown: ClassVar[str] = "correlation"
+
+    scene: str
+    title: str
+    pairs: tuple[Pair, ...]
+    missed: tuple[tuple[BarredMode, float], ...]
+    shift: float
+    scatter: float
+    mesh: str
+    tolerance: float
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the differences of all that have a mode, relative."""
+        apart = [pair.relative for pair in self.pairs if pair.relative is not None]
+        return float(np.sqrt(np.mean(np.square(apart)))) if apart else math.nan
+
+    @property
+    def worst(self) -> Pair | None:
+        """The pair that is furthest apart."""
+        known = [pair for pair in self.pairs if pair.relative is not None]
+        return max(known, key=lambda pair: abs(pair.relative or 0.0), default=None)
+
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions."""
+        return list(_sentences(self))
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, Hz."""
+        return {
+            "kind": "correlation",
+            "scene": self.scene,
+            "measurement": self.title,
+            "mesh": self.mesh,
+            "rms": self.rms,
+            "shift": self.shift,
+            "scatter": self.scatter,
+            "pairs": [
+                {
+                    "number": pair.number,
+                    "measured_hz": pair.measured.frequency,
+                    "measured_deviation_hz": pair.measured.width_hz,
+                    "mode": pair.computed and pair.computed.name,
+                    "computed_hz": pair.computed and pair.computed.frequency_hz,
+                    "bar_hz": pair.computed and pair.computed.width,
+                    "relative": pair.relative,
+                    "probability": pair.probability,
+                    "others": [[mode.name, share] for mode, share in pair.others],
+                    "verdict": pair.verdict,
+                }
+                for pair in self.pairs
+            ],
+            "not_measured": [
+                {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
+                for mode, share in self.missed
+            ],
+            "sentences": self.sentences,
+        }
+
+
+def correlate(
+    scene: Scene,
+    measured: Measured,
+    tol: float | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Correlation:
+    """Hold measured resonances against the modes of a scene.
+
+    Parameters
+    ----------
+    tol : float, optional
+        Relative; bars of the modes are brought below it. A tenth of the tolerance of the scene by
+        default.
+    progress : callable
+        Told of every stage.
+
+    Returns
+    -------
+    Correlation
+
+    Raises
+    ------
+    SolidgearError
+        For a scene that no model can answer.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    >>> peaks = Measured(mode=[{"frequency": f} for f in (254.0, 696.0, 1356.0)])
+    >>> found = correlate(rod, peaks)
+    >>> [pair.computed.name for pair in found.pairs], found.rms < 0.02
+    (['bending 1', 'bending 2', 'bending 3'], True)
+    """
+    peaks = measured.modes
+    tol = scene.ask.tolerance / 10 if tol is None else tol
+    computed = computed_up_to(scene, peaks[-1].frequency, tol, progress)
+    found = align(*peaks_of(measured, computed))
+    return _correlation(scene, measured, computed, found)
+
+
+def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[Peak]]:
+    """Both lists as the pairing sees them."""
+    mine = [
+        Peak(
+            math.log(one.frequency),
+            UNTOLD if one.width_hz is None else one.width_hz / one.frequency,
+            one.multiplicity,
+            ModeName(one.name).family if one.name else "",
+        )
+        for one in measured.modes
+    ]
+    its = [
+        Peak(math.log(m.frequency_hz), min(bar, 0.1), min(m.multiplicity, 2), m.name.family)
+        for m, bar in zip(computed.modes, computed.bars)
+    ]
+    return mine, its
+
+
+def _correlation(
+    scene: Scene, measured: Measured, computed: Computed, found: Alignment
+) -> Correlation:
+    barred = computed.barred
+    pairs = []
+    for k, one in enumerate(measured.modes):
+        likely = [int(j) for j in np.argsort(-found.pairs[k]) if found.pairs[k, j] > POSSIBLE]
+        mode, share = None, float(found.spurious[k])
+        if likely and found.pairs[k, likely[0]] >= found.spurious[k]:
+            first, *likely = likely
+            mode, share = barred[first], float(found.pairs[k, first])
+        others = tuple((barred[j], float(found.pairs[k, j])) for j in likely)
+        pairs.append(Pair(k + 1, one, mode, share, others))
+    highest = measured.modes[-1].frequency * math.exp(-found.shift)
+    missed = tuple(
+        (mode, float(share))
+        for mode, share in zip(barred, found.missed)
+        if share > POSSIBLE and mode.frequency_hz <= highest
+    )
+    return Correlation(
+        scene.title or scene.name,
+        measured.title,
+        tuple(pairs),
+        missed,
+        float(math.expm1(found.shift)),
+        found.scatter,
+        computed.mesh,
+        computed.tolerance,
+    )
+
+
+def _sentences(found: Correlation) -> Iterator[str]:
+    paired = [pair for pair in found.pairs if pair.computed is not None]
+    sure = [pair for pair in paired if pair.sure]
+    yield (
+        f"{len(paired)} of {len(found.pairs)} measured resonances have a mode, {len(sure)} of them "
+        f"with a probability of {100 * SURE:.0f} % and no other in question."
+    )
+    worst = found.worst
+    if worst is not None and worst.computed is not None and worst.relative is not None:
+        yield (
+            f"Computed frequencies are {100 * found.rms:.2g} % rms from the measured ones, at most "
+            f"{100 * worst.relative:+.2g} %, of {worst.computed.name}."
+        )
+        yield (
+            f"A shift of {100 * found.shift:+.2g} % is common to all, and {100 * found.scatter:.2g} % is "
+            "left beside it: a common shift is what a modulus, a density or a length would make."
+        )
+    for pair in found.pairs:
+        if pair.computed is None:
+            yield f"{pair.measured.frequency:.6g} Hz was measured and not computed."
+        elif not pair.sure:
+            names = ", ".join(f"{mode.name} ({100 * share:.0f} %)" for mode, share in pair.others)
+            own = f"{pair.computed.name} ({100 * pair.probability:.0f} %)"
+            yield f"{pair.measured.frequency:.6g} Hz is {own}" + (
+                f", or with it {names}." if names else "."
+            )
+    if found.missed:
+        named = ", ".join(f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in found.missed)
+        yield f"Computed and not measured: {named}."
