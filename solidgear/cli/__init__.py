@@ -30,6 +30,7 @@ from solidgear.cli import (
     chart,
     deflect,
     files,
+    measured,
     receptance,
     solve,
     stiffness,

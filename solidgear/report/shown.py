@@ -227,6 +227,20 @@ def _told(columns: Mapping[str, list], head: str, k: int) -> str:
     return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
 
 
+def correlation(found: Any) -> Table:
+    """Every measured resonance and the mode it is."""
+    from solidgear.report.correlation_tables import pairs
+
+    return pairs(found)
+
+
+def identification(found: Any) -> Table:
+    """Entries that were identified."""
+    from solidgear.report.correlation_tables import entries
+
+    return entries(found)
+
+
 def two_shafts(found: Any) -> Table:
     """Numbers of two shafts, their differences and what of them is resolved."""
     rows = [

@@ -30,6 +30,10 @@ WORDS = {
         "Section forces along the shaft; where two components are drawn, the dashed line is the size "
         "of both."
     ),
+    "off": (
+        "How far each computed frequency is from the measured one; grey: two standard deviations of the "
+        "measured and the bar of the computed one."
+    ),
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (

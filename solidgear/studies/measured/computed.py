@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
@@ -13,7 +14,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
-from solidgear.solve.modes import Mode, modes
+from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.one_shaft import one_shaft
 
@@ -36,8 +37,10 @@ class Computed:
         Relative; infinite where nothing tells it.
     tolerance : float
         That bars were asked to keep.
-    mesh : str
-        Model and mesh in words.
+    rung : str
+        Model.
+    options : dict
+        Of its builder.
     """
 
     scene: Scene
@@ -45,7 +48,14 @@ class Computed:
     modes: tuple[Mode, ...]
     bars: tuple[float, ...]
     tolerance: float
-    mesh: str
+    rung: str
+    options: dict[str, Any]
+
+    @property
+    def mesh(self) -> str:
+        """Model and mesh in words."""
+        order = self.options.get("order")
+        return f"{self.rung}, order {order}" if order else self.rung
 
     @property
     def barred(self) -> tuple[BarredMode, ...]:
@@ -58,7 +68,11 @@ class Computed:
 
 @pinned
 def computed_up_to(
-    scene: Scene, highest: float, tolerance: float, progress: Progress = lambda _: None
+    scene: Scene,
+    highest: float,
+    tolerance: float,
+    progress: Progress = lambda _: None,
+    before: Computed | None = None,
 ) -> Computed:
     """All modes up to a little above a frequency, by the cheapest solid; one of revolution is refined
     until the bar of every mode is within a tolerance.
@@ -69,25 +83,41 @@ def computed_up_to(
         Hz.
     tolerance : float
         Relative.
+    before : Computed, optional
+        Of a scene like it, on whose mesh it begins.
     """
     limit = BEYOND * highest
-    ask = scene.ask.with_changes(modes=MOST_MODES, max_frequency=limit)
-    found = one_shaft(scene.with_changes(ask=ask), tolerance, progress=progress)
-    body, listed = found.settled.body, [m for m in found.modes.modes if m.frequency_hz > 0]
-    bars = [found.bars.get(mode.name, math.inf) for mode in listed]
-    rung, options = found.settled.rung, dict(found.settled.options)
+    if before is None or not LADDER[before.rung].bounded:
+        ask = scene.ask.with_changes(modes=MOST_MODES, max_frequency=limit)
+        found = one_shaft(scene.with_changes(ask=ask), tolerance, progress=progress)
+        rung, options = found.settled.rung, dict(found.settled.options)
+        body, listed = found.settled.body, _elastic(found.modes)
+        bars = [found.bars.get(mode.name, math.inf) for mode in listed]
+    else:
+        rung, options = before.rung, dict(before.options)
+        body, listed, bars = _on_mesh(scene, rung, options, limit)
     while LADDER[rung].bounded and _largest(listed, bars, highest) > tolerance:
-        options["order"] = options.get("order", 3) + STEP
-        if options["order"] > HIGHEST:
+        if options.get("order", 3) + STEP > HIGHEST:
             break
+        options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: bars of all modes")
-        body = build(scene, rung, **options)
-        found_modes = modes(body, scene, n=MOST_MODES, max_frequency=limit)
-        listed = [mode for mode in found_modes.modes if mode.frequency_hz > 0]
-        told = mode_bars(scene, body, as_supports(scene), found_modes)
-        bars = [told.get(str(mode.name), math.inf) for mode in listed]
-    mesh = f"{rung}, order {options['order']}" if "order" in options else f"{rung}"
-    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, mesh)
+        body, listed, bars = _on_mesh(scene, rung, options, limit)
+    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options)
+
+
+def _on_mesh(
+    scene: Scene, rung: str, options: dict[str, Any], limit: float
+) -> tuple[Body, list[Mode], list[float]]:
+    """Body, modes and their bars of a harmonic solid on a mesh."""
+    body = build(scene, rung, **options)
+    found = modes(body, scene, n=MOST_MODES, max_frequency=limit)
+    told = mode_bars(scene, body, as_supports(scene), found)
+    listed = _elastic(found)
+    return body, listed, [told.get(str(mode.name), math.inf) for mode in listed]
+
+
+def _elastic(found: ModeSet) -> list[Mode]:
+    return [mode for mode in found.modes if mode.frequency_hz > 0]
 
 
 def _largest(listed: list[Mode], bars: list[float], highest: float) -> float:

@@ -1,0 +1,103 @@
+"""The commands correlate and identify: measured resonances beside a scene."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.cli.app import command, say
+from solidgear.cli.shared import Run, share
+
+SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML).")]
+MeasuredFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Measured resonances: .csv with a head such as frequency [Hz], or .toml with a list mode."
+    ),
+]
+Tolerance = Annotated[
+    float,
+    typer.Option(
+        "--tol", parser=share, metavar="FLOAT", help="Bar allowed of computed frequencies."
+    ),
+]
+Out = Annotated[
+    Path | None, typer.Option("--out", "-o", help="Folder for a page, data and tables.")
+]
+#: relative; below the scatter of careful measurements
+TOLERANCE = 2e-4
+
+
+@command
+def correlate(
+    scene: SceneFile,
+    measured: MeasuredFile,
+    *,
+    tol: Tolerance = TOLERANCE,
+    out: Out = None,
+    run: Run,
+) -> None:
+    """Measured resonances beside computed modes: which is which, how sure, and how far apart."""
+    from solidgear.cli.reading import load
+    from solidgear.report.correlation_tables import pairs, write_correlation
+    from solidgear.report.folder import held
+    from solidgear.studies.measured.correlate import correlate as correlated
+    from solidgear.studies.measured.data import load_measured
+
+    data = load_measured(measured)
+    loaded = load(scene)
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = correlated(loaded, data, tol, progress)
+        files = write_correlation(out, found) if out else []
+    _tell(found, [pairs(found)], files, run)
+
+
+@command
+def identify(
+    scene: SceneFile,
+    measured: MeasuredFile,
+    *,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--vary",
+            help="Entry that is to be found, such as material.E or bearing.A.stiffness.kxx; repeatable.",
+        ),
+    ] = None,
+    predict: Annotated[
+        int, typer.Option("--predict", help="Modes beyond the measured ones to predict.")
+    ] = 0,
+    tol: Tolerance = TOLERANCE,
+    out: Out = None,
+    run: Run,
+) -> None:
+    """Entries of a scene from measured resonances, and how sure they are."""
+    from solidgear.report.correlation_tables import (
+        entries,
+        fitted,
+        predicted,
+        write_identification,
+    )
+    from solidgear.report.folder import held
+    from solidgear.studies.measured.data import load_measured
+    from solidgear.studies.measured.identify import identify as identified
+
+    data = load_measured(measured)
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = identified(scene, data, vary or (), tol=tol, predict=predict, progress=progress)
+        files = write_identification(out, found) if out else []
+    tables = [entries(found), fitted(found)] + [predicted(found)] * bool(found.predicted)
+    _tell(found, tables, files, run)
+
+
+def _tell(found: Any, tables: list, files: list[Path], run: Run) -> None:
+    if run.as_json:
+        print(json.dumps(found.results, allow_nan=False))
+        return
+    say(f"{found.scene}: {found.mesh}", *tables, soft_wrap=False)
+    say(*found.sentences, soft_wrap=False)
+    say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)

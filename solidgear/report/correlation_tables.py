@@ -1,0 +1,147 @@
+"""Tables and the chart of measured resonances beside computed ones."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, readout
+from solidgear.report.plot import WIDE, Chart
+from solidgear.report.sheet_files import write_files
+from solidgear.report.table import NUMBER, Column, Table, text
+from solidgear.report.words import hertz, percent
+
+#: looks of pairs by their verdict
+LOOKS = {"agrees": Series("#00805e"), "differs": Series("#b3305c"), "no band": Series("#0072b2")}
+
+
+def pairs(found: Any) -> Table:
+    """Every measured resonance and the mode it is."""
+    columns = [
+        Column("", lambda p: p.number, kind=NUMBER),
+        Column("measured\nHz", lambda p: p.measured.frequency, hertz, kind=NUMBER),
+        text("mode", lambda p: p.computed and p.computed.name),
+        Column(
+            "computed\nHz", lambda p: p.computed and p.computed.frequency_hz, hertz, kind=NUMBER
+        ),
+        Column("off", lambda p: p.relative, percent, kind=NUMBER),
+        Column("band", lambda p: p.band, _unsigned, kind=NUMBER),
+        Column("sure", lambda p: p.probability, "{:.0%}".format, kind=NUMBER),
+        text("", lambda p: p.verdict),
+    ]
+    note = (
+        "Off: computed over measured, less one. Band: two standard deviations of the measured "
+        "frequency and the bar of the computed one. Sure: probability of the pair."
+    )
+    return Table("Measured and computed", columns, found.pairs, note, style="ruled")
+
+
+def entries(found: Any) -> Table:
+    """Entries that were identified."""
+    columns = [
+        text("entry", lambda e: e.path),
+        Column("in the file", lambda e: e.before, "{:.6g}".format, kind=NUMBER),
+        Column("identified, SI", lambda e: e.value, "{:.6g}".format, kind=NUMBER),
+        Column("deviation", lambda e: e.deviation, _unsigned, kind=NUMBER),
+    ]
+    note = (
+        "Deviation: one standard deviation, of the scatter of the data and the bars of the model."
+    )
+    return Table("Identified", columns, found.entries, note, style="ruled")
+
+
+def fitted(found: Any) -> Table:
+    """Resonances that were fitted."""
+    columns = [
+        text("mode", lambda f: f.name),
+        Column("measured\nHz", lambda f: f.measured, hertz, kind=NUMBER),
+        Column("computed\nHz", lambda f: f.computed, hertz, kind=NUMBER),
+        Column("off", lambda f: f.computed / f.measured - 1, percent, kind=NUMBER),
+        Column("left out", lambda f: f.left_out / f.measured - 1, percent, kind=NUMBER),
+    ]
+    note = "Left out: the same where this resonance is predicted from all others."
+    return Table("Fitted", columns, found.fitted, note, style="ruled")
+
+
+def predicted(found: Any) -> Table:
+    """Modes beyond the measured ones."""
+    columns = [
+        text("mode", lambda p: p.name),
+        Column("shapes", lambda p: p.multiplicity, kind=NUMBER),
+        Column("predicted\nHz", lambda p: p.frequency_hz, hertz, kind=NUMBER),
+        Column("deviation\nHz", lambda p: p.deviation_hz, "{:.2g}".format, kind=NUMBER),
+    ]
+    note = "Deviation: one standard deviation, of the entries, the scatter of the fit and the mesh."
+    return Table("Predicted, not measured", columns, found.predicted, note, style="ruled")
+
+
+def _unsigned(value: float) -> str:
+    return percent(value, signed=False)
+
+
+def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
+    """Differences of all pairs over frequency, each in its band."""
+    told = [pair for pair in found.pairs if pair.relative is not None]
+    khz = [pair.measured.frequency / 1e3 for pair in told]
+    off = np.array([pair.relative for pair in told])
+    ends = np.array([pair.band or 0.0 for pair in told])
+    most = 1.15 * float(np.max(np.abs(off) + ends, initial=1e-6))
+    panel = Panel(
+        Axis("measured, kHz", (0.0, 1.05 * max(khz, default=1.0))),
+        Axis("computed over measured, less one", (-most, most), label=PERCENT),
+        280.0,
+        series=LOOKS,
+        legend={"orient": "top"},
+    )
+    panel.draw({"type": "rule", "color": GREY}, [{"x": 0.0, "x2": 1.05 * max(khz), "y": 0.0}])
+    bands = [
+        {"x": x, "y": float(y - e), "y2": float(y + e)} for x, y, e in zip(khz, off, ends) if e
+    ]
+    panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bands)
+    rows = []
+    for pair, x, y in zip(told, khz, off.tolist()):
+        facts = ("measured", hertz(pair.measured.frequency), "Hz"), ("off", percent(y), "")
+        verdict = pair.verdict.partition(",")[0]
+        rows.append({"x": x, "y": y, "name": verdict, "told": readout(pair.computed.name, *facts)})
+    panel.draw({"type": "point", "filled": True, "size": 50}, rows)
+    return Chart([[panel]], width, title)
+
+
+def write_correlation(folder: Path, found: Any) -> list[Path]:
+    """Page, data, table and chart of a correlation."""
+    title = f"{found.scene}: measured and computed"
+    lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."
+    return write_files(
+        folder,
+        "correlation",
+        title,
+        lead,
+        [pairs(found)],
+        found.results,
+        lines={"pairs": pairs(found)},
+        charts={"off": partial(off_chart, found, title)},
+        notes=found.sentences,
+    )
+
+
+def write_identification(folder: Path, found: Any) -> list[Path]:
+    """Page, data and tables of an identification."""
+    title = f"{found.scene}: identified"
+    lead = f"From {found.title or 'measured resonances'}, by {found.mesh}."
+    lines = {"identified": entries(found), "fitted": fitted(found)}
+    if found.predicted:
+        lines["predicted"] = predicted(found)
+    return write_files(
+        folder,
+        "identification",
+        title,
+        lead,
+        list(lines.values()),
+        found.results,
+        lines=lines,
+        charts={},
+        notes=found.sentences,
+    )

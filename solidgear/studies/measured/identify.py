@@ -1,0 +1,445 @@
+"""Entries of a scene from measured resonances: which the data can tell, their values, and how sure
+both they and what is predicted from them are.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from solidgear.body import Body
+from solidgear.display import Displayed
+from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.ladder import build
+from solidgear.scene import Scene
+from solidgear.scene.paths import Keys, Tables, changed, entry, keys_of, label_of
+from solidgear.scene.toml_file import parse
+from solidgear.studies.loading import scene_of
+from solidgear.studies.measured.alignment import align
+from solidgear.studies.measured.computed import Computed, computed_up_to
+from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
+from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.derivatives import log_derivatives
+from solidgear.studies.sweep.entries import in_si
+
+Progress = Callable[[str], None]
+#: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none
+ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
+#: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
+UNDETERMINED = math.log(2.0)
+#: share of the direction that is not determined from which on an entry belongs to it
+SHARE = 0.3
+#: frequencies beyond the measured ones are looked for in steps of this factor
+WIDER = 1.15
+
+
+@dataclass(frozen=True)
+class Identified:
+    """An entry of the scene.
+
+    Attributes
+    ----------
+    path : str
+    before, value : float
+        SI; as in the file, and what the data say.
+    deviation : float
+        Standard deviation of its logarithm.
+    """
+
+    path: str
+    before: float
+    value: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A measured resonance and what the identified scene has there.
+
+    Attributes
+    ----------
+    measured, computed, left_out : float
+        Hz; the last is what is predicted where this resonance is left out of the fit.
+    """
+
+    name: str
+    measured: float
+    computed: float
+    left_out: float
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """A mode beyond the measured ones.
+
+    Attributes
+    ----------
+    frequency_hz : float
+    deviation_hz : float
+        Standard deviation: of the entries, of the scatter of the fit and of the mesh.
+    """
+
+    name: str
+    multiplicity: int
+    frequency_hz: float
+    deviation_hz: float
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Identification(Displayed):
+    """Entries identified from measured resonances.
+
+    Attributes
+    ----------
+    entries : tuple of Identified
+    correlations : (p, p) ndarray
+        Between entries.
+    fitted : tuple of Fitted
+        Resonances that were fitted.
+    unpaired : tuple of float
+        Hz; those that were not, since no mode is surely theirs.
+    rms, rms_left_out : float
+        Relative differences of fit, and of each resonance predicted from the others.
+    predicted : tuple of Predicted
+    tables : mapping
+        Of the scene file with the values put in.
+    """
+
+    shown: ClassVar[str] = "identification"
+
+    scene: str
+    title: str
+    entries: tuple[Identified, ...]
+    correlations: np.ndarray
+    fitted: tuple[Fitted, ...]
+    unpaired: tuple[float, ...]
+    rms: float
+    rms_left_out: float
+    predicted: tuple[Predicted, ...]
+    mesh: str
+    tables: Tables
+
+    def __getitem__(self, path: str) -> Identified:
+        return next(one for one in self.entries if one.path == path)
+
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions."""
+        return list(_sentences(self))
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        return {
+            "kind": "identification",
+            "scene": self.scene,
+            "measurement": self.title,
+            "mesh": self.mesh,
+            "entries": [vars(one) for one in self.entries],
+            "correlations": self.correlations.tolist(),
+            "fitted": [vars(one) for one in self.fitted],
+            "unpaired_hz": list(self.unpaired),
+            "rms": self.rms,
+            "rms_left_out": self.rms_left_out,
+            "predicted": [vars(one) for one in self.predicted],
+            "sentences": self.sentences,
+        }
+
+
+def identify(
+    scene: str | os.PathLike,
+    measured: Measured,
+    vary: Iterable[str],
+    *,
+    tol: float = 2e-4,
+    predict: int = 0,
+    progress: Progress = lambda _: None,
+) -> Identification:
+    """Find entries of a scene file from measured resonances, by least squares of the logarithms of
+    frequencies (Gauss and Newton, with exact derivatives).
+
+    Resonances are paired with modes anew in every round; those whose mode is not sure are left out
+    and told. Each weighs by its own uncertainty and the bar of its mode; the scatter that is left
+    widens all deviations where it is larger.
+
+    Parameters
+    ----------
+    scene : path
+        Of the scene file.
+    vary : iterable of str
+        Paths of entries that leave the shape as it is: of materials, springs, masses.
+    tol : float
+        Relative, that bars of modes are brought to.
+    predict : int
+        Modes beyond the highest measured resonance that are predicted.
+
+    Raises
+    ------
+    SolidgearError
+        For a path that names no positive number, entries that the data do not determine, with the
+        direction, and fewer resonances than entries.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "rod.toml"
+    >>> _ = file.write_text('material = { E = "200 GPa", nu = 0.3, density = "7850 kg/m^3" }\\n'
+    ...     'segment = [{ kind = "cylinder", name = "rod", length = "0.6 m", diameter = "20 mm" }]\\n'
+    ...     'port = { at = "rod.middle", attach_to = "rod" }\\n')
+    >>> peaks = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in (254.4, 699.1, 1363.7)])
+    >>> found = identify(file, peaks, ["material.E"])
+    >>> round(found["material.E"].value / 1e9), found.rms < 1e-3
+    (207, True)
+    """
+    study = _Study(os.fspath(scene), measured, tuple(vary), tol, progress)
+    return study.found(predict)
+
+
+class _Study:
+    """Scene, data and where in the space of logarithms of entries it stands."""
+
+    def __init__(
+        self,
+        path: str,
+        measured: Measured,
+        vary: Sequence[str],
+        tol: float,
+        progress: Progress,
+    ):
+        self.path, self.measured, self.tol, self.progress = path, measured, tol, progress
+        self.tables = parse(path)
+        self.keys = [self._keys(one) for one in vary]
+        if not self.keys:
+            raise SolidgearError('nothing is varied; give for example --vary "material.E"')
+        if len(set(self.keys)) < len(self.keys):
+            raise SolidgearError("--vary: the same entry is given twice")
+        self.labels = [label_of(keys, self.tables) for keys in self.keys]
+        self.before = np.array([self._number(keys) for keys in self.keys])
+        self.x = np.zeros(len(self.keys))
+
+    def _keys(self, path: str) -> Keys:
+        try:
+            return keys_of(path, self.tables)
+        except SceneError as error:
+            raise SolidgearError(f"--vary {path}: {error}") from None
+
+    def _number(self, keys: Keys) -> float:
+        value = in_si(entry(keys, self.tables))
+        if value is None or not value > 0:
+            raise SolidgearError(
+                f"--vary {label_of(keys, self.tables)}: the file holds "
+                f"{show(entry(keys, self.tables), 40)}, and what is identified begins at a number "
+                "above zero"
+            )
+        return value
+
+    def tables_at(self, x: np.ndarray) -> Tables:
+        """Tables with the logarithms of entries moved by `x`."""
+        tables = self.tables
+        for keys, value in zip(self.keys, self.before * np.exp(x)):
+            tables = changed(tables, keys, float(value))
+        return tables
+
+    def scene_at(self, x: np.ndarray) -> Scene:
+        return scene_of(self.tables_at(x), self.path)
+
+    def found(self, predict: int) -> Identification:
+        highest = self.measured.modes[-1].frequency
+        computed: Computed | None = None
+        for turn in range(ROUNDS):
+            scene = self.scene_at(self.x)
+            computed = computed_up_to(scene, highest, self.tol, self._told(turn), computed)
+            fit = _Fit(self, computed)
+            step = fit.step()
+            self.x = self.x + step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
+            if abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
+                break
+        else:
+            raise SolidgearError(
+                f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
+                f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
+            )
+        values = self.before * np.exp(self.x)
+        fit.refuse_undetermined()
+        entries = tuple(
+            map(Identified, self.labels, self.before.tolist(), values.tolist(), fit.deviations())
+        )
+        left = fit.residual - fit.rows @ step
+        leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.inverse, fit.rows) * fit.weight**2
+        out = left / np.maximum(1 - leverage, 1e-12)
+        measured = np.array([self.measured.modes[i].frequency for i, _ in fit.pairs])
+        fitted = tuple(
+            Fitted(
+                str(computed.modes[j].name),
+                float(f),
+                float(f * math.exp(-a)),
+                float(f * math.exp(-b)),
+            )
+            for (_, j), f, a, b in zip(fit.pairs, measured, left, out)
+        )
+        used = {i for i, _ in fit.pairs}
+        return Identification(
+            self.scene_at(self.x).title or self.path,
+            self.measured.title,
+            entries,
+            fit.correlations(),
+            fitted,
+            tuple(m.frequency for i, m in enumerate(self.measured.modes) if i not in used),
+            float(np.sqrt(np.mean(left**2))),
+            float(np.sqrt(np.mean(out**2))),
+            self._predicted(predict, fit, computed) if predict else (),
+            computed.mesh,
+            self.tables_at(self.x),
+        )
+
+    def _told(self, turn: int) -> Progress:
+        return lambda text: self.progress(f"round {turn + 1}: {text}")
+
+    def _predicted(self, count: int, fit: _Fit, before: Computed) -> tuple[Predicted, ...]:
+        """Modes beyond the highest that was measured."""
+        highest = max(before.modes[j].frequency_hz for _, j in fit.pairs)
+        scene, limit = self.scene_at(self.x), highest
+        while True:
+            limit *= WIDER
+            self.progress(f"modes up to {limit:.4g} Hz")
+            computed = computed_up_to(scene, limit, self.tol, before=before)
+            beyond = [
+                k
+                for k, m in enumerate(computed.modes)
+                if highest * (1 + 1e-6) < m.frequency_hz <= limit
+            ]
+            if len(beyond) >= count or limit > 4 * highest:
+                break
+        rows = self.derivatives(computed)[beyond]
+        spread = np.einsum("ip,pq,iq->i", rows, fit.covariance, rows)
+        out = []
+        for k, own in zip(beyond[:count], spread):
+            mode, bar = computed.modes[k], computed.bars[k]
+            relative = math.sqrt(own + fit.scatter**2 + (min(bar, 1.0) / DEVIATIONS) ** 2)
+            out.append(
+                Predicted(
+                    str(mode.name),
+                    mode.multiplicity,
+                    mode.frequency_hz,
+                    relative * mode.frequency_hz,
+                )
+            )
+        return tuple(out)
+
+    def derivatives(self, computed: Computed) -> np.ndarray:
+        """(modes, entries) derivatives of logarithms."""
+        columns = []
+        for k in range(len(self.keys)):
+
+            def at(x: float, k: int = k) -> tuple[Scene, Body]:
+                moved = self.x.copy()
+                moved[k] += x
+                scene = self.scene_at(moved)
+                return scene, build(scene, computed.rung, **computed.options)
+
+            columns.append(log_derivatives(computed.modes, at))
+        return np.column_stack(columns)
+
+
+class _Fit:
+    """A linear fit about one scene."""
+
+    def __init__(self, study: _Study, computed: Computed):
+        self.study = study
+        found = align(*peaks_of(study.measured, computed))
+        likely = found.pairs.argmax(axis=1)
+        #: resonance and mode of each pair that is sure enough to be fitted
+        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= SURE]
+        unknowns = len(study.keys)
+        if len(self.pairs) < unknowns:
+            raise SolidgearError(
+                f"identify: {len(self.pairs)} resonances have a sure mode, fewer than the {unknowns} "
+                "entries that are to be found; vary fewer, or measure more"
+            )
+        every = study.derivatives(computed)
+        modes = [study.measured.modes[i] for i, _ in self.pairs]
+        at = [j for _, j in self.pairs]
+        self.rows = every[at]
+        self.residual = np.array(
+            [math.log(m.frequency / computed.modes[j].frequency_hz) for m, j in zip(modes, at)]
+        )
+        own = np.array([(m.width_hz or 0.0) / m.frequency for m in modes])
+        mesh = np.array([min(computed.bars[j], 1.0) / DEVIATIONS for j in at])
+        variance = own**2 + mesh**2
+        # the scatter that is left counts for all alike
+        spare = max(len(at) - unknowns, 1)
+        best = self.residual - self.rows @ np.linalg.lstsq(self.rows, self.residual, rcond=None)[0]
+        self.scatter = math.sqrt(max(float(best @ best) / spare - float(variance.mean()), 0.0))
+        self.weight = 1 / np.sqrt(variance + self.scatter**2 + 1e-24)
+        left, sizes, right = np.linalg.svd(self.rows * self.weight[:, None], full_matrices=False)
+        self.left, self.sizes, self.right = left, sizes, right
+        kept = np.maximum(sizes, 1e-30)
+        self.inverse = (right.T / kept**2) @ right
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the logarithms of entries."""
+        return self.inverse
+
+    def step(self) -> np.ndarray:
+        """Change of the logarithms of entries; none along what the data do not tell."""
+        told = self.sizes > 1 / UNDETERMINED
+        parts = (self.left.T @ (self.residual * self.weight))[told] / self.sizes[told]
+        return parts @ self.right[told]
+
+    def deviations(self) -> np.ndarray:
+        """(entries,) standard deviations of logarithms."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def correlations(self) -> np.ndarray:
+        """(entries, entries) correlations."""
+        size = self.deviations()
+        return self.covariance / np.outer(size, size)
+
+    def refuse_undetermined(self) -> None:
+        """Refuse entries of which a direction is not told by the data."""
+        deviation = 1 / max(float(self.sizes[-1]), 1e-30)
+        if len(self.sizes) == len(self.study.keys) and deviation <= UNDETERMINED:
+            return
+        direction = self.right[-1]
+        among = [
+            f"{label} {'up' if part > 0 else 'down'}"
+            for label, part in zip(
+                self.study.labels, direction * np.sign(direction[abs(direction).argmax()])
+            )
+            if abs(part) >= SHARE * abs(direction).max()
+        ]
+        what = " with ".join(among)
+        raise SolidgearError(
+            f"identify: these resonances do not tell {what}: any change that way moves them by less "
+            f"than their scatter (standard deviation: a factor of {math.exp(min(deviation, 50.0)):.3g}); "
+            "leave one of them out, or measure a mode that it moves"
+        )
+
+
+def _sentences(found: Identification) -> Iterator[str]:
+    for one in found.entries:
+        yield (
+            f"{one.path} = {one.value:.6g} (SI), standard deviation {100 * one.deviation:.2g} %; "
+            f"the file has {one.before:.6g}."
+        )
+    yield (
+        f"{len(found.fitted)} resonances fitted: {100 * found.rms:.2g} % rms; each predicted from the "
+        f"others: {100 * found.rms_left_out:.2g} % rms."
+    )
+    if found.unpaired:
+        told = ", ".join(f"{one:.6g}" for one in found.unpaired)
+        yield f"Left out, since no mode is surely theirs: {told} Hz."
+    alike = np.abs(found.correlations - np.eye(len(found.entries)))
+    if len(found.entries) > 1 and alike.max() > SURE:
+        i, j = np.unravel_index(int(alike.argmax()), alike.shape)
+        yield (
+            f"{found.entries[i].path} and {found.entries[j].path} move the same resonances alike "
+            f"(correlation {found.correlations[i, j]:+.2f}): their ratio is known worse than either "
+            "with the other held."
+        )
