@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
+from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
@@ -16,11 +17,13 @@ from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
-from solidgear.studies.one_shaft import one_shaft
+from solidgear.studies.sweep.bench import surface
 
 Progress = Callable[[str], None]
 #: of the highest measured frequency: modes above it may be what was measured
 BEYOND = 1.1
+#: shapes that are asked for first
+FEW = 30
 #: highest order of elements that is tried, and steps between
 HIGHEST, STEP = 11, 2
 
@@ -87,33 +90,62 @@ def computed_up_to(
         Of a scene like it, on whose mesh it begins.
     """
     limit = BEYOND * highest
+    settled = None
     if before is None or not LADDER[before.rung].bounded:
-        ask = scene.ask.with_changes(modes=MOST_MODES, max_frequency=limit)
-        found = one_shaft(scene.with_changes(ask=ask), tolerance, progress=progress)
-        rung, options = found.settled.rung, dict(found.settled.options)
-        body, listed = found.settled.body, _elastic(found.modes)
-        bars = [found.bars.get(mode.name, math.inf) for mode in listed]
+        settled = settle(scene, tolerance, progress=progress)
+        rung, options, body = settled.rung, dict(settled.options), settled.body
     else:
         rung, options = before.rung, dict(before.options)
-        body, listed, bars = _on_mesh(scene, rung, options, limit)
+        alike = surface(scene) == surface(before.scene)
+        body = before.body if alike else build(scene, rung, **options)
+    progress("modes and how sure they are")
+    listed, bars = _barred(scene, body, limit, settled)
     while LADDER[rung].bounded and _largest(listed, bars, highest) > tolerance:
         if options.get("order", 3) + STEP > HIGHEST:
             break
         options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: bars of all modes")
-        body, listed, bars = _on_mesh(scene, rung, options, limit)
+        body = build(scene, rung, **options)
+        listed, bars = _barred(scene, body, limit, settled)
     return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options)
 
 
-def _on_mesh(
-    scene: Scene, rung: str, options: dict[str, Any], limit: float
-) -> tuple[Body, list[Mode], list[float]]:
-    """Body, modes and their bars of a harmonic solid on a mesh."""
-    body = build(scene, rung, **options)
-    found = modes(body, scene, n=MOST_MODES, max_frequency=limit)
-    told = mode_bars(scene, body, as_supports(scene), found)
+@pinned
+def computed_like(before: Computed, scene: Scene) -> Computed:
+    """The same modes of a scene like one that was solved, on its mesh; bars are those it had there."""
+    body = before.body
+    if surface(scene) != surface(before.scene):
+        body = build(scene, before.rung, **before.options)
+    limit = max(mode.frequency_hz for mode in before.modes) * BEYOND
+    listed = _elastic(_modes(scene, body, limit, len(before.modes)))
+    bars = {str(mode.name): bar for mode, bar in zip(before.modes, before.bars)}
+    # planes that part have other names, and bars like the others
+    usual = max((bar for bar in before.bars if math.isfinite(bar)), default=math.inf)
+    told = tuple(bars.get(str(mode.name), usual) for mode in listed)
+    return replace(before, scene=scene, body=body, modes=tuple(listed), bars=told)
+
+
+def _barred(
+    scene: Scene, body: Body, limit: float, settled: Settled | None
+) -> tuple[list[Mode], list[float]]:
+    """Modes of a body and their bars."""
+    found = _modes(scene, body, limit)
+    if LADDER[body.fidelity].bounded:
+        told = mode_bars(scene, body, as_supports(scene), found)
+    else:
+        told = bars_of_modes(scene, body, found, settled)
     listed = _elastic(found)
-    return body, listed, [told.get(str(mode.name), math.inf) for mode in listed]
+    return listed, [told.get(str(mode.name), math.inf) for mode in listed]
+
+
+def _modes(scene: Scene, body: Body, limit: float, guess: int = FEW) -> ModeSet:
+    """All modes up to a frequency: as many shapes are asked for as it takes to pass it."""
+    count = max(FEW, 2 * guess)
+    while True:
+        found = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
+        if count >= MOST_MODES or sum(m.multiplicity for m in _elastic(found)) < count:
+            return found
+        count *= 2
 
 
 def _elastic(found: ModeSet) -> list[Mode]:

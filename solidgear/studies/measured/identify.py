@@ -21,10 +21,11 @@ from solidgear.scene.paths import Keys, Tables, changed, entry, keys_of, label_o
 from solidgear.scene.toml_file import parse
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import align
-from solidgear.studies.measured.computed import Computed, computed_up_to
+from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
 from solidgear.studies.measured.derivatives import log_derivatives
+from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.entries import in_si
 
 Progress = Callable[[str], None]
@@ -32,6 +33,8 @@ Progress = Callable[[str], None]
 ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
 UNDETERMINED = math.log(2.0)
+#: of the logarithm of entries, along what is not told where it begins
+NUDGE = 0.03
 #: share of the direction that is not determined from which on an entry belongs to it
 SHARE = 0.3
 #: frequencies beyond the measured ones are looked for in steps of this factor
@@ -253,8 +256,17 @@ class _Study:
         computed: Computed | None = None
         for turn in range(ROUNDS):
             scene = self.scene_at(self.x)
-            computed = computed_up_to(scene, highest, self.tol, self._told(turn), computed)
+            if computed is None:
+                computed = computed_up_to(scene, highest, self.tol, self.progress)
+            else:
+                self.progress(f"round {turn + 1}")
+                computed = computed_like(computed, scene)
             fit = _Fit(self, computed)
+            if turn == 0 and not fit.determined:
+                # where planes are alike to first order no frequency tells them apart; a little off it
+                # may
+                self.x = self.x + NUDGE * fit.right[-1]
+                continue
             step = fit.step()
             self.x = self.x + step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
             if abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
@@ -264,6 +276,7 @@ class _Study:
                 f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
                 f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
             )
+        assert computed is not None  # there is a round at least
         values = self.before * np.exp(self.x)
         fit.refuse_undetermined()
         entries = tuple(
@@ -296,9 +309,6 @@ class _Study:
             computed.mesh,
             self.tables_at(self.x),
         )
-
-    def _told(self, turn: int) -> Progress:
-        return lambda text: self.progress(f"round {turn + 1}: {text}")
 
     def _predicted(self, count: int, fit: _Fit, before: Computed) -> tuple[Predicted, ...]:
         """Modes beyond the highest that was measured."""
@@ -340,6 +350,9 @@ class _Study:
                 moved = self.x.copy()
                 moved[k] += x
                 scene = self.scene_at(moved)
+                # springs and masses leave the body as it is
+                if surface(scene) == surface(computed.scene):
+                    return scene, computed.body
                 return scene, build(scene, computed.rung, **computed.options)
 
             columns.append(log_derivatives(computed.modes, at))
@@ -401,11 +414,16 @@ class _Fit:
         size = self.deviations()
         return self.covariance / np.outer(size, size)
 
+    @property
+    def determined(self) -> bool:
+        """Tell whether no direction is left open."""
+        return len(self.sizes) == len(self.study.keys) and self.sizes[-1] * UNDETERMINED >= 1
+
     def refuse_undetermined(self) -> None:
         """Refuse entries of which a direction is not told by the data."""
-        deviation = 1 / max(float(self.sizes[-1]), 1e-30)
-        if len(self.sizes) == len(self.study.keys) and deviation <= UNDETERMINED:
+        if self.determined:
             return
+        deviation = 1 / max(float(self.sizes[-1]), 1e-30)
         direction = self.right[-1]
         among = [
             f"{label} {'up' if part > 0 else 'down'}"
