@@ -52,7 +52,10 @@ def provenance(record: Record) -> Table:
         ["expected orders, free motions", "closed form"],
         [
             "experiment",
-            Cell("none: nothing in this report is validated against experiment", "strong"),
+            Cell(
+                "of free solids against measured resonances; none of bearings, seats, cuts and teeth",
+                "strong",
+            ),
         ],
     ]
     return Table(

@@ -20,9 +20,10 @@ from itertools import product
 import numpy as np
 
 #: how likely steps are before any frequency is looked at: one of each, a pair measured split, two
-#: computed modes under one peak, two crosswise, a peak or a mode alone. Their order counts, not
-#: their digits: pairings of 400 drawn lists are the same with each halved or doubled
-SAME, SPLIT, MERGED, CROSSED, SPURIOUS, MISSED = 0.8, 0.02, 0.02, 0.01, 0.03, 0.12
+#: computed modes under one peak, a peak or a mode alone
+SAME, SPLIT, MERGED, SPURIOUS, MISSED = 0.8, 0.02, 0.02, 0.03, 0.12
+#: two crosswise: scatter of both alone decides whether they changed places
+CROSSED = SAME**2
 #: a single resonance where a pair was computed (a split pair of which one was seen), and a pair
 #: where a single one was
 HALF, DOUBLE = 0.2, 0.02

@@ -1,0 +1,149 @@
+"""What was identified from measured resonances, in numbers and words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from solidgear.display import Displayed
+from solidgear.scene.paths import Tables
+from solidgear.studies.measured.correlate import SURE
+
+
+@dataclass(frozen=True)
+class Identified:
+    """An entry of the scene.
+
+    Attributes
+    ----------
+    path : str
+    before, value : float
+        SI; as in the file, and what the data say.
+    deviation : float
+        Standard deviation of its logarithm.
+    """
+
+    path: str
+    before: float
+    value: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A measured resonance and what the identified scene has there.
+
+    Attributes
+    ----------
+    measured, computed, left_out : float
+        Hz; the last is what is predicted where this resonance is left out of the fit.
+    """
+
+    name: str
+    measured: float
+    computed: float
+    left_out: float
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """A mode beyond the measured ones.
+
+    Attributes
+    ----------
+    frequency_hz : float
+    deviation_hz : float
+        Standard deviation: of the entries, of the scatter of the fit and of the mesh.
+    """
+
+    name: str
+    multiplicity: int
+    frequency_hz: float
+    deviation_hz: float
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Identification(Displayed):
+    """Entries identified from measured resonances.
+
+    Attributes
+    ----------
+    entries : tuple of Identified
+    correlations : (p, p) ndarray
+        Between entries.
+    fitted : tuple of Fitted
+        Resonances that were fitted.
+    unpaired : tuple of float
+        Hz; those that were not, since no mode is surely theirs.
+    rms, rms_left_out : float
+        Relative differences of fit, and of each resonance predicted from the others.
+    predicted : tuple of Predicted
+    tables : mapping
+        Of the scene file with the values put in.
+    """
+
+    shown: ClassVar[str] = "identification"
+
+    scene: str
+    title: str
+    entries: tuple[Identified, ...]
+    correlations: np.ndarray
+    fitted: tuple[Fitted, ...]
+    unpaired: tuple[float, ...]
+    rms: float
+    rms_left_out: float
+    predicted: tuple[Predicted, ...]
+    mesh: str
+    tables: Tables
+
+    def __getitem__(self, path: str) -> Identified:
+        return next(one for one in self.entries if one.path == path)
+
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions."""
+        return list(_sentences(self))
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        return {
+            "kind": "identification",
+            "scene": self.scene,
+            "measurement": self.title,
+            "mesh": self.mesh,
+            "entries": [vars(one) for one in self.entries],
+            "correlations": self.correlations.tolist(),
+            "fitted": [vars(one) for one in self.fitted],
+            "unpaired_hz": list(self.unpaired),
+            "rms": self.rms,
+            "rms_left_out": self.rms_left_out,
+            "predicted": [vars(one) for one in self.predicted],
+            "sentences": self.sentences,
+        }
+
+
+def _sentences(found: Identification) -> Iterator[str]:
+    for one in found.entries:
+        yield (
+            f"{one.path} = {one.value:.6g} (SI), standard deviation {100 * one.deviation:.2g} %; "
+            f"the file has {one.before:.6g}."
+        )
+    yield (
+        f"{len(found.fitted)} resonances fitted: {100 * found.rms:.2g} % rms; each predicted from the "
+        f"others: {100 * found.rms_left_out:.2g} % rms."
+    )
+    if found.unpaired:
+        told = ", ".join(f"{one:.6g}" for one in found.unpaired)
+        yield f"Left out, since no mode is surely theirs: {told} Hz."
+    alike = np.abs(found.correlations - np.eye(len(found.entries)))
+    if len(found.entries) > 1 and alike.max() > SURE:
+        i, j = np.unravel_index(int(alike.argmax()), alike.shape)
+        yield (
+            f"{found.entries[i].path} and {found.entries[j].path} move the same resonances alike "
+            f"(correlation {found.correlations[i, j]:+.2f}): their ratio is known worse than either "
+            "with the other held."
+        )

@@ -1,0 +1,263 @@
+"""Measured resonances: read, laid beside computed modes, and what is identified from them."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import solidgear as sg
+from solidgear.cli.app import app
+from solidgear.scene.paths import changed, keys_of
+from solidgear.scene.toml_file import parse
+from solidgear.studies.loading import scene_of
+from solidgear.studies.measured.alignment import Peak, align
+from solidgear.studies.measured.correlate import SURE, correlate
+from solidgear.studies.measured.data import Measured, load_measured
+from solidgear.studies.measured.derivatives import log_derivatives
+from solidgear.studies.measured.identify import identify
+
+ROD = """
+material = { E = "200 GPa", nu = 0.3, density = "7850 kg/m^3" }
+segment = [{ kind = "cylinder", name = "rod", length = "0.6 m", diameter = "20 mm" }]
+port = { at = "rod.middle", attach_to = "rod" }
+"""
+SHAFT = "geometry/shaft_stepped.toml"
+
+
+@pytest.fixture
+def rod(tmp_path):
+    path = tmp_path / "rod.toml"
+    path.write_text(ROD)
+    return path
+
+
+def drawn(rng, count=14, shift=0.02, scatter=0.003):
+    """Computed modes, a third of them pairs, and what a careful measurement finds of them."""
+    logs = np.cumsum(rng.exponential(0.12, count)) + 3.0
+    computed = [Peak(float(x), 1e-4, 2 if rng.random() < 0.4 else 1) for x in logs]
+    moved = [float(x + shift + scatter * rng.standard_normal()) for x in logs]
+    measured = [Peak(x, 5e-4, one.multiplicity) for x, one in zip(moved, computed)]
+    return computed, measured
+
+
+def told(measured, computed, truth):
+    """Wrong pairs that are told as sure; the truth is the mode of each resonance, or None."""
+    order = sorted(range(len(measured)), key=lambda i: measured[i].log_frequency)
+    found = align([measured[i] for i in order], computed)
+    return [
+        (i, j)
+        for row, i in zip(found.pairs, order)
+        for j in np.flatnonzero(row >= SURE)
+        if truth[i] != j
+    ], found
+
+
+@pytest.mark.parametrize("slip", ["none", "missing", "spurious", "split", "unknown multiplicity"])
+def test_pairs_that_are_told_as_sure_are_right(slip):
+    rng = np.random.default_rng(7)
+    wrong = sure = 0
+    for _ in range(12):
+        computed, measured = drawn(rng)
+        truth = list(range(len(computed)))
+        at = int(rng.integers(2, len(computed) - 2))
+        if slip == "missing":
+            del measured[at], truth[at]
+        elif slip == "spurious":
+            where = rng.uniform(measured[2].log_frequency, measured[-3].log_frequency)
+            measured.insert(at, Peak(float(where), 5e-4, 1))
+            truth.insert(at, None)
+        elif slip == "split":
+            pair = next(k for k, one in enumerate(computed) if one.multiplicity == 2)
+            one = replace(measured[pair], multiplicity=1)
+            measured[pair : pair + 1] = [one, replace(one, log_frequency=one.log_frequency + 1e-3)]
+            truth[pair : pair + 1] = [pair, pair]
+        elif slip == "unknown multiplicity":
+            measured = [replace(one, multiplicity=None) for one in measured]
+        found, alignment = told(measured, computed, truth)
+        wrong += len(found)
+        sure += int((alignment.pairs >= SURE).sum())
+    # a probability of 95 % and more may be wrong once in twenty; of 9,955 such pairs 7 were
+    assert wrong <= 0.02 * sure
+    assert sure > 0.75 * 12 * 13
+
+
+def test_two_modes_that_changed_places_are_told_apart_by_multiplicity():
+    computed = [Peak(0.0, 1e-4, 1), Peak(0.3, 1e-4, 1), Peak(0.303, 1e-4, 2), Peak(0.7, 1e-4, 1)]
+    measured = [
+        Peak(0.0, 1e-4, 1),
+        Peak(0.3005, 1e-4, 2),
+        Peak(0.3025, 1e-4, 1),
+        Peak(0.7, 1e-4, 1),
+    ]
+    pairs = align(measured, computed).pairs
+    assert pairs[1].argmax() == 2 and pairs[2].argmax() == 1
+
+
+def test_probabilities_add_up():
+    computed, measured = drawn(np.random.default_rng(3))
+    found = align(measured, computed)
+    # of a peak under which two modes lie both pairs count
+    assert np.all(found.pairs.sum(axis=1) + found.spurious > 1 - 1e-9)
+    assert np.all(found.pairs <= 1 + 1e-9) and found.shift == pytest.approx(0.02, abs=0.003)
+
+
+# ------------------------------------------------------------------------------------- what is read
+def test_units_and_uncertainties_of_a_table(tmp_path):
+    path = tmp_path / "peaks.csv"
+    path.write_text(
+        "frequency [kHz],uncertainty [Hz],multiplicity,name\n1.5,2,2,bending 1\n3,,1,\n"
+    )
+    one, other = load_measured(path).modes
+    assert (one.frequency, one.width_hz, one.multiplicity, one.name) == (
+        1500.0,
+        2.0,
+        2,
+        "bending 1",
+    )
+    assert other.width_hz is None
+    toml = tmp_path / "peaks.toml"
+    toml.write_text('uncertainty = "0.1 %"\nmode = [{ frequency = "1.5 kHz" }]')
+    assert load_measured(toml).modes[0].width_hz == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("a.csv", "frequency,multiplicity\n1,2\n", "has no unit"),
+        (
+            "a.csv",
+            "frequency [Hz]\n3\n2\n",
+            r"mode\[2\].frequency .* below the one before it, 3 Hz",
+        ),
+        ("a.csv", "hz [Hz]\n3\n", "column .* is unknown"),
+        ("a.csv", "", "holds no resonances"),
+        ("a.toml", 'mode = [{ frequency = "3" }]', "has no unit"),
+        ("a.toml", "mode = [{ frequency = 3, uncertainty = 0 }]", "must be greater than zero"),
+        ("a.toml", "mode = [{ frequency = 3, multiplicity = 3 }]", "multiplicity"),
+        ("a.toml", "mode = []", "holds 0 resonances"),
+        ("nowhere.csv", None, "cannot be read"),
+    ],
+)
+def test_bad_data_end_in_a_sentence(tmp_path, name, text, said):
+    path = tmp_path / name
+    if text is not None:
+        path.write_text(text)
+    with pytest.raises(sg.SceneError, match=said) as caught:
+        load_measured(path)
+    assert str(path) in str(caught.value)
+
+
+# ------------------------------------------------------------------------------------- correlation
+def test_a_rod_is_held_against_the_theory_of_rods(rod):
+    """Torsion and extension of a slender free rod are c / 2 L: exact for one, and but for what it
+    narrows for the other.
+    """
+    speeds = {"torsion": math.sqrt(200e9 / 2.6 / 7850), "axial": math.sqrt(200e9 / 7850)}
+    exact = {f"{name} 1": c / 1.2 for name, c in speeds.items()}
+    modes = [
+        {"frequency": f, "name": n.split()[0]} for n, f in sorted(exact.items(), key=lambda x: x[1])
+    ]
+    found = correlate(sg.load(rod), Measured(uncertainty=1e-5, mode=modes), 1e-4)
+    by_name = {str(pair.computed.name): pair for pair in found.pairs}
+    assert by_name.keys() == exact.keys()
+    assert abs(by_name["torsion 1"].relative) < by_name["torsion 1"].band < 1.2e-4
+    # (nu n pi r / L)^2 / 4 of Rayleigh's theory: 6e-5
+    assert by_name["axial 1"].relative == pytest.approx(-6.2e-5, abs=2e-5)
+    assert all(mode.name.startswith("bending") for mode, _ in found.missed)
+
+
+# ---------------------------------------------------------------------------------- identification
+def test_derivatives_are_those_of_solutions_on_either_side():
+    tables, step = parse(SHAFT), 1e-3
+
+    def at(path, value):
+        keys = keys_of(path, tables)
+
+        def moved(x):
+            scene = scene_of(changed(tables, keys, value * math.exp(x)), SHAFT)
+            return scene, sg.build(scene, "harmonic", order=3)
+
+        return moved
+
+    def hertz(pair):
+        found = sg.modes(pair[1], pair[0], n=8)
+        return np.array([m.frequency_hz for m in found.modes if m.frequency_hz > 0])
+
+    entries = {"material.nu": 0.3, "material.E": 207e9, "bearing.A.stiffness.kyy": 2e8}
+    scene, body = at("material.nu", 0.3)(0.0)
+    modes = [m for m in sg.modes(body, scene, n=8).modes if m.frequency_hz > 0]
+    for path, value in entries.items():
+        make = at(path, value)
+        own = log_derivatives(
+            [m for m in sg.modes(*make(0.0)[::-1], n=8).modes if m.frequency_hz > 0], make
+        )
+        differences = np.log(hertz(make(step)) / hertz(make(-step))) / (2 * step)
+        # of second order in the step
+        assert own == pytest.approx(differences, abs=1e-6), path
+    assert len(modes) >= 5
+
+
+def test_a_modulus_is_found_and_its_deviation_is_that_of_the_data(rod):
+    scene = sg.load(rod)
+    body = sg.build(scene, "harmonic", order=5)
+    modes = [m for m in sg.modes(body, scene, n=12).modes if m.frequency_hz > 0]
+    rng, off = np.random.default_rng(5), []
+    for _ in range(6):
+        noisy = sorted(m.frequency_hz * math.exp(1e-3 * rng.standard_normal()) for m in modes)
+        peaks = Measured(uncertainty=1e-3, mode=[{"frequency": 1.01 * f} for f in noisy])
+        found = identify(rod, peaks, ["material.E"], tol=1e-3)
+        one = found["material.E"]
+        off.append(math.log(one.value / (200e9 * 1.01**2)) / one.deviation)
+        # f goes with the root of E: twice the deviation of a mean of so many
+        assert one.deviation == pytest.approx(2e-3 / math.sqrt(len(modes)), rel=0.6)
+    assert max(map(abs, off)) < 3.5
+
+
+def test_what_the_data_do_not_tell_is_refused_with_its_direction(rod):
+    peaks = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in (251.0, 688.0, 1342.0)])
+    with pytest.raises(
+        sg.SolidgearError, match="do not tell material.E up with material.density up"
+    ):
+        identify(rod, peaks, ["material.E", "material.density"])
+    with pytest.raises(sg.SolidgearError, match="fewer than the 4 entries"):
+        paths = ["material.E", "material.nu", "material.density", "segment.rod.length"]
+        identify(rod, peaks, paths)
+
+
+@pytest.mark.parametrize(
+    ("vary", "said"),
+    [
+        ([], "nothing is varied"),
+        (["material.e"], "the file holds null"),
+        (["material.E", "material.E"], "given twice"),
+        (["port.at"], "the file holds .rod.middle"),
+    ],
+)
+def test_what_cannot_be_varied_ends_in_a_sentence(rod, vary, said):
+    peaks = Measured(mode=[{"frequency": 250.0}])
+    with pytest.raises(sg.SolidgearError, match=said):
+        identify(rod, peaks, vary)
+
+
+def test_commands_tell_and_write_what_they_found(rod, tmp_path):
+    peaks = tmp_path / "peaks.csv"
+    peaks.write_text("frequency [Hz]\n254.4\n699.1\n1363.7\n")
+    run = CliRunner().invoke
+    out = tmp_path / "out"
+    told = run(app, ["correlate", str(rod), str(peaks), "-o", str(out)])
+    assert told.exit_code == 0 and "3 of 3 measured resonances have a mode" in told.output
+    data = json.loads((out / "correlation.json").read_text())
+    assert [pair["mode"] for pair in data["pairs"]] == ["bending 1", "bending 2", "bending 3"]
+    assert (out / "off.png").stat().st_size > 1000 and (out / "correlation.html").exists()
+    told = run(
+        app, ["identify", str(rod), str(peaks), "--vary", "material.E", "--predict", "2", "--json"]
+    )
+    data = json.loads(told.output)
+    assert data["entries"][0]["value"] == pytest.approx(209.9e9, rel=0.002)
+    # (254.4 Hz over bending 1 of 200 GPa) squared is 1.0495; bending 4 of a rod this slender, and torsion 1 or axial 1 are above
+    assert data["predicted"][0]["name"] == "bending 4"

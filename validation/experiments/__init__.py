@@ -1,0 +1,1 @@
+"""Measured resonances of simple bodies, and what the program says of them."""
