@@ -320,6 +320,15 @@ class _Fit:
         what = " with ".join(among)
         raise SolidgearError(
             f"identify: these resonances do not tell {what}: any change that way moves them by less "
-            f"than their scatter (standard deviation: a factor of {math.exp(min(deviation, 50.0)):.3g}); "
+            f"than their scatter ({_factor(deviation)}); "
             "leave one of them out, or measure a mode that it moves"
         )
+
+
+def _factor(deviation: float) -> str:
+    """Standard deviation of a logarithm in words."""
+    return (
+        "without any bound"
+        if deviation > 10
+        else f"standard deviation: a factor of {math.exp(deviation):.3g}"
+    )

@@ -1,0 +1,121 @@
+"""Is a bearing's stiffness within its own interval? Random shafts, their resonances with noise, and
+entries that begin away from the truth; also sets that no resonance can tell apart.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import solidgear as sg
+from solidgear.errors import SolidgearError
+from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.identify import identify
+from validation.campaign.case import Case, Run
+from validation.campaign.rows import CLAIM, Found, Row
+
+#: of the logarithm of a measured frequency, and of what a stiffness begins away from the truth
+NOISE, AWAY = 1e-3, 0.3
+#: standard deviations that hold 95 % of a normal distribution
+INTERVAL = 1.96
+#: shapes that are measured
+SHAPES = 16
+#: of every so many seeds one asks for what cannot be told
+OPEN = 5
+STIFFNESS = ("bearing.A.stiffness.kzz", "bearing.B.stiffness.kzz")
+EVERY = (
+    "material.E",
+    "material.density",
+    *(f"bearing.{name}.stiffness.k{motion}" for name in "AB" for motion in ("xx", "yy", "zz")),
+)
+
+
+class Identification(Case):
+    """Intervals of two stiffnesses; an interval is the bar of the logarithm of its entry."""
+
+    name, question = "identification", "intervals of identified bearing stiffness"
+    parts = ((), ("entry",))
+    seeds = (1, 250)
+
+    def judge(self, run: Run, seed: int) -> Found:
+        found, problem = run.call(judged, seed)
+        if problem:
+            return Found(problems=[f"seed {seed}: {problem}"])
+        rows = [Row(body=f"seed {seed}", rule=CLAIM, **row) for row in found["rows"]]
+        return Found(rows, failures=found["failures"], problems=found["problems"])
+
+
+def judged(seed: int) -> dict[str, list[Any]]:
+    """Errors of what is identified beside their intervals."""
+    rng = np.random.default_rng([seed, 4])
+    text, true = _shaft(rng)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "shaft.toml"
+        path.write_text(text.format(*true), encoding="utf-8")
+        scene = sg.load(path)
+        modes = sg.modes(sg.build(scene, "harmonic", order=4), scene, n=SHAPES).modes
+        peaks = sorted(
+            (mode.frequency_hz * math.exp(NOISE * rng.standard_normal()), mode.multiplicity)
+            for mode in modes
+            if mode.frequency_hz > 0
+        )
+        listed = [{"frequency": f, "multiplicity": count} for f, count in peaks]
+        measured = Measured(uncertainty=NOISE, mode=listed)
+        begun = [k * math.exp(rng.uniform(-AWAY, AWAY)) for k in true]
+        path.write_text(text.format(*begun), encoding="utf-8")
+        open_ = seed % OPEN == 0
+        # E, density and all springs together leave every frequency as it is
+        entries = EVERY if open_ else STIFFNESS
+        try:
+            found = identify(path, measured, entries, tol=1e-3)
+        except SolidgearError as error:
+            told = str(error)
+            if open_ and "do not tell" in told:
+                return {"rows": [], "failures": [], "problems": []}
+            return {"rows": [], "failures": [], "problems": [f"seed {seed}: refused: {told}"]}
+    if open_:
+        known = max(entry.deviation for entry in found.entries)
+        return {
+            "rows": [],
+            "problems": [],
+            "failures": [f"seed {seed}: what cannot be told is told, deviation {known:.2g}"],
+        }
+    rows = [
+        {
+            "quantity": entry.path,
+            "tags": {"entry": entry.path},
+            "bar": INTERVAL * entry.deviation,
+            "error": math.log(entry.value / truth),
+            "how": f"{truth:.4g} N/m",
+        }
+        for entry, truth in zip(found.entries, true)
+    ]
+    return {"rows": rows, "failures": [], "problems": []}
+
+
+def _shaft(rng: np.random.Generator) -> tuple[str, tuple[float, float]]:
+    """A file of a shaft on two bearings with both stiffnesses left open, and their true values."""
+    d = float(rng.uniform(0.02, 0.08))
+    count = int(rng.integers(3, 6))
+    lengths, sizes = d * rng.uniform(1.0, 3.0, count), d * rng.uniform(0.7, 1.4, count)
+    segments = "\n".join(
+        f'  {{{{ kind = "cylinder", name = "s{k}", length = {one:.6g}, diameter = {size:.6g} }}}},'
+        for k, (one, size) in enumerate(zip(lengths, sizes))
+    )
+    width = 0.4 * d
+    bearings = "\n".join(
+        f'  {{{{ name = "{name}", position = 0, from = "s{k}.middle", seat_width = {width:.6g}, stiffness = '
+        f"{{{{ kxx = {10 ** rng.uniform(7.5, 9):.4g}, kyy = 2e8, kzz = {{{slot}}} }}}} }}}},"
+        for slot, (name, k) in enumerate((("A", 0), ("B", count - 1)))
+    )
+    text = (
+        'material = {{ E = "207 GPa", nu = 0.3, density = "7850 kg/m^3" }}\n'
+        f"segment = [\n{segments}\n]\nbearing = [\n{bearings}\n]\n"
+        'port = {{ at = "s1.middle", attach_to = "s1" }}\n'
+    )
+    a, b = 10 ** rng.uniform(7.5, 9.0, 2)
+    return text, (float(a), float(b))
