@@ -71,6 +71,7 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     "N/mm": (1e3, 0.0, _PER_LENGTH),
     "N/um": (1e6, 0.0, _PER_LENGTH),
     "N": (1.0, 0.0, _FORCE),
+    "kN": (1e3, 0.0, _FORCE),
     "N/rad": (1.0, -1.0, _FORCE),
     "kg": (1.0, 0.0, _dimension(mass=1)),
     "kg*m^2": (1.0, 0.0, _INERTIA),

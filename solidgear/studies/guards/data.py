@@ -80,7 +80,8 @@ def doubtful_data(probe: Probe) -> Notices:
 def free_motions(probe: Probe) -> Notices:
     """Rigid motions that no bearing resists."""
     free = probe.supports.unresisted(probe.body).shape[1]
-    yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
+    if free != 1:  # turning is free
+        yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
     if free > 1 and probe.scene.bearings:
         yield Notice(
             "caution",
@@ -134,5 +135,5 @@ def split_pair(probe: Probe) -> Notices:
             "fact",
             (),
             "bearings, with what they stand in, that differ in x and z split the first bending "
-            f"pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+            f"pair by {100 * split:.2g} % (Timoshenko): 'bending 2' is the twin of 'bending 1'",
         )
