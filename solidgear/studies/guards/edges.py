@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from solidgear.errors import listed
@@ -23,7 +25,8 @@ NOTICED, LARGE = 0.02, 0.07
 
 def fillets(probe: Probe) -> Notices:
     """Fillets at roots that a beam leaves out, from where a thousandth is at stake."""
-    segments, found = probe.scene.segments, {}
+    segments = probe.scene.segments
+    found: dict[str, list[tuple[float, Any]]] = {}
     for corner in probe.scene.outline.corners:
         ratio = min(corner.axial, corner.radial) / (2 * corner.r)
         if corner.root and corner.surface == "outer" and ratio >= NOTICED:
