@@ -56,6 +56,9 @@ class Strength(Model):
         return self
 
 
+_CONSTANTS = ("E", "nu", "density")
+
+
 class Material(Model):
     """Isotropic linear elastic material; numbers in SI, or texts with units.
 
@@ -69,6 +72,8 @@ class Material(Model):
         kg/m3.
     strength : Strength or None
         Of which ratings of fatigue are made.
+    name : str
+        As reports call it; nothing is read out of it.
 
     Raises
     ------
@@ -87,13 +92,18 @@ class Material(Model):
     nu: Poisson
     density: Density
     strength: Strength | None = None
+    name: str = ""
 
     @model_serializer(mode="wrap")
     def _without_what_is_not_given(self, dump: Any) -> dict[str, Any]:
         data = dump(self)
-        if data["strength"] is None:
-            del data["strength"]
-        return data
+        return {key: value for key, value in data.items() if key in _CONSTANTS or value}
+
+    def with_changes(self, **changes: Any) -> Material:
+        """A validated copy with some fields replaced; other constants lose the name."""
+        made = super().with_changes(**changes)
+        same = all(getattr(made, key) == getattr(self, key) for key in _CONSTANTS)
+        return made if same or "name" in changes or not made.name else made.with_changes(name="")
 
     @property
     def shear_modulus(self) -> float:

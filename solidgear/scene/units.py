@@ -1,7 +1,6 @@
 """Units at the border: a quantity as a user writes it in, a float in SI out.
 
-The only module that touches pint, and only once a text is met: the import costs more than solving a
-beam.
+The only module that touches pint, once a text needs it: the import costs more than solving a beam.
 """
 
 from __future__ import annotations
