@@ -267,6 +267,26 @@ class Segment(Model):
         """Axial length in m."""
         return self.y1 - self.y0
 
+    @property
+    def diameter(self) -> float:
+        """Outer diameter in m; of a cone, the larger one."""
+        return max(self.start_diameter, self.end_diameter)
+
+    @property
+    def start_diameter(self) -> float:
+        """Outer diameter at y0, m."""
+        return 2 * self.outer0
+
+    @property
+    def end_diameter(self) -> float:
+        """Outer diameter at y1, m."""
+        return 2 * self.outer1
+
+    @property
+    def bore(self) -> float:
+        """Diameter of the bore in m, the larger one where it is conical; 0 is solid."""
+        return 2 * max(self.inner0, self.inner1)
+
     def radius_at(self, y: float) -> tuple[float, float]:
         """Radii of the bore and of the outer surface at one place.
 
