@@ -208,7 +208,7 @@ CASES = {
     ),
     "assumed bearing": Case(
         "doubtful_data",
-        "bearing 'b0' (assumed)",
+        "bearings 'b0', 'b1' (assumed)",
         scene().with_changes(bearings=[b.with_changes(status="assumed") for b in scene().bearings]),
         scene(),
     ),

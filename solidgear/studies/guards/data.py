@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solidgear.errors import listed
 from solidgear.frames import DOF_NAMES
 from solidgear.studies.guards.notice import Notice, Notices, slip_in_units
 from solidgear.studies.guards.probe import Probe
@@ -68,13 +69,16 @@ def units(probe: Probe) -> Notices:
 
 def doubtful_data(probe: Probe) -> Notices:
     """Bearings whose numbers were assumed or identified."""
-    doubtful = [
-        f"bearing {b.name!r} ({b.status})"
-        for b in probe.scene.bearings
-        if b.status in ("identified", "assumed", "estimated") and not b.hold
-    ]
+    doubtful: dict[str, list[str]] = {}
+    for b in probe.scene.bearings:
+        if b.status in ("identified", "assumed", "estimated") and not b.hold:
+            doubtful.setdefault(b.status, []).append(repr(b.name))
     if doubtful:
-        yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
+        told = (
+            f"bearing{'s' * (len(names) > 1)} {listed(names)} ({status})"
+            for status, names in doubtful.items()
+        )
+        yield Notice("caution", (), f"data not measured or published: {', '.join(told)}")
 
 
 def free_motions(probe: Probe) -> Notices:

@@ -178,7 +178,7 @@ def memory(probe: Probe) -> Notices:
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    need = sum(law(name, *matrix) for matrix in size.matrices)
+    need = float(f"{sum(law(name, *matrix) for matrix in size.matrices):.2g}")  # good to GOOD_TO
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
     if LADDER["harmonic"].unfit(probe.whole):

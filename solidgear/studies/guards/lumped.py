@@ -43,8 +43,8 @@ def effective_mass(probe: Probe) -> Notices:
         level = beyond(off, probe.scene.ask.tolerance)
         lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
         why.append(
-            f"the mode-matched pair of masses {lacks}: Guyan's stands in, with first bending "
-            f"{100 * off:+.3g} % off {whose}"
+            f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
+            f"{against(off, 'higher', 'lower')} that of {whose}"
         )
     if point.static_share < ENERGY:
         why.append(

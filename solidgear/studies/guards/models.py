@@ -197,18 +197,22 @@ JOINT = 0.5  # odd_geometry.py: the tilt compliance of a beam misses 5 %, at 0.3
 
 def thin_joint(probe: Probe) -> Notices:
     """Neighbours that hang together by a ring thinner than either of them."""
+    found = []
     for a, b in zip(probe.scene.segments, probe.scene.segments[1:]):
         ring = min(a.outer1, b.outer0) - max(a.inner1, b.inner0)
         share = ring / min(a.outer1 - a.inner1, b.outer0 - b.inner0)
         if share < JOINT:
-            yield Notice(
-                "caution",
-                beams(),
+            found.append(
                 f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = "
-                f"{1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's "
-                "tilt "
-                f"compliance misses 5 %, below 0.3 12 %; use {probe.instead()}",
+                f"{1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall"
             )
+    if found:
+        yield Notice(
+            "caution",
+            beams(),
+            f"{'; '.join(found)}: below {JOINT:g} a beam's tilt compliance misses 5 %, below 0.3 it "
+            f"misses 12 %; use {probe.instead()}",
+        )
 
 
 BEYOND = 0.02  # odd_geometry.py's shaft: 1.4 % in the tilt compliance; 7 % at 0.1
