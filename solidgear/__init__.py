@@ -1,11 +1,27 @@
-"""solidgear: one pinion shaft, four models, and the evidence for which to trust.
+"""solidgear: shafts on their bearings, alone or two in mesh, by many models, and the evidence for
+which to trust.
 
     import solidgear as sg
     scene = sg.load("geometry/pinion_overhung.toml")
     body = sg.build(scene, "harmonic")
     sg.condense(body, scene, port="pinion").stiffness
     sg.modes(body, scene, n=10).frequency_hz
+    sg.answer(scene, tol="1%", ask="f1")
     sg.compare(scene).write_report("out")
+
+Models that `build` makes, cheapest first: euler, timoshenko, harmonic, corrected, sector, solid;
+`compare` judges lumped models beside them.
+
+What there is, each with an example in its help:
+
+    scenes       load, Scene, Segment, Bearing, Port, PointMass, Housing, Lubrication, Material,
+                 STEEL, Ask
+    questions    answer, compare, condense, modes, shaft_stress, turn
+    bodies       build, Body, Supports
+    trains       load_train, Train
+    systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
+                 MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
+    errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
 """
@@ -146,7 +162,9 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str):
     if name not in _WHERE:
-        raise AttributeError(f"module 'solidgear' has no attribute {name!r}")
+        from solidgear.errors import nearest
+
+        raise AttributeError(f"solidgear has no {name!r}{nearest(name, _WHERE)}")
     value = getattr(importlib.import_module(_WHERE[name]), name)
     globals()[name] = value
     return value

@@ -23,6 +23,7 @@ from solidgear.ladder.meshes import Sequence
 from solidgear.ladder.registry import LADDER
 from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.scene import Bearing, BoltCircle
+from tests.command import command
 
 ROOT = Path(__file__).parent.parent
 SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
@@ -420,8 +421,6 @@ def test_command_line():
     assert json.loads(share.stdout)["tolerance"] == found["tolerance"] == 0.05
     none = run("geometry/shaft_stepped.toml", "--tol", "one")
     assert none.returncode == 2 and "or 1%" in " ".join(none.stderr.split())
-    with pytest.raises(sg.SolidgearError, match='did you mean "bending 1"'):
-        answer(sg.load("geometry/shaft_stepped.toml"), ask="f1")
     wrong = run("geometry/shaft_stepped.toml", "--tol", "0")
     assert wrong.returncode == 1 and "tol = 0" in wrong.stderr
 
@@ -447,3 +446,22 @@ def test_what_an_answer_cost_is_told_in_plain_seconds():
     found = SimpleNamespace(steps=[step], missing=(), tolerance=1e-3, reached=True, rung="sector")
     (line,) = sentences(found)
     assert line == "Within 0.10 %: sector, 108 s for all meshes tried."
+
+
+def test_f1_is_the_lowest_frequency_of_all_and_a_tolerance_may_be_written_in_per_cent(scenes):
+    pinion = scenes["pinion_overhung"]
+    found = answer(pinion, "2 %", "f1, f2")
+    # this shaft moves along its axis before it bends
+    assert [value.quantity for value in found.values] == ["axial 1", "bending 1"]
+    assert found.tolerance == 0.02 and found["axial 1"] < found["bending 1"]
+    with pytest.raises(sg.SolidgearError, match="f5 is bending 3 here"):
+        answer(pinion, 0.02, "f5")
+    with pytest.raises(sg.SolidgearError, match='or "1%"'):
+        answer(pinion, "half")
+
+
+def test_an_answer_that_lacks_a_number_asked_for_says_so_in_its_exit_code():
+    shaft = "geometry/shaft_stepped.toml"
+    lacking = command("answer", shaft, "--tol", "10%", "--ask", "bending,C_thy")
+    assert lacking.exit_code == 3 and "Not there: C_thy (a motion that no bearing" in lacking.stdout
+    assert command("answer", shaft, "--tol", "10%", "--ask", "bending").exit_code == 0

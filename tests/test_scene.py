@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError
+from solidgear.ladder.registry import LADDER
 from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.scene.bearing_stiffness import (
     STIFFNESS_NAMES,
@@ -403,3 +405,35 @@ def test_a_seat_a_hair_beside_a_face_or_a_joint_ends_there():
     # a gap that one can see is a gap
     wide = sg.Bearing(name="A", y=0.0101, seat_width=0.02, stiffness=springs)
     assert scene.with_changes(bearings=(wide,)).bearings[0].lo == pytest.approx(1e-4)
+
+
+def test_fields_are_called_as_in_a_file_and_pydantic_is_not_shown():
+    pinion = sg.load("geometry/pinion_overhung.toml")
+    front = pinion.bearings[0]
+    assert front.position == front.y and "position=0.096" in repr(front)
+    assert front.with_changes(position="0.1 m").y == 0.1
+    assert sg.Bearing(name="A", position=0.1, seat_width=0.02, hold="pinned").y == 0.1
+    assert pinion.segments[-1].diameter == pytest.approx(0.09)
+    for shown in (pinion, front, sg.Bearing, sg.Material):
+        names = set(dir(shown))
+        assert not names & {"copy", "json", "dict", "schema"}
+        assert not any("pydantic" in name or name.startswith("model_") for name in names)
+    assert {"seat_width", "with_changes"} <= set(dir(sg.Bearing))
+
+
+@pytest.mark.parametrize(
+    "name, meant",
+    (("bearing", "bearings"), ("materal", "material"), ("with_change", "with_changes")),
+)
+def test_a_name_that_is_not_there_is_answered_by_the_one_that_is_meant(name, meant):
+    pinion = sg.load("geometry/pinion_overhung.toml")
+    with pytest.raises(AttributeError, match=f'a Scene has no .{name}.; did you mean "{meant}"'):
+        getattr(pinion, name)
+    with pytest.raises(AttributeError, match='did you mean "compare"'):
+        sg.__getattr__("compar")
+
+
+def test_the_help_of_the_package_names_all_that_it_exports_and_every_model():
+    words = set(re.findall(r"[A-Za-z_]+", sg.__doc__))
+    assert {*sg.__all__} - {"__version__"} <= words
+    assert set(LADDER.bodies) <= words

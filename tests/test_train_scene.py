@@ -188,7 +188,7 @@ BAD = {
     "hands": ('hand = "right"', 'hand = "left"', "cannot mesh"),
     "ratio": (LINE, LINE + "\nratio = 3.0", "a ratio of 3.2143"),
     "teeth": ("teeth = 14 ", "teeth = 14.5 ", "pinion.teeth"),
-    "no spring": ("[engine.spring]", "[engine.sprint]", "torsional spring between the engine"),
+    "a spring misspelt": ("[engine.spring]", "[engine.sprint]", 'did you mean "spring"'),
     "no stiffness of it": ('stiffness = "1.159e4 N*m/rad"', "", "stiffness"),
     "port": ('at = "gear"', 'at = "5"', "known here: gear, 3, 4"),
     "per cent": ("mesh = 0.12", "mesh = 12", "12 per cent is written 0.12"),
@@ -416,3 +416,23 @@ def test_a_spring_is_tied_as_its_shaft_is(tmp_path):
         shaft = train.with_changes(pinion=train.pinion.with_changes(scene=own)).shaft("pinion")
         assert shaft.bearings[-1].name == "engine spring"
         assert shaft.bearings[-1].attachment == tie
+
+
+def test_all_that_is_wrong_with_a_train_is_told_at_once(tmp_path):
+    text = (GEOMETRY / "gearbox_train.toml").read_text(encoding="utf-8")
+    text = text.replace('scene = "', f'scene = "{GEOMETRY}/')
+    for right, wrong in (
+        ("[engine.spring]", "[engine.motor]"),
+        ("teeth = 20", "teeth = 20.5"),
+        ('stiffness = "3.2e8 N/m"', 'stiffness = "3.2e8 kg"'),
+    ):
+        text = text.replace(right, wrong, 1)
+    path = tmp_path / "train.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(sg.SceneError) as refused:
+        load_train(path)
+    told = [".".join(map(str, one.path)) for one in refused.value.problems]
+    assert {"engine.spring", "pinion.teeth", "mesh.stiffness"} <= set(told)
+    assert len(told) == len(set(told)) and "torsional spring between the engine" in str(
+        refused.value
+    )

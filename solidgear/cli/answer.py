@@ -40,7 +40,7 @@ def answer(
         str,
         typer.Option(
             "--ask",
-            help="Comma-separated: C_zz, K_thx, bending, ..., C_zz@gear at a further point, "
+            help="Comma-separated: C_zz, K_thx, bending, f1 (the lowest), ..., C_zz@gear at a further point, "
             "C_zz@wheel@pinion between two; by default what the scene asks for.",
         ),
     ] = "",
@@ -89,7 +89,8 @@ def answer(
             say(f"Where the error sits: {unplaced}.")
         if places is not None and picture is not None:
             say(f"Picture: {picture}")
-    if not found.reached:
+    # the usual question is of what there is; one that names a number wants that number
+    if not found.reached or found.missing and (ask or loaded.ask.quantities):
         raise typer.Exit(NOT_REACHED)
 
 

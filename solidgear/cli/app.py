@@ -23,7 +23,8 @@ app = typer.Typer(
     help="Shafts on their bearings, and two that mesh, as lumped model, beam, "
     "axisymmetric-harmonic solid and full 3D solid, side by side.",
     epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
-    "3 the tolerance is not reached, the numbers are there with their bars; 130 interrupted. "
+    "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "
+    "bars; 130 interrupted. "
     "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,

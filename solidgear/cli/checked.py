@@ -16,10 +16,11 @@ def print_check(found: dict) -> None:
     found : dict
         As :func:`solidgear.studies.check.check_scene` gives it.
     """
-    for line in found["facts"]:
-        print(line)
+    told = [record for record in found["records"] if not _spared(record, found["verdicts"])]
+    for record in (r for r in told if r["level"] == "fact"):
+        print(record["sentence"])
     for level in ("caution", "open", "avoid"):
-        for record in (r for r in found["records"] if r["level"] == level):
+        for record in (r for r in told if r["level"] == level):
             words = ("caution", ", ".join(record["models"]), record["sentence"])
             print(": ".join(filter(None, words)))
     for line in found["faults"]:
@@ -29,6 +30,22 @@ def print_check(found: dict) -> None:
             name: (told["verdict"], ", ".join(told["guards"]).replace("_", " "))
             for name, told in found["verdicts"].items()
         }
+    )
+
+
+def _spared(record: dict, verdicts: dict) -> bool:
+    """Tell whether a record is left to ``--json``: a sound mesh, what is said of models that do not
+    hold the features at all, and a rule of thumb where what was computed refuses.
+    """
+    if record["guard"] == "mesh":
+        return record["level"] == "fact"
+    refused = [verdicts.get(m, {}).get("guards", []) for m in record["models"]]
+    by = {"features"} | ({"beam_against_solid"} if record["guard"] == "slenderness" else set())
+    return (
+        bool(refused)
+        and record["guard"] not in by
+        and record["level"] in ("caution", "open")
+        and all(by & set(guards) for guards in refused)
     )
 
 

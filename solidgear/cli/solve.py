@@ -321,13 +321,16 @@ def check(
         check_train(scene, run.as_json, given)
         return
     from solidgear.cli.checked import print_check
+    from solidgear.ladder import build
+    from solidgear.ladder.meshes import HARMONIC
     from solidgear.studies.check import check_scene
     from solidgear.studies.loading import load
 
     loaded = load(scene)
     # a model of revolution is looked at on the plain part, and the check says so
     shown = loaded.plain if LADDER[model.name].unfit(loaded) else loaded
-    found = check_scene(loaded, model.body(shown))
+    light = model.name == MODEL and not model.settings
+    found = check_scene(loaded, build(shown, MODEL, **HARMONIC) if light else model.body(shown))
     if run.as_json:
         print(json.dumps(found, default=float))
     else:

@@ -12,7 +12,7 @@ import typer
 from solidgear.cli.app import Progress as Steps
 from solidgear.cli.app import command
 from solidgear.cli.settled import ended, over_the_sweep
-from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options
+from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, share
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
 from solidgear.cli.sweep_scene import sweep_scene
 from solidgear.cli.sweep_train import Told, sweep_train
@@ -50,6 +50,8 @@ def sweep(
         float,
         typer.Option(
             "--tolerance",
+            parser=share,
+            metavar="FLOAT",
             help="Relative error of frequencies; checked by a bound for every variant.",
         ),
     ] = TOLERANCE,

@@ -131,6 +131,7 @@ def response(
     from solidgear.report.folder import held
     from solidgear.report.train_files import write_response
     from solidgear.studies.train.comparison import described
+    from solidgear.studies.train.loudest import loudest
     from solidgear.studies.train.modes import train_modes, unpublished_lines
     from solidgear.studies.train.orders import order_map
     from solidgear.studies.train.respond import respond
@@ -145,13 +146,15 @@ def response(
         unpublished = shop.train.unpublished()
         said = slips(shop)
         cautions = [*said, *found[0].cautions]
-        notes = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
+        notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
         title = shop.train.called
         teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
         # a force on a port has no order of the mesh
         lines = None if forces else order_map(shop, *driven.mixes[0], highest, *losses, orders)
         modes = lines.modes if lines else train_modes(shop, *driven.mixes[0], highest).modes
         there, told = asked.found(modes), described(shop)
+        top = loudest(found[0], modes, shop.train, shop.scenes, not forces)
+        notes |= {"loudest": top.as_dict()}
         files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
     if run.as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
@@ -160,7 +163,7 @@ def response(
         f"{title}: pinion {driven.pinion}, gear {driven.gear}, {driven.damping} losses",
         soft_wrap=False,
     )
-    say(*map(caution, said))
+    say(*top.sentences(), *map(caution, said))
     tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
     print_peaks(tops, "mesh force", "N", teeth, run.units)
     if there is not None:

@@ -81,7 +81,7 @@ def _judged(
         return
     verdict = found.verdict
     heading = f"{verdict.train}, up to {verdict.highest_hz:g} Hz"
-    say(heading, _verdict_table(verdict), soft_wrap=False)
+    say(heading, *found.top.sentences(), _verdict_table(verdict), soft_wrap=False)
     say(*verdict.sentences(), *unpublished_lines(verdict.unpublished))
     say(*map(caution, verdict.cautions))
     if out:

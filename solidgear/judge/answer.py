@@ -23,14 +23,18 @@ from solidgear.frames import DOF_NAMES
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import judged, own_name
 from solidgear.judge.refinement import Progress
+from solidgear.judge.solving import ENOUGH
 from solidgear.judge.steps import Step, Value
-from solidgear.ladder import NO_MODEL
+from solidgear.ladder import NO_MODEL, build
+from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
-from solidgear.quantity import ACROSS, FIRST_BENDING, QUANTITIES, Quantity
+from solidgear.quantity import ACROSS, QUANTITIES, Quantity
+from solidgear.scene.units import quantity
 from solidgear.solve.families import FAMILIES
+from solidgear.solve.modes import modes
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -39,8 +43,8 @@ C = TypeVar("C", bound=Climb)
 
 #: between two quantities
 COMMA = rf",(?!\s*(?:{'|'.join(DOF_NAMES)})\b)"
-#: what tables head the first frequencies with
-SHORT = {"f1": FIRST_BENDING, "f2": Quantity("bending 2")}
+#: a natural frequency by its place above zero, such as f1
+PLACE = re.compile(r"f_?(\d{1,2})", re.IGNORECASE)
 #: short words for quantities
 WORDS = {family: Quantity(f"{family} 1") for family in FAMILIES}
 #: below this, rounding of stiffness matrices decides what an answer is worth
@@ -94,7 +98,7 @@ class Answered(Displayed):
 @pinned
 def answer(
     scene: Scene,
-    tol: float | None = None,
+    tol: float | str | None = None,
     ask: Iterable[str] | str = (),
     *,
     progress: Progress = lambda _: None,
@@ -104,12 +108,13 @@ def answer(
     Parameters
     ----------
     scene : Scene
-    tol : float, optional
-        Relative error that every quantity may have; by default the tolerance of the scene.
+    tol : float or str, optional
+        Relative error that every quantity may have, such as 0.01 or ``"1%"``; by default the
+        tolerance of the scene.
     ask : str or iterable of str, optional
         Quantities (:data:`solidgear.quantity.QUANTITIES`), or ``bending``, ``axial``,
-        ``torsion`` for the first frequency of a family; ``C_zz@name`` at a further lumped point; by
-        default those the scene asks for.
+        ``torsion`` for the first frequency of a family, ``f1``, ``f2`` ... for the lowest of all;
+        ``C_zz@name`` at a further lumped point; by default those the scene asks for.
     progress : callable
         Called with a sentence at every step.
 
@@ -204,25 +209,29 @@ def climbed(
     raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
 
 
-def usable(tol: float) -> float:
-    """A tolerance that can be held.
+def usable(tol: float | str) -> float:
+    """A tolerance that can be held; a text is read as in a scene.
 
     Raises
     ------
     SolidgearError
         Unless it is above 0, at most 1, and not below what arithmetic allows.
     """
-    number = isinstance(tol, (int, float)) and not isinstance(tol, bool) and math.isfinite(tol)
-    if not number or not 0 < tol <= 1:
+    given = tol
+    try:
+        tol = quantity(given, "dimensionless")
+    except SolidgearError:
+        tol = math.nan
+    if not 0 < tol <= 1:
         raise SolidgearError(
-            f"tol = {show(tol)} is not usable; give a number above 0 and at most 1"
+            f'tol = {show(given)} is not usable; give a number above 0 and at most 1, or "1%"'
         )
     if tol < LEAST_TOLERANCE:
         raise SolidgearError(
             f"tol = {tol:g} is below what arithmetic of sixteen digits allows; "
             f"give at least {LEAST_TOLERANCE:g}"
         )
-    return float(tol)
+    return tol
 
 
 def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
@@ -236,16 +245,35 @@ def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
         asked = Quantity(name)
         symbol = re.sub(r"_(\d)", r" \1", asked.symbol)  # bending_1
         word = WORDS.get(asked.symbol) or Quantity(symbol)
+        if (place := PLACE.fullmatch(asked)) is not None:
+            word = _lowest(scene, int(place[1]))
         if asked.points and word in QUANTITIES:
             if word.is_frequency:
                 raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
             word = own_name(scene, asked)
         elif asked.points or word not in (*QUANTITIES, *ACROSS):
-            known = (*QUANTITIES, *ACROSS, *WORDS)
-            meant = SHORT.get(asked.symbol.lower(), "")
-            hint = f'; did you mean "{meant}"?' if meant else nearest(name, known)
+            known = (*QUANTITIES, *ACROSS, *WORDS, "f1")
+            if place is not None:
+                raise SolidgearError(
+                    f"ask: {name} is {word} here, which has no bar of its own in an answer; ask for "
+                    f"{', '.join(q for q in QUANTITIES if q.is_frequency)}, or run solidgear modes"
+                )
             raise SolidgearError(
-                f"ask: there is no quantity {show(name, 40)}{hint}; there are {', '.join(known)}"
+                f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; there are "
+                f"{', '.join(known)}"
             )
         out.append(word)
     return tuple(dict.fromkeys(out))
+
+
+def _lowest(scene: Scene, place: int) -> Quantity:
+    """Name of a natural frequency by its place among those above zero, from 1, twins counted once.
+
+    A light harmonic solid of the plain part tells the order; its frequencies are not told.
+    """
+    body = build(scene.plain, "harmonic", **HARMONIC)
+    found = modes(body, scene.plain, max(ENOUGH, 2 * place)).modes
+    names = [mode.name for mode in found if mode.frequency_hz > 0]
+    if not 0 < place <= len(names):
+        raise SolidgearError(f"ask: f{place}: give f1 to f{len(names)}")
+    return Quantity(names[place - 1])

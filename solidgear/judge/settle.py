@@ -122,7 +122,7 @@ class Settled:
 @pinned
 def settle(
     scene: Scene,
-    tol: float | None = None,
+    tol: float | str | None = None,
     ask: str = "all",
     *,
     points: Sequence[str] = (),
@@ -133,7 +133,7 @@ def settle(
 
     Parameters
     ----------
-    tol : float, optional
+    tol : float or str, optional
         Relative; by default the tolerance of the scene.
     ask : {'all', 'stiffness', 'modes'}
         Compliances and stiffnesses at the lumped point in all six directions, the first frequencies

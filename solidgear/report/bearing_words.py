@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import pi
 from typing import Any
 
 from solidgear.report.units import Units
@@ -26,6 +27,12 @@ def load_row(scene: Mapping[str, Any], units: Units) -> list[list[str]]:
     """
     told = loads(scene.get("load") or {}, units)
     return [["load at the lumped point", f"{told}; bearings are taken under it"]] if told else []
+
+
+def speed_row(scene: Mapping[str, Any]) -> list[list[str]]:
+    """The speed at which lives are told where a bearing has none of its own, as a row."""
+    speed = (scene.get("lubrication") or {}).get("speed")
+    return [["speed of the shaft", f"{30 / pi * speed:.6g} rpm"]] if is_number(speed) else []
 
 
 def loads(load: Mapping[str, Any], units: Units) -> str:
@@ -70,6 +77,8 @@ def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
         words.append(f"clearance {units.given(clearance, 'm')} {length}")
     elif isinstance(clearance, str):
         words.append(f"clearance {clearance}")
+    if is_number(data.get("speed")) and data["speed"]:
+        words.append(f"at {30 / pi * data['speed']:.6g} rpm")
     own = loads(data.get("load") or {}, units)
     if own:
         words.append(f"under {own}")

@@ -9,7 +9,7 @@ from solidgear.judge.record import BarRecord, LevelRecord, ModelRecord, Record
 from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, readout
 from solidgear.report.plot import WIDE, Chart, in_columns
 from solidgear.report.reading import model_name
-from solidgear.report.words import grouped, percent
+from solidgear.report.words import grouped, percent, small
 
 #: what the meshes differ in -> label of the axis
 AXIS = {
@@ -130,7 +130,8 @@ def _shade(panel: Panel, low: float, one: _Quantity) -> None:
     bar, colour = one.bar.gci, one.model.colour
     panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar}])
     panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar}])
-    words = f"bar {percent(bar, signed=False)}, factor {one.bar.factor}"
+    factor = "" if one.bar.factor is None else f", factor {small(one.bar.factor)}"
+    words = f"bar {percent(bar, signed=False)}{factor}"
     name = {"type": "text", "align": "left", "dy": -7, "dx": 4}
     panel.draw(name, [{"y": bar, "text": words}], x={"value": 0})
 

@@ -34,7 +34,7 @@ from solidgear.report.words import DASH, bar_percent, percent, plus_minus, short
 
 #: quantities of page one -> in words
 ROWS: dict[str, str] = {
-    "bending 1": "First bending mode, f1",
+    "bending 1": "First bending mode",
     "axial 1": "First axial mode",
     "K_zz": "Stiffness across the shaft",
     "K_yy": "Stiffness along the shaft",

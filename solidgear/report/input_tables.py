@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from solidgear.judge.record import Record
 from solidgear.quantity import Quantity
-from solidgear.report.bearing_words import catalogue, load_row, without_column
+from solidgear.report.bearing_words import catalogue, load_row, speed_row, without_column
 from solidgear.report.reading import entry, model_name
 from solidgear.report.table import Column, Table, given, text, word
-from solidgear.report.train_tables import mark
+from solidgear.report.train_tables import mark, material_words
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import DASH, engineering, hertz, is_number, percent, short_percent
 
@@ -23,26 +22,20 @@ SIZES = ("y", "length", "width", "depth", "diameter", "radius", "size", "height"
 def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
     """The scene in a few lines."""
     scene = record.scene
-    material = scene.get("material") or {}
     free = record.port.free if record.port else []
     rows = [
         ["source", scene.get("source") or "not given"],
         ["length", f"{units.given(scene.get('length'), 'm')} {units.unit('m')}"],
-        ["material", _material(material, units)],
+        ["material", material_words(scene.get("material") or {}, units)],
         ["lumped point", _lumped_point(record, units)],
         ["free motions there", ", ".join(free) or "none"],
         *_further_points(scene, units),
         _housing(scene, units),
         *load_row(scene, units),
+        *speed_row(scene),
         ["asked for", _asked(scene.get("ask") or {})],
     ]
     return Table("Scene", ["item", text("value")], rows if scene else [], style="facts")
-
-
-def _material(material: Mapping[str, Any], units: Units) -> str:
-    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³")
-    return f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
 
 
 def _lumped_point(record: Record, units: Units) -> str:
@@ -130,6 +123,8 @@ def _diameters(segment: Mapping, side: str, units: Units) -> str:
 def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material == default:
         return "default"
+    if material.get("name"):
+        return str(material["name"])
     modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
     density = units.given(material.get("density"), "kg/m³")
     return f"E {modulus}, nu {material.get('nu')}, density {density} kg/m³"

@@ -25,6 +25,7 @@ def write_files(
     charts: Mapping[str, Make],
     notes: Sequence[str] = (),
     cautions: Sequence[str] = (),
+    verdict: Sequence[str] = (),
 ) -> list[Path]:
     """Write a page, the data it shows, tables for other programs, and charts.
 
@@ -32,7 +33,7 @@ def write_files(
     ----------
     name : str
         Of page and data.
-    title, lead, tables, notes, cautions
+    title, lead, tables, notes, cautions, verdict
         Of the page.
     data : mapping
         In SI.
@@ -53,7 +54,16 @@ def write_files(
     for stem, make in charts.items():
         files += write_charts(folder / stem, make)
     path = folder / f"{name}.html"
-    write_sheet(path, title, lead, tables, charts=charts, notes=notes, cautions=cautions)
+    write_sheet(
+        path,
+        title,
+        lead,
+        tables,
+        charts=charts,
+        notes=notes,
+        cautions=cautions,
+        verdict=verdict,
+    )
     return [path, *files]
 
 

@@ -33,9 +33,9 @@ VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
 COLUMNS = {
     "K_zz": "N/m",
     "C_zz": "m/N",
-    "f1": "Hz",
+    "fb1": "Hz",
     "dC_zz": "",
-    "df1": "",
+    "dfb1": "",
     "bar C": "",
     "DOFs": "",
     "time": "s",
@@ -89,9 +89,9 @@ def _columns(record: Record, units: Units) -> list[Column]:
     tells: dict[str, tuple[Tell, Callable[[Any], str]]] = {
         "K_zz": (entry(K_ZZ), str),
         "C_zz": (entry(C_ZZ), str),
-        "f1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
+        "fb1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
         "dC_zz": (lambda key: _against_reference(record, key, C_ZZ), str),
-        "df1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
+        "dfb1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
         "bar C": (bar, words.bar_percent),
         "DOFs": (lambda key: models[key].dofs, words.count),
         "time": (lambda key: reading.answer_seconds(models[key]), words.seconds),
@@ -122,7 +122,7 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
         notes.append("n.r.: not resolved, the difference lies inside the error bars of both models")
     if record.models:
         notes.append(
-            "bar C: error bar of the worst compliance; "
+            "fb1: first bending mode; bar C: error bar of the worst compliance; "
             "time: building and solving, without the evidence"
         )
     if not record.complete:

@@ -77,6 +77,7 @@ def write_response(
         charts=charts,
         notes=remarks,
         cautions=notes.get("cautions", ()),
+        verdict=notes["loudest"]["sentences"],
     )
 
 

@@ -105,13 +105,11 @@ def _page(
     train, verdict = results["train"], results["verdict"]
     svg = {name: page_svg(name, make) for name, make in charts.items()}
     svg |= {side: sketch_svg(side, train[side]["scene"]) for side in SIDES}
-    best, pictures = verdict["cheapest"], results["pictures"]
-    both = f"both shafts {best['gear']}"
-    mixed = f"pinion {best['pinion']}, gear {best['gear']}"
+    pictures = results["pictures"]
     return template("train.html").render(
         train=train,
         verdict=verdict,
-        cheapest=both if best["pinion"] == best["gear"] else mixed,
+        loudest=results["loudest"]["sentences"],
         warnings=[*verdict["cautions"], *results["left_out"]],
         notes=results["modes"]["notes"],
         charts={name: Markup(text.decode()) if text else None for name, text in svg.items()},

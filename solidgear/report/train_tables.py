@@ -8,7 +8,7 @@ from typing import Any
 
 from solidgear.report.table import NUMBER, Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, GROUP, Units
-from solidgear.report.words import grouped, hertz, percent, seconds, whole
+from solidgear.report.words import DASH, grouped, hertz, percent, seconds, whole
 
 SIDES = ("pinion", "gear")
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
@@ -40,6 +40,7 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
+    rows += [[f"{side}'s material", _materials(train[side]["scene"], units), ""] for side in SIDES]
     columns = [
         text("item", lambda row: row[0]),
         text("value", lambda row: row[1]),
@@ -47,6 +48,24 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
     ]
     note = "Status says where a value comes from: published, measured, identified or assumed."
     return Table(title, columns, rows, note, style="facts")
+
+
+def material_words(material: Mapping[str, Any], units: Units) -> str:
+    """A material by its name, where it has one, and its constants."""
+    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
+    density = units.given(material.get("density"), "kg/m³")
+    told = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
+    return f"{material['name']}: {told}" if material.get("name") else told
+
+
+def _materials(scene: Mapping[str, Any], units: Units) -> str:
+    """Materials of a shaft, each with the segments that are not of the first one."""
+    own: dict[str, list[str]] = {material_words(scene["material"], units): []}
+    for segment in scene["segments"]:
+        words = material_words(segment.get("material") or scene["material"], units)
+        own.setdefault(words, []).append(str(segment.get("name", "")))
+    first, *others = own
+    return "; ".join([first, *(f"{', '.join(own[words])}: {words}" for words in others)])
 
 
 _MESH = ("mesh.stiffness", "mesh.transmission_error")

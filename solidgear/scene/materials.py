@@ -67,7 +67,7 @@ def by_name(value: Any) -> Any:
     Examples
     --------
     >>> by_name("42CrMo4")
-    {'E': 210000000000.0, 'nu': 0.3, 'density': 7850.0}
+    {'E': 210000000000.0, 'nu': 0.3, 'density': 7850.0, 'name': '42CrMo4'}
     """
     if not isinstance(value, str):
         return value
@@ -82,4 +82,4 @@ def by_name(value: Any) -> Any:
             f"give E, nu and density, or one of {', '.join(MATERIALS)}"
         )
     found = MATERIALS[name]
-    return {"E": found.E, "nu": found.nu, "density": found.density}
+    return {"E": found.E, "nu": found.nu, "density": found.density, "name": name}

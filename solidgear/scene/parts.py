@@ -56,6 +56,9 @@ class Strength(Model):
         return self
 
 
+_CONSTANTS = ("E", "nu", "density")
+
+
 class Material(Model):
     """Isotropic linear elastic material; numbers in SI, or texts with units.
 
@@ -69,6 +72,8 @@ class Material(Model):
         kg/m3.
     strength : Strength or None
         Of which ratings of fatigue are made.
+    name : str
+        As reports call it; nothing is read out of it.
 
     Raises
     ------
@@ -87,13 +92,18 @@ class Material(Model):
     nu: Poisson
     density: Density
     strength: Strength | None = None
+    name: str = ""
 
     @model_serializer(mode="wrap")
     def _without_what_is_not_given(self, dump: Any) -> dict[str, Any]:
         data = dump(self)
-        if data["strength"] is None:
-            del data["strength"]
-        return data
+        return {key: value for key, value in data.items() if key in _CONSTANTS or value}
+
+    def with_changes(self, **changes: Any) -> Material:
+        """A validated copy with some fields replaced; other constants lose the name."""
+        made = super().with_changes(**changes)
+        same = all(getattr(made, key) == getattr(self, key) for key in _CONSTANTS)
+        return made if same or "name" in changes or not made.name else made.with_changes(name="")
 
     @property
     def shear_modulus(self) -> float:
@@ -256,6 +266,26 @@ class Segment(Model):
     def length(self) -> float:
         """Axial length in m."""
         return self.y1 - self.y0
+
+    @property
+    def diameter(self) -> float:
+        """Outer diameter in m; of a cone, the larger one."""
+        return max(self.start_diameter, self.end_diameter)
+
+    @property
+    def start_diameter(self) -> float:
+        """Outer diameter at y0, m."""
+        return 2 * self.outer0
+
+    @property
+    def end_diameter(self) -> float:
+        """Outer diameter at y1, m."""
+        return 2 * self.outer1
+
+    @property
+    def bore(self) -> float:
+        """Diameter of the bore in m, the larger one where it is conical; 0 is solid."""
+        return 2 * max(self.inner0, self.inner1)
 
     def radius_at(self, y: float) -> tuple[float, float]:
         """Radii of the bore and of the outer surface at one place.

@@ -158,6 +158,7 @@ class Placed(Model):
 
     Words: ClassVar[type[Model]] = Along
     sources: ClassVar[Mapping[str, tuple[str, ...]]] = {"y": ("position",)}
+    _also: ClassVar[Mapping[str, str]] = {"position": "y"}
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:

@@ -44,6 +44,7 @@ class OtherMaterial(Model):
     E: Modulus | None = None
     nu: Poisson | None = None
     density: Density | None = None
+    name: str | None = None
 
 
 class _Shape(Model):

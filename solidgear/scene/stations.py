@@ -83,7 +83,7 @@ class Bearing(Placed):
     ----------
     name : str
     y : float
-        Middle of the seat, m.
+        Middle of the seat, m; `position`, as in a file, is the same.
     seat_width : float
         m.
     matrix : tuple of tuple of float, or None
@@ -308,7 +308,7 @@ class Port(Placed):
     ----------
     name : str
     y : float
-        Its place, m; it need not lie within the span.
+        Its place, m; it need not lie within the span. `position`, as in a file, is the same.
     lo, hi : float
         Span of the surface that carries it, m.
     attachment : {'average', 'rigid', 'section'}

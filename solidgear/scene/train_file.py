@@ -8,15 +8,17 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Callable, Mapping
+from functools import partial
 from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
 
-from solidgear.errors import SceneError, show
+from solidgear.errors import SceneError, near, show
 from solidgear.scene.file import load
 from solidgear.scene.model import Scene
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SIDES, Train
+from solidgear.scene.typed import Gathered
 
 #: reads the scene of a side from a file, told whether the shaft stands alone.
 ReadShaft = Callable[[str, Path, bool], Scene]
@@ -76,20 +78,39 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
                 path=("segment",),
             )
         data, alone = {**raw}, "operation" not in raw
+        problems = Gathered()
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
-                data[side] = _with_scene(raw[side], folder, side, alone, shaft)
+                read = partial(_with_scene, raw[side], folder, side, alone, shaft)
+                data[side] = _read(problems, read) or raw[side]
         if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
             data["mesh"] = _with_cells(raw["mesh"], folder)
         for rotor in ("engine", "load"):
-            _whole_rotor(raw, rotor)
-        return Train(**{"name": name_of(where)} | data)
+            problems.read(partial(_whole_rotor, raw, rotor))
+        told = {one.path for one in problems}
+        try:
+            train = Train(**{"name": name_of(where)} | data)
+        except SceneError as error:
+            problems += [one for one in error.problems if one.path not in told]
+        problems.tell()
+        return train
     except SceneError as error:
         if error.where:
             raise
         if isinstance(raw.get("operation"), Mapping):
             error = _of_one_table(error, "operation")
         raise error.located(raw, where=where) from None
+
+
+def _read(problems: Gathered, reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """As `Gathered.read`; problems of another file are told by themselves."""
+    try:
+        return reader()
+    except SceneError as error:
+        if error.where:
+            raise
+        problems += error.problems
+        return None
 
 
 def _of_one_table(error: SceneError, key: str) -> SceneError:
@@ -116,7 +137,8 @@ def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
     if not isinstance(table, Mapping):
         reason = f"this table is missing; write [{rotor}] with its inertia, and [{rotor}.spring]"
         raise SceneError(reason, path=(rotor,))
-    if not isinstance(table.get("spring"), Mapping):
+    misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # told as such
+    if not isinstance(table.get("spring"), Mapping) and not misspelt:
         raise SceneError(
             f"the torsional spring between the {rotor} and the {side}'s shaft is missing; write "
             f"[{rotor}.spring] with stiffness and where it sits (at)",

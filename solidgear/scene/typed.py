@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar, get_args
+from inspect import Parameter, Signature
+from keyword import iskeyword
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from solidgear.errors import TOLD, SceneError, did_you_mean, near, scene_error
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
 
 _Self = TypeVar("_Self", bound="Model")
 _Read = TypeVar("_Read")
@@ -48,7 +55,19 @@ OTHER_WORDS = {
 }
 
 
-class Model(BaseModel):
+#: what pydantic gives every model, and nobody who reads a scene asks for
+PYDANTIC = frozenset(name for name in dir(BaseModel) if not name.startswith("_"))
+
+
+class _Shown(ModelMetaclass):
+    """Classes that list their fields and their own methods, for help() and completion."""
+
+    def __dir__(cls) -> list[str]:
+        names = {*super().__dir__(), *cls.__dict__.get("__pydantic_fields__", ())} - PYDANTIC
+        return sorted(name for name in names if "pydantic" not in name)
+
+
+class Model(BaseModel, metaclass=_Shown):
     """Frozen and validated; a refusal names every problem in a sentence of its own.
 
     Raises
@@ -58,8 +77,11 @@ class Model(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+    #: words of a file that fields may be called by as well
+    _also: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, /, **data: Any):
+        data = {self._own(key, data): value for key, value in data.items()}
         fields = by_key(type(self))
         problems, meant = unknown_keys(data, fields)
         try:
@@ -68,6 +90,48 @@ class Model(BaseModel):
             problems += not_meant(scene_error(error, data).problems, meant)
         if problems:
             raise SceneError.of(one.located(data) for one in problems) from None
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Keys and defaults, as help() shows them."""
+        cls.__signature__ = Signature(
+            [
+                Parameter(
+                    cls._words().get(name, field.alias or name),
+                    Parameter.KEYWORD_ONLY,
+                    default=Parameter.empty if field.is_required() else field.get_default(),
+                )
+                for name, field in cls.model_fields.items()
+                if not iskeyword(field.alias or name)  # such as from
+            ]
+        )
+
+    @classmethod
+    def _own(cls, word: str, given: Mapping[str, Any]) -> str:
+        """The field that a word of a file stands for, if it is not given as well."""
+        own = cls._also.get(word, word)
+        return own if own in cls.model_fields and own not in given else word
+
+    def __dir__(self) -> list[str]:
+        return sorted({*dir(type(self)), *self._words().values()})
+
+    @classmethod
+    def _words(cls) -> dict[str, str]:
+        """Words of a file by the fields that they stand for."""
+        return {own: word for word, own in cls._also.items() if own in cls.model_fields}
+
+    def __repr_args__(self) -> Any:
+        words = self._words()
+        return ((words.get(name or "", name), value) for name, value in super().__repr_args__())
+
+    def __getattr__(self, name: str) -> Any:
+        if name in self._words().values():
+            return getattr(self, type(self)._also[name])
+        if name.startswith("_"):
+            return super().__getattr__(name)  # type: ignore[misc]
+        known = {one: None for one in dir(self) if not one.startswith("_")}
+        meant = did_you_mean(near(f"{name}s", known) or near(name, known))
+        raise AttributeError(f"a {type(self).__name__} has no {name!r}{meant}")
 
     @classmethod
     def table_keys(cls) -> dict[str, FieldInfo | None]:
@@ -93,6 +157,7 @@ class Model(BaseModel):
             As by the constructor.
         """
         fields = type(self).model_fields
+        changes = {self._own(key, changes): value for key, value in changes.items()}
         given = {name: getattr(self, name) for name in fields} | changes
         keys = {name: field.alias or name for name, field in fields.items()}
         return type(self)(**{keys.get(name, name): value for name, value in given.items()})

@@ -1,7 +1,6 @@
 """Units at the border: a quantity as a user writes it in, a float in SI out.
 
-The only module that touches pint, and only once a text is met: the import costs more than solving a
-beam.
+The only module that touches pint, once a text needs it: the import costs more than solving a beam.
 """
 
 from __future__ import annotations
@@ -71,6 +70,7 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     "N/mm": (1e3, 0.0, _PER_LENGTH),
     "N/um": (1e6, 0.0, _PER_LENGTH),
     "N": (1.0, 0.0, _FORCE),
+    "kN": (1e3, 0.0, _FORCE),
     "N/rad": (1.0, -1.0, _FORCE),
     "kg": (1.0, 0.0, _dimension(mass=1)),
     "kg*m^2": (1.0, 0.0, _INERTIA),

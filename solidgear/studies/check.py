@@ -86,7 +86,8 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         it rests on.
     """
     probe = probe or Probe(scene.plain, body, whole=scene)
-    said = [("body", notice) for notice in _of_the_body(scene, body)]
+    said = [("shaft", _of_the_shaft(scene))]
+    said += [("mesh", notice) for notice in _of_the_mesh(scene, body)]
     said += [("features", notice) for notice in _beyond_the_segments(scene)]
     said += [("round_part", notice) for notice in described(scene)]
     for name in GUARDS:
@@ -278,7 +279,19 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         )
 
 
-def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
+def _of_the_shaft(scene: Scene) -> Notice:
+    """Length, mass and inertia."""
+    exact = mass_properties(scene.outline)
+    return Notice(
+        "fact",
+        (),
+        f"{scene.name}: length {1e3 * scene.length:.6g} mm, mass {exact.mass:.4g} kg, centre at y = "
+        f"{1e3 * exact.centre:.4g} mm, polar inertia {exact.iyy:.4g}, transverse {exact.ixx:.4g} "
+        f"kg m^2 (closed form{' of the round part' * (scene.body is not None)})",
+    )
+
+
+def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
     """Mass and inertia against the closed form, and no stiffness against rigid motions."""
     exact = mass_properties(scene.outline)
     matrix, own = body.mass_matrix(), (body.fidelity,)
@@ -294,35 +307,24 @@ def _of_the_body(scene: Scene, body: Body) -> Iterator[Notice]:
         closed, where, off = [], "the part", "that of the part"
         if whole is not None:
             closed = [("mass", matrix[0, 0], whole.mass(scene.material))]
-    yield Notice(
-        "fact",
-        (),
-        f"{scene.name}: {body.fidelity}, {body.size} unknowns, length {1e3 * scene.length:.6g} mm",
-    )
-    yield Notice(
-        "fact",
-        (),
-        f"mass {exact.mass:.6g} kg, centre at y = {1e3 * exact.centre:.6g} mm, polar inertia "
-        f"{exact.iyy:.6g}, transverse {exact.ixx:.6g} kg m^2 (closed "
-        f"form{' of the round part' * (scene.body is not None)})",
-    )
+    residual, told = body.rigid_residual(), []
+    tolerance = LADDER[body.fidelity].mass_tolerance
+    limit = max(tolerance, FOLLOWED if scene.outline.corners else 0.0)
     for name, got, want in closed:
         error = got / want - 1
-        limit = max(
-            LADDER[body.fidelity].mass_tolerance, FOLLOWED if scene.outline.corners else 0.0
-        )
-        yield Notice("fact", own, f"{name} of the mesh against {where}: {error:+.1e}")
+        told.append(f"{name} {error:+.1e}")
         if abs(error) > limit:
             yield Notice(
                 "fault",
                 own,
                 f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: mesh finer",
             )
-    residual = body.rigid_residual()
+    against = f"{' and '.join(told)} against {where}, " * bool(told)
     yield Notice(
         "fact",
         own,
-        f"stiffness times rigid motions: {residual:.1e} of its size (a free body gives rounding)",
+        f"mesh looked at: {body.fidelity}, {body.size} unknowns, {against}stiffness {residual:.1e} "
+        "against rigid motions (a free body gives rounding)",
     )
     if residual > 1e-9:
         yield Notice(

@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from solidgear.kernel.assembly import unknowns
+from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import without
+from solidgear.meshing.hexahedra import hexahedra
 from solidgear.models.kinds import CUTS, CYCLIC, PARTS
 from solidgear.models.sector.body import whole_mesh
 from solidgear.models.size import Size, of_mesh
-from solidgear.models.solid.body import _hexes, _tets
+from solidgear.models.solid.body import _tets
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.mesh import basis_of
 from solidgear.models.solid.part import SOLVED_AS
-from solidgear.models.solid.plan import tetrahedra_plan
+from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.shaft import resolved
 
@@ -57,7 +59,9 @@ def solid_size(
         mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
         return of_mesh(unknowns(mesh, basis_of(element)))
     grading |= {"around": around, "size": size, "refinement": refinement}
-    mesh, _, _ = _hexes(scene, wanted, grading)
+    plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
+    assemblable(plan.cells * turns, 20)
+    mesh, _ = hexahedra(scene, plan, turns)
     rigid = any(a == "rigid" for _, a in wanted)
     return of_mesh(unknowns(mesh, basis_of(element)), mirrors=not rigid)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solidgear.errors import listed
 from solidgear.frames import DOF_NAMES
 from solidgear.studies.guards.notice import Notice, Notices, slip_in_units
 from solidgear.studies.guards.probe import Probe
@@ -68,19 +69,23 @@ def units(probe: Probe) -> Notices:
 
 def doubtful_data(probe: Probe) -> Notices:
     """Bearings whose numbers were assumed or identified."""
-    doubtful = [
-        f"bearing {b.name!r} ({b.status})"
-        for b in probe.scene.bearings
-        if b.status in ("identified", "assumed", "estimated") and not b.hold
-    ]
+    doubtful: dict[str, list[str]] = {}
+    for b in probe.scene.bearings:
+        if b.status in ("identified", "assumed", "estimated") and not b.hold:
+            doubtful.setdefault(b.status, []).append(repr(b.name))
     if doubtful:
-        yield Notice("caution", (), "data not measured or published: " + ", ".join(doubtful))
+        told = (
+            f"bearing{'s' * (len(names) > 1)} {listed(names)} ({status})"
+            for status, names in doubtful.items()
+        )
+        yield Notice("caution", (), f"data not measured or published: {', '.join(told)}")
 
 
 def free_motions(probe: Probe) -> Notices:
     """Rigid motions that no bearing resists."""
     free = probe.supports.unresisted(probe.body).shape[1]
-    yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
+    if free != 1:  # turning is free
+        yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
     if free > 1 and probe.scene.bearings:
         yield Notice(
             "caution",
@@ -134,5 +139,5 @@ def split_pair(probe: Probe) -> Notices:
             "fact",
             (),
             "bearings, with what they stand in, that differ in x and z split the first bending "
-            f"pair by {split:.1e} (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+            f"pair by {100 * split:.2g} % (Timoshenko): 'bending 2' is the twin of 'bending 1'",
         )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from solidgear.errors import listed
 from solidgear.studies.guards.notice import Notice, Notices, beams
 from solidgear.studies.guards.probe import Probe
 
@@ -23,20 +26,25 @@ NOTICED, LARGE = 0.02, 0.07
 def fillets(probe: Probe) -> Notices:
     """Fillets at roots that a beam leaves out, from where a thousandth is at stake."""
     segments = probe.scene.segments
+    found: dict[str, list[tuple[float, Any]]] = {}
     for corner in probe.scene.outline.corners:
-        here = segments[corner.owner]
         ratio = min(corner.axial, corner.radial) / (2 * corner.r)
-        if not corner.root or corner.surface != "outer" or ratio < NOTICED:
-            continue
+        if corner.root and corner.surface == "outer" and ratio >= NOTICED:
+            found.setdefault("caution" if ratio >= LARGE else "fact", []).append((ratio, corner))
+    for level, corners in found.items():
+        places = listed(
+            f'{corner.kind} "{corner.name}" at the shoulder of {segments[corner.owner].name!r}, '
+            f"y = {1e3 * corner.y:.6g} mm, {ratio:.2g} of the diameter"
+            for ratio, corner in corners
+        )
+        largest = max(ratio for ratio, _ in corners)
         soft, tilt, rise = (
-            100 * float(np.interp(ratio, FILLETS[:, 0], column)) for column in FILLETS.T[1:]
+            100 * float(np.interp(largest, FILLETS[:, 0], column)) for column in FILLETS.T[1:]
         )
         yield Notice(
-            "caution" if ratio >= LARGE else "fact",
+            level,
             beams(),
-            f'a beam leaves out the {corner.kind} "{corner.name}" at the shoulder of '
-            f"{here.name!r}, y = {1e3 * corner.y:.6g} mm, {ratio:.2g} of the diameter: on a short "
-            f"overhang such a fillet takes {soft:.1g} % of the deflection and {tilt:.1g} % of the "
-            f"tilt and adds {rise:.1g} % to first bending; a thousandth is passed at {NOTICED:g}, a "
-            f"hundredth at {LARGE:g}; use {probe.instead()}",
+            f"a beam leaves out the {places}: on a short overhang the largest takes {soft:.1g} % of "
+            f"the deflection and {tilt:.1g} % of the tilt and adds {rise:.1g} % to first bending; a "
+            f"thousandth is passed at {NOTICED:g}, a hundredth at {LARGE:g}; use {probe.instead()}",
         )

@@ -47,10 +47,12 @@ def narrow_seat(probe: Probe) -> Notices:
 
 
 def rigid_seats(probe: Probe) -> Notices:
-    """Motion of numbers by rigid seats against averaged ones; they are the stiff bound."""
-    if not probe.scene.bearings:
-        return
+    """Motion of numbers by rigid seats, where some are, against averaged ones; they are the stiff
+    bound.
+    """
     chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
+    if not probe.scene.bearings or not chosen:
+        return
     try:
         stiff = probe.tied("rigid")
     except (
@@ -65,13 +67,7 @@ def rigid_seats(probe: Probe) -> Notices:
     words = ", ".join(
         f"{in_words(name, probe.main)} by {100 * value:+.3g} %" for name, value in moved.items()
     )
-    if not chosen:
-        yield Notice(
-            "fact",
-            solids(),
-            f"how seats are tied: rigid rings at all of them would move {words} against averaged seats",
-        )
-    elif max(map(abs, moved.values()), default=0.0) > 0.01:
+    if max(map(abs, moved.values()), default=0.0) > 0.01:
         yield Notice(
             "caution",
             solids(),
@@ -182,7 +178,7 @@ def memory(probe: Probe) -> Notices:
         if not (why := missing(name)):
             break
         absent.append(f"{why}; {INSTALL[name]}")
-    need = sum(law(name, *matrix) for matrix in size.matrices)
+    need = float(f"{sum(law(name, *matrix) for matrix in size.matrices):.2g}")  # good to GOOD_TO
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
     if LADDER["harmonic"].unfit(probe.whole):

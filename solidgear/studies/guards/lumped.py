@@ -36,25 +36,24 @@ def effective_mass(probe: Probe) -> Notices:
         )
     better = probe.instead("the beam", *LADDER.of(BEAM))
     whose = "its beam" if probe.beam_fits else "the beam of the plain part"
-    matched = found["mode-matched"]
+    matched, why, level = found["mode-matched"], [], "caution"
     if not (matched.feasible and matched.first):
         off = found["guyan"].frequency_error
         assert off is not None  # its mass is always positive definite
-        why = "holds the mode as its second one" if matched.feasible else "has a negative entry"
-        yield Notice(
-            beyond(off, probe.scene.ask.tolerance),
-            ("lumped",),
-            f"the mode-matched pair of masses {why}: Guyan's stands in, with first bending "
-            f"{100 * off:+.3g} % off {whose}; use {better}",
+        level = beyond(off, probe.scene.ask.tolerance)
+        lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
+        why.append(
+            f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
+            f"{against(off, 'higher', 'lower')} that of {whose}"
         )
     if point.static_share < ENERGY:
-        yield Notice(
-            "caution",
-            ("lumped",),
-            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.4g} "
+        why.append(
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.3g} "
             f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
-            f"elsewhere, and a lumped model is good for stiffness only; use {better}",
+            "elsewhere, and a lumped model is good for stiffness only"
         )
+    if why:
+        yield Notice(level, ("lumped",), f"{'; '.join(why)}; use {better}")
 
 
 def lumped_against_solid(probe: Probe) -> Notices:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.judge import deviations
 from solidgear.judge.deviations import TIES
 from solidgear.judge.quantities import in_words
@@ -130,6 +130,11 @@ def shoulder(probe: Probe) -> Notices:
     better = probe.instead("the harmonic solid, or the beam's option shoulder")
     stiff = tuple(model for model in beams() if model not in soft)
     segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
+    if not stiff:
+        return
+    sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with fillets)"
+    limits = f"1 % is passed at {STEP:g}, 5 % at {STEEP:g}"
+    found: dict[str, list[tuple[str, str, str, str]]] = {}
     for a, b in zip(segments, segments[1:]):
         (thin, inside), (thick, outside) = sorted(
             ((a.outer1, a.material), (b.outer0, b.material)), key=lambda side: side[0]
@@ -140,19 +145,26 @@ def shoulder(probe: Probe) -> Notices:
         lacking = float(np.interp(ratio, STEPS[:, 0], STEPS[:, 1]))
         lacking = more * lacking / (1 - lacking + more * lacking)
         alike = abs(more - 1) < 0.1
-        if (ratio < STEP if alike else lacking < 0.01) or not stiff:
+        if ratio < STEP if alike else lacking < 0.01:
             continue
         missing = more * float(np.interp(ratio, MISSING[:, 0], MISSING[:, 1]))
-        limits = f"1 % is passed at {STEP:g}, 5 % at {STEEP:g}"
         own = f"{more:.2g} times as much as of one material, by E of both parts"
-        sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with its fillet)"
+        found.setdefault(limits if alike else own, []).append(
+            (
+                f"{a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm",
+                f"{ratio:.2f}",
+                f"{2e3 * thin * missing:.2g}",
+                f"{100 * lacking:.1f}",
+            )
+        )
+    for why, steps in found.items():
+        places, ratios, missed, shares = (listed(column) for column in zip(*steps))
         yield Notice(
             "caution",
             stiff,
-            f"shoulder between {a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm {sharp}, "
-            f"ratio of diameters {ratio:.2f}: a beam lacks "
-            f"{2e3 * thin * missing:.2g} mm of thin shaft, {100 * lacking:.1f} % of the "
-            f"deflection of an overhang of one diameter; {limits if alike else own}; use {better}",
+            f"shoulder{'s' * (len(steps) > 1)} between {places} {sharp}, ratio of diameters "
+            f"{ratios}: a beam lacks {missed} mm of thin shaft, {shares} % of the deflection of an "
+            f"overhang of one diameter; {why}; use {better}",
         )
 
 
@@ -185,18 +197,22 @@ JOINT = 0.5  # odd_geometry.py: the tilt compliance of a beam misses 5 %, at 0.3
 
 def thin_joint(probe: Probe) -> Notices:
     """Neighbours that hang together by a ring thinner than either of them."""
+    found = []
     for a, b in zip(probe.scene.segments, probe.scene.segments[1:]):
         ring = min(a.outer1, b.outer0) - max(a.inner1, b.inner0)
         share = ring / min(a.outer1 - a.inner1, b.outer0 - b.inner0)
         if share < JOINT:
-            yield Notice(
-                "caution",
-                beams(),
+            found.append(
                 f"{a.name!r} and {b.name!r} share a ring of {1e3 * ring:.3g} mm at y = "
-                f"{1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall: below {JOINT:g} a beam's "
-                "tilt "
-                f"compliance misses 5 %, below 0.3 12 %; use {probe.instead()}",
+                f"{1e3 * b.y0:.6g} mm, {share:.2g} of the thinner wall"
             )
+    if found:
+        yield Notice(
+            "caution",
+            beams(),
+            f"{'; '.join(found)}: below {JOINT:g} a beam's tilt compliance misses 5 %, below 0.3 it "
+            f"misses 12 %; use {probe.instead()}",
+        )
 
 
 BEYOND = 0.02  # odd_geometry.py's shaft: 1.4 % in the tilt compliance; 7 % at 0.1

@@ -70,7 +70,9 @@ def beyond(error: float, tolerance: float) -> str:
 
 def sure(bar: float | None) -> str:
     """An error bar as the end of a clause; nothing where there is none."""
-    return f", give or take {100 * bar:.1g} %" if bar else ""
+    if not bar:
+        return ""
+    return f", give or take {100 * bar:.1g} %" if bar >= 1e-4 else ", to within 0.01 %"
 
 
 def slip_in_units(

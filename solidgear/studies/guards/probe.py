@@ -18,7 +18,7 @@ import scipy.sparse.linalg as spla
 
 from solidgear.body import Body, Supports, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.judge.deviations import Deviation, deviations
+from solidgear.judge.deviations import BEYOND, OPEN, Deviation, deviations
 from solidgear.judge.quantities import Values, judged
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, solve
@@ -41,8 +41,8 @@ if TYPE_CHECKING:
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
-#: share of the tolerance that bars of the light harmonic solid are wanted within, and its meshes at
-#: most: what stays open is said
+#: share of the tolerance that bars of the light harmonic solid are wanted within, and its meshes
+#: where the first leaves a beam open: what stays so is said
 SHARE, LIGHT = 4.0, 2
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
@@ -77,6 +77,7 @@ class Probe:
         self.scene, self.body, self.whole = scene, body, whole or scene
         self.supports = as_supports(scene).on_stations(scene.stations)
         self.solutions = dict(solutions or {})
+        self.meshes: dict[str, int] = {}  # of what is solved here
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
@@ -132,13 +133,15 @@ class Probe:
             for a, b in pairwise(ends)
         ]
 
-    def solution(self, model: str) -> Solution:
-        """A beam, or the harmonic solid on one mesh or two."""
-        if model not in self.solutions:
+    def solution(self, model: str, most: int = 1) -> Solution:
+        """A beam, or the harmonic solid on so many meshes at most."""
+        known = self.solutions.get(model)
+        if known is None or self.meshes.get(model, most) < most:
             options = {name: True for name in SOFT if self.asked(model).get(name)}
             self.solutions[model] = study(
-                self.scene, model, options, share=SHARE, most=LIGHT, evidence=False
+                self.scene, model, options, share=SHARE, most=most, evidence=False
             )
+            self.meshes[model] = most
         return self.solutions[model]
 
     def asked(self, model: str) -> Mapping[str, Any]:
@@ -168,9 +171,13 @@ class Probe:
 
     def _gaps(self, model: str) -> list[Deviation]:
         """Deviations of a beam from the light solid in what is judged, the largest first."""
-        solutions = {model: self.solution(model), "harmonic": self.solution("harmonic")}
-        names = judged(self.scene)
-        found = [g for g in deviations(solutions, "harmonic") if g.quantity in names]
+        for most in (1, LIGHT):
+            pair = {model: self.solution(model), "harmonic": self.solution("harmonic", most)}
+            names = judged(self.scene)
+            found = [g for g in deviations(pair, "harmonic") if g.quantity in names]
+            kinds = {g.standing(self.scene.ask.tolerance) for g in found}
+            if BEYOND in kinds or OPEN not in kinds:
+                break
         return sorted(found, key=lambda g: -g.size)
 
     @property

@@ -13,6 +13,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build
+from solidgear.ladder.meshes import HARMONIC
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.train import SIDES, Train
@@ -72,7 +73,7 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     light = Workshop(train, workshop.reduction, workshop.kept)
     for side in SIDES:
         scene = _asked(workshop.scenes[side], train, limit)
-        probe = Probe(scene.plain, build(scene.plain, JUDGE), whole=scene)
+        probe = Probe(scene.plain, build(scene.plain, JUDGE, **HARMONIC), whole=scene)
         out[side] = check_scene(scene, probe.body, probe)
         light.take(side, JUDGE, probe.solution(JUDGE).body)
     faults: list[str] = []

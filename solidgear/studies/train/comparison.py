@@ -12,6 +12,7 @@ from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
 from solidgear.scene.train import SIDES
 from solidgear.studies.train.judge import DRAWN, JUDGE, MIXED, Verdict, judge_train
+from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainModes, train_modes
 from solidgear.studies.train.orders import OrderMap, order_map
@@ -41,6 +42,12 @@ class TrainComparison:
     modes: TrainModes
     orders: OrderMap
     seconds: float
+
+    @property
+    def top(self) -> Loudest:
+        """The largest dynamic mesh force by the judge."""
+        shop = self.workshop
+        return loudest(self.verdict.responses[0], self.modes.modes, shop.train, shop.scenes)
 
     @property
     def drawn(self) -> list[TrainResponse]:
@@ -86,6 +93,7 @@ class TrainComparison:
             "kind": "train",
             "train": described(self.workshop),
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
+            "loudest": self.top.as_dict(),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
             "peaks": [asdict(peak) for peak in self.verdict.responses[0].peaks],
             "crossings": [asdict(crossing) for crossing in self.orders.crossings],
