@@ -103,20 +103,15 @@ def measure(quick: bool = False) -> Finding:
     return Finding(
         "krylov_duncan",
         "Krylov-Duncan functions in cosh and sinh",
-        "The frequency determinant is a difference of products that grow like exp(2 kL) and "
-        "is itself of size exp(kL): its sign becomes that of rounding, and roots are lost or "
-        "invented.",
-        f"Plain functions pass 1e-6 at kL {edge['plain', 1e-6]:.0f} and 1e-4 at "
-        f"{edge['plain', 1e-4]:.0f}, and see the wrong number of roots from "
-        f"{lost('plain'):.0f}; "
-        f"splitting into {CUTS} transfer matrices changes that to "
-        f"{edge['transfer', 1e-6]:.0f}, {edge['transfer', 1e-4]:.0f} and "
-        f"{lost('transfer'):.0f}; "
-        f"the program's worst error up to kL {max(kl):.0f} is "
-        f"{max(r['program error'] for r in rows):.0e}, and it counts "
-        f"{min(r['program roots counted'] for r in rows)} root at each.",
-        "`validation.thesis.krylov` orthonormalises after every piece of kL 2 and counts "
-        "roots (Wittrick and Williams); each mode comes with the count on both sides of it.",
+        "The frequency determinant is a difference of products that grow like exp(2 "
+        "kL). Its sign becomes that of rounding, and roots are lost or invented.",
+        f"Plain functions pass 1e-4 at kL {edge['plain', 1e-4]:.0f} and see the wrong number of roots "
+        f"from {lost('plain'):.0f}, {CUTS} transfer matrices at {edge['transfer', 1e-4]:.0f} and "
+        f"{lost('transfer'):.0f}. The program's worst error up to kL {max(kl):.0f} is "
+        f"{max(r['program error'] for r in rows):.0e}, with "
+        f"{min(r['program roots counted'] for r in rows)} root counted at each.",
+        "`validation.thesis.krylov` makes solutions orthonormal after every piece of kL "
+        "2 and counts roots (Wittrick and Williams).",
         "tests/test_krylov.py::test_all_modes_up_to_kl_200",
         rows,
     )
