@@ -201,7 +201,6 @@ def draw(finding: Finding, axes) -> None:
         [r["greatest eigenvalue"] / base["greatest eigenvalue"] for r in rows],
         "o-",
         color="#c4541c",
-        lw=1.3,
         label="greatest eigenvalue, times that of the good mesh",
     )
     axes.loglog(
@@ -209,7 +208,6 @@ def draw(finding: Finding, axes) -> None:
         [abs(r["first bending, Hz"] / base["first bending, Hz"] - 1) for r in rows[1:]],
         "s-",
         color="#0072b2",
-        lw=1.3,
         label="change of first bending",
     )
     axes.invert_xaxis()

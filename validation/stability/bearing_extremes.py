@@ -190,8 +190,6 @@ def draw(finding: Finding, axes) -> None:
                 values,
                 marker + line,
                 color=colour,
-                ms=4,
-                lw=1.2,
                 label=f"{name}, {elements} elements",
             )
     axes.axhline(0.01, color="#aa2222", lw=0.8, ls="--")

@@ -256,7 +256,6 @@ def draw(finding: Finding, axes) -> None:
             [r["closed form / lowest"] for r in rows],
             [r["light / lowest"] for r in rows],
             marker,
-            ms=4,
             label=kind,
             alpha=0.7,
         )

@@ -197,7 +197,6 @@ def draw(finding: Finding, axes) -> None:
             [max(r["worst eigenvalue"], 1e-17) for r in rows],
             marker,
             color=colour,
-            ms=5,
             label=f"{name}: eigenvalue",
         )
         axes.loglog(
@@ -205,7 +204,6 @@ def draw(finding: Finding, axes) -> None:
             [max(r["1 - subspace MAC"], 1e-17) for r in rows],
             marker,
             color=colour,
-            ms=5,
             mfc="none",
             label=f"{name}: 1 - subspace MAC",
         )

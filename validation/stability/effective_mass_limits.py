@@ -104,7 +104,6 @@ def draw(finding: Finding, axes) -> None:
         [r["guyan f1 error"] for r in finding.rows],
         "-",
         color="#00805e",
-        lw=1.0,
         label="Guyan, error of f1",
     )
     axes.plot(
@@ -116,7 +115,7 @@ def draw(finding: Finding, axes) -> None:
     )
     for word, colour in (("first", "#0072b2"), ("second", "#e0a030"), ("negative", "#aa2222")):
         at = [r["y mm"] for r in finding.rows if r["mode-matched"] == word]
-        axes.plot(at, [-0.45] * len(at), "s", color=colour, ms=4, label=f"mode-matched: {word}")
+        axes.plot(at, [-0.45] * len(at), "s", color=colour, label=f"mode-matched: {word}")
     axes.axhline(0.95, color="#aa2222", lw=0.8, ls=":")
     axes.set(
         xlabel="lumped point from the toe, mm",

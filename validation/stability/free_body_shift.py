@@ -188,8 +188,6 @@ def draw(finding: Finding, axes) -> None:
                 [np.nan if "failed" in r else max(r[key], 1e-17) for r in rows],
                 marker + line,
                 color=colour,
-                ms=4,
-                lw=1.2,
                 label=f"{name}: {key}",
             )
         axes.plot(

@@ -131,7 +131,6 @@ def draw(finding: Finding, axes) -> None:
                 [max(r[model], 1e-6) for r in rows],
                 line,
                 color=colour,
-                lw=1.3,
                 label=f"{model}, {name}",
             )
     for level in LEVELS:

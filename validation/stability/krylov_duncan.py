@@ -125,7 +125,6 @@ def draw(finding: Finding, axes) -> None:
         [r["plain error"] for r in finding.rows],
         "o-",
         color="#c4541c",
-        ms=4,
         label="plain cosh, sinh",
     )
     axes.semilogy(
@@ -133,7 +132,6 @@ def draw(finding: Finding, axes) -> None:
         [r["transfer error"] for r in finding.rows],
         "s:",
         color="#e0a030",
-        ms=4,
         label=f"{CUTS} transfer matrices",
     )
     axes.semilogy(
@@ -141,7 +139,6 @@ def draw(finding: Finding, axes) -> None:
         [max(r["program error"], 1e-17) for r in finding.rows],
         "^-",
         color="#0072b2",
-        ms=4,
         label="program",
     )
     axes.semilogy(
@@ -149,13 +146,10 @@ def draw(finding: Finding, axes) -> None:
         [r["estimate eps exp(kL) / kL"] for r in finding.rows],
         "--",
         color="#888888",
-        lw=1,
         label="eps exp(kL) / kL",
     )
     wrong = [r["kL"] for r in finding.rows if r["plain roots seen"] != 1]
-    axes.plot(
-        wrong, [3.0] * len(wrong), "x", color="#aa2222", ms=5, label="plain: wrong number of roots"
-    )
+    axes.plot(wrong, [3.0] * len(wrong), "x", color="#aa2222", label="plain: wrong number of roots")
     axes.set(
         xlabel="kL of the root",
         ylabel="relative error of kL",

@@ -169,8 +169,6 @@ def draw(finding: Finding, axes) -> None:
                 [abs(r["f1"]) for r in rows],
                 marker + "-",
                 color=colour,
-                ms=5,
-                lw=1.3,
                 label=element.upper(),
             )
     for element, words in (("hex8", "HEX8 drawn out"), ("hex20", "HEX20 drawn out")):
@@ -182,8 +180,6 @@ def draw(finding: Finding, axes) -> None:
             marker="o",
             mfc="white",
             color=style[element][0],
-            ms=5,
-            lw=1,
             label=words,
         )
         for r in rows:

@@ -115,8 +115,6 @@ def draw(finding: Finding, axes) -> None:
             [abs(row[k]) for k in at],
             "o-" if solid else "x--",
             color=colours[row["model"]],
-            ms=4.5,
-            lw=1.2,
             label=row["model"],
         )
     axes.invert_xaxis()

@@ -298,8 +298,6 @@ def draw(finding: Finding, axes) -> None:
                 [r["value"] for r in rows],
                 [max(r["worst"], 1e-5) for r in rows],
                 marker + "-",
-                ms=4,
-                lw=1.2,
                 label=what,
             )
             quiet = [r for r in rows if r["outcome"] == "silent"]

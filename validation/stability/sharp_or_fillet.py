@@ -197,8 +197,6 @@ def draw(finding: Finding, axes) -> None:
             [r["error of tilt"] for r in rows],
             marker + "-",
             color=colour,
-            ms=5,
-            lw=1.3,
             label=f"uniform Q{order}",
         )
     rows = [r for r in finding.rows if str(r.get("mesh")).startswith("graded")]
@@ -207,8 +205,6 @@ def draw(finding: Finding, axes) -> None:
         [r["error of tilt"] for r in rows],
         "s-",
         color="#00805e",
-        ms=5,
-        lw=1.3,
         label="graded Q2 to Q5",
     )
     rows = [r for r in finding.rows if r.get("mesh") == "uniform Q2"]
@@ -218,7 +214,6 @@ def draw(finding: Finding, axes) -> None:
         [r["greatest strain over nominal"] for r in rows],
         "x:",
         color="#0072b2",
-        lw=1.3,
     )
     other.set(ylabel="greatest strain over nominal, uniform Q2 (crosses)", ylim=(1, 10))
     other.set_yticks([1, 2, 3, 5, 10], ["1", "2", "3", "5", "10"])

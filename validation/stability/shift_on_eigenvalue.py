@@ -188,7 +188,6 @@ def draw(finding: Finding, axes) -> None:
             [max(r["error"], 1e-17) for r in rows],
             "o-",
             color=colour,
-            ms=4,
             label=f"{name}: worst eigenvalue error",
         )
         axes.loglog(
@@ -196,7 +195,6 @@ def draw(finding: Finding, axes) -> None:
             [max(r["residual"], 1e-17) for r in rows],
             "s:",
             color=colour,
-            ms=3,
             label=f"{name}: residual seen",
         )
         for a, r in zip(at, rows):

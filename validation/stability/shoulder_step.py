@@ -161,13 +161,7 @@ def draw(finding: Finding, axes) -> None:
         ("C_zz with a hinge", "#111111", "^", "deflection, 2 d, with a hinge"),
     ):
         axes.plot(
-            at,
-            [100 * r[name] for r in finding.rows],
-            marker + "-",
-            color=colour,
-            ms=5,
-            lw=1.3,
-            label=words,
+            at, [100 * r[name] for r in finding.rows], marker + "-", color=colour, label=words
         )
     axes.set(
         xlabel="ratio of diameters",

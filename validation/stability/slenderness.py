@@ -148,13 +148,7 @@ def draw(finding: Finding, axes) -> None:
         ("C_zz on bearings", "#00805e", "D"),
     ):
         axes.loglog(
-            at,
-            [abs(r[name]) for r in finding.rows],
-            marker + "-",
-            color=colour,
-            ms=5,
-            lw=1.3,
-            label=name,
+            at, [abs(r[name]) for r in finding.rows], marker + "-", color=colour, label=name
         )
     axes.loglog(
         at,

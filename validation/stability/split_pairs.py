@@ -161,13 +161,7 @@ def draw(finding: Finding, axes) -> None:
             continue
         at = [max(r["anisotropy"], 1e-17) for r in rows]
         axes.loglog(
-            at,
-            [max(r["split of f1"], 1e-17) for r in rows],
-            marker + "-",
-            color=colour,
-            ms=4,
-            lw=1,
-            label=name,
+            at, [max(r["split of f1"], 1e-17) for r in rows], marker + "-", color=colour, label=name
         )
         grouped = [
             (a, max(r["split of f1"], 1e-17))

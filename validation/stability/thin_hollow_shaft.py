@@ -173,8 +173,6 @@ def draw(finding: Finding, axes) -> None:
             [r[f"wall / radius, n = {n} meets bending"] for r in rows],
             marker + "-",
             color=colour,
-            ms=5,
-            lw=1.3,
             label=f"n = {n} meets bending (measured)",
         )
     axes.loglog(

@@ -181,8 +181,6 @@ def draw(finding: Finding, axes) -> None:
             [r[name] / base for r in rows],
             marker + "-",
             color=colour,
-            ms=5,
-            lw=1.3,
             label=name,
         )
     axes.invert_xaxis()
