@@ -24,7 +24,7 @@ WIDTH = 760
 CHAPTERS = {
     "Beams": ["slenderness_euler", "slenderness_timoshenko", "shoulder_step", "thin_hollow_shaft", "krylov_duncan"],
     "Elements and meshes": [
-        "linear_elements", "nearly_incompressible", "bad_elements", "sharp_or_fillet", "ties", "split_pairs",
+        "linear_elements", "nearly_incompressible", "bad_elements", "sharp_shoulder", "ties", "split_pairs",
     ],
     "Modes": ["free_body_shift", "shift_on_eigenvalue", "clusters", "circumferential_families"],
     "Lumped models": ["guyan_in_frequency", "effective_mass_limits"],

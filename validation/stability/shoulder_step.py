@@ -122,9 +122,6 @@ def measure(quick: bool = False) -> Finding:
             compliance("timoshenko", shaft(ratio, reach, cone_angle(extra, ratio)))[0] / solid[0]
             - 1
         )
-        row["C_zz with 45 deg"] = (
-            compliance("timoshenko", shaft(ratio, reach, np.pi / 4))[0] / solid[0] - 1
-        )
         row["C_zz with a hinge"] = (beam[0] + extra * (reach * THIN) ** 2) / solid[0] - 1
         rows.append(row)
     at = [r["ratio"] for r in rows]
