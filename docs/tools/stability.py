@@ -24,7 +24,7 @@ WIDTH = 760
 CHAPTERS = {
     "Beams": ["slenderness_euler", "slenderness_timoshenko", "shoulder_step", "thin_hollow_shaft", "krylov_duncan"],
     "Elements and meshes": [
-        "linear_elements", "nearly_incompressible", "bad_elements", "sharp_or_fillet", "ties", "split_pairs",
+        "linear_elements", "nearly_incompressible", "bad_elements", "sharp_shoulder", "ties", "split_pairs",
     ],
     "Modes": ["free_body_shift", "shift_on_eigenvalue", "clusters", "circumferential_families"],
     "Lumped models": ["guyan_in_frequency", "effective_mass_limits"],
@@ -35,9 +35,8 @@ CHAPTERS = {
 }  # fmt: skip
 HEAD = """# Where methods fail
 
-Every method was driven to its edge, on purpose. Each finding tells what fails, where it was measured to fail, and what the program does about it. The page is made from the results of `python -m validation.stability` by `docs/tools/stability.py`; one script is run alone by `python -m validation.stability.NAME`.
+Every method was driven to its edge: what fails, where it was measured to fail, and what the program does about it. `python -m validation.stability` measures all, `python -m validation.stability.NAME` one, and `docs/tools/stability.py` makes the page.
 """
-
 
 def titles() -> dict[str, tuple[str, str]]:
     """Folder of a finding -> its method and the test that guards it, from the report of a run."""
@@ -49,7 +48,6 @@ def titles() -> dict[str, tuple[str, str]]:
         guard = re.search(r"Guard held by `(.+?)`", part)
         out[name] = (method[1] if method else name, guard[1] if guard else "")
     return out
-
 
 def sections(known: dict[str, tuple[str, str]]) -> list[str]:
     """The page, line by line."""
@@ -68,7 +66,6 @@ def sections(known: dict[str, tuple[str, str]]) -> list[str]:
                 lines.append(f"Held by the test `{guard}`.\n")
     return lines
 
-
 def shrink(names: list[str]) -> None:
     """Charts at the width of the page, in few colours."""
     from PIL import Image
@@ -80,7 +77,6 @@ def shrink(names: list[str]) -> None:
             small = chart.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
             small.quantize(32).save(PICTURES / f"{name}.png", optimize=True)
 
-
 def main() -> int:
     """Write the page, or say what is missing."""
     names = [name for chapter in CHAPTERS.values() for name in chapter]
@@ -91,7 +87,6 @@ def main() -> int:
     PAGE.write_text("\n".join(sections(titles())).rstrip() + "\n")
     shrink(names)
     return 0
-
 
 if __name__ == "__main__":
     sys.exit(main())

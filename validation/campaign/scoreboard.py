@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from itertools import groupby
 from pathlib import Path
 
 from validation.campaign.cases import CASES
@@ -17,14 +16,14 @@ SORTED = [sort for sort in SORTS if sort not in (EDGE, UNSOLVED)]
 HEAD = """\
 # Scoreboard
 
-How often error bars held, how wide they were, what was called valid falsely, and what it cost: every \
-campaign with its date, commit, seeds and machine. The page is written by \
-`python -m validation.campaign scoreboard` from `validation/results/`; [Random scenes](random.md) says \
-how campaigns judge and what they found.
+How often error bars held, how wide they were, what was called valid falsely, and what it cost. \
+Written by `python -m validation.campaign scoreboard` from `validation/results/`, whose files part \
+every score by model, tolerance and kind of number. [Random scenes](random.md) says how campaigns judge.
 
 A number is *judged* where its error is known well enough and is not rounding, *held* where its bar \
-reaches the truth; *bar / error* is how many times too wide a bar is, a *false valid* a model called \
-valid whose error is above the tolerance. Bars are relative.
+reaches the truth. *Bar / error* is how many times too wide a bar is. A *false valid* is a model \
+called valid whose error is above the tolerance. Bars are relative; of spreads the median stands \
+first and what nine in ten are below in brackets.
 """
 
 
@@ -33,12 +32,7 @@ def page(results: Iterable[dict]) -> str:
     names = list(CASES)
     ordered = sorted(results, key=lambda result: names.index(result["campaign"]))
     lines = [HEAD, *markdown([_summary(result) for result in ordered])]
-    for name, mine in groupby(ordered, key=lambda result: result["campaign"]):
-        question = CASES[name].question
-        lines += ["", f"## {question[0].upper()}{question[1:]}"]
-        for result in mine:
-            lines += ["", f"({result['name']})=", f"### {result['asked']}", ""]
-            lines += [_origin(result), *_tables(result)]
+    lines += ["", "## To look at", "", *filter(None, map(_remarks, ordered))]
     return "\n".join(lines) + "\n"
 
 
@@ -48,16 +42,16 @@ def _summary(result: dict) -> dict:
     widths = bars if CASES[result["campaign"]].widths else {}
     spent = [f"{cost['median, s']:.3g}" for cost in result["costs"]]
     return {
-        "campaign": f"[{result['campaign']}](#{result['name']})",
+        "campaign": result["campaign"],
         "asked": result["asked"],
-        "date": result["date"],
         "held, of judged": f"{bars['held']} of {bars['judged']}" if bars else None,
-        "false valid, of verdicts": _share(verdicts, FALSE_VALID),
+        "false valid": _share(verdicts, FALSE_VALID),
         "false invalid": _share(verdicts, FALSE_INVALID),
-        "bar, median (90 %)": _spread(widths, "bar"),
-        "bar / error, median (90 %)": _spread(widths, "bar / error"),
+        "bar": _spread(widths, "bar"),
+        "bar / error": _spread(widths, "bar / error"),
         "s, median": ", ".join(spent),
         "failures": len(result["failures"]),
+        "date, commit, machine": f"{result['date']}, {result['commit']}, {result['machine']}",
     }
 
 
@@ -75,21 +69,10 @@ def _share(verdicts: dict, sort: str) -> str | None:
     return f"{verdicts[sort]} of {total}" if total else str(verdicts[sort])
 
 
-def _origin(result: dict) -> str:
-    """Origin of a result, in a sentence or three."""
-    known = f"{result['date']}, commit {result['commit']}, {result['machine']}."
+def _remarks(result: dict) -> str:
+    """Faults of a campaign, what it could not have, and notes on its origin, in one line."""
     count = result["problems"]
-    left = f" {count} references, bodies or models could not be had." if count else ""
-    note = f" {result['note']}" if result.get("note") else ""
-    return known + left + note
-
-
-def _tables(result: dict) -> list[str]:
-    out: list[str] = []
-    for name in ("bars", "verdicts", "checks", "costs"):
-        if result[name]:
-            out += ["", *markdown(result[name])]
-    wrong = [*result["misses"], *result["cases"], *result["failures"]]
-    if wrong:
-        out += ["", "To look at:", "", *(f"- {line}" for line in wrong)]
-    return out
+    left = [f"{count} references, bodies or models could not be had."] if count else []
+    told = [*result["misses"], *result["cases"], *result["failures"], *left, result.get("note", "")]
+    said = " ".join(f"{line.rstrip('.')}." for line in told if line)
+    return said and f"- *{result['campaign']}, {result['asked']}*: {said}"

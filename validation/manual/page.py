@@ -124,8 +124,15 @@ def _references(case: Case) -> str:
     rows = markdown(("quantity", "value", "unit", "uncertainty", "kind"), cells)
     if len(sources) == 1:
         return "\n".join([*rows, "", *sources])
-    listed = [f"- {', '.join(names)}: {source}" for source, names in sources.items()]
+    listed = [f"- {_named(names)}: {source}" for source, names in sources.items()]
     return "\n".join([*rows, "", *listed])
+
+
+def _named(quantities: list[str], most: int = 6) -> str:
+    """All of a few quantities, the ends of many."""
+    if len(quantities) <= most:
+        return ", ".join(quantities)
+    return f"{len(quantities)} quantities, {quantities[0]} to {quantities[-1]}"
 
 
 def _modelling(case: Case, model: Model, answer: Answer) -> str:

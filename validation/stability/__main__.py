@@ -15,8 +15,10 @@ import traceback
 from validation.common import markdown, results_folder
 from validation.stability.frame import FOLDER, ROOT, findings, publish
 
+#: what scripts share, and what a fillet changes, which is no edge
+NO_EDGE = ("frame", "fillets")
 SCRIPTS = sorted(
-    p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_") and p.stem != "frame"
+    p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_") and p.stem not in NO_EDGE
 )
 
 

@@ -28,6 +28,8 @@ STYLE = {
     "grid.color": "#e3e3e3",
     "grid.linewidth": 0.6,
     "legend.frameon": False,
+    "lines.markersize": 4.5,
+    "lines.linewidth": 1.2,
 }
 __all__ = ["FOLDER", "ROOT", "Finding", "crossing", "main", "publish"]
 

@@ -102,22 +102,20 @@ def measure(quick: bool = False) -> Finding:
             for model in ("static", "Guyan")
         )
         return (
-            f"{name}: {limits}; first mode at {share:.2f}, which Guyan puts {100 * one:+.1f} % "
+            f"On {name} {limits}; first mode at {share:.2f}, which Guyan puts {100 * one:+.1f} % "
             f"off, the second {100 * two:+.0f} %"
         )
 
     return Finding(
         "guyan_in_frequency",
         "Guyan condensation over frequency",
-        "Static condensation holds the rest of the shaft to its static shape: the dynamic "
-        "stiffness it leaves drifts from the exact one with frequency and knows nothing of "
-        "the pole at the first mode with the lumped point held.",
+        "Static condensation holds the rest of the shaft to its static shape, and knows "
+        "nothing of the pole at the first mode with the lumped point held.",
         "In fractions of that fixed-interface frequency, 1 % and 10 % of the static "
-        f"stiffness are passed at: {'; '.join(told(name) for name in SCENES)}.",
-        "`solidgear compare` reports for every lumped model the frequency to which its "
-        "receptance stays within 5 % (`valid_to_hz`) and holds its first bending against the "
-        "body it came from; `solidgear check` cautions where the range asked for passes 0.39 "
-        "of the fixed-interface frequency.",
+        f"stiffness are passed as follows. {'. '.join(told(name) for name in SCENES)}.",
+        "`solidgear compare` reports of every lumped model to which frequency its "
+        "receptance stays within 5 % (`valid_to_hz`). `solidgear check` cautions where "
+        "the range asked for passes 0.39 of the fixed-interface frequency.",
         "tests/test_check_guards.py::test_guard[lumped to 5 kHz]",
         rows,
     )
@@ -133,7 +131,6 @@ def draw(finding: Finding, axes) -> None:
                 [max(r[model], 1e-6) for r in rows],
                 line,
                 color=colour,
-                lw=1.3,
                 label=f"{model}, {name}",
             )
     for level in LEVELS:

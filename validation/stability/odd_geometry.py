@@ -237,49 +237,35 @@ def measure(quick: bool = False) -> list[Finding]:
                 f"{what} from {begins['value']:g} ({100 * begins['worst']:.0f} %), at worst "
                 f"{_times(worst['worst'])}, residual up to {max(r['residual'] for r in own):.0e}"
             )
-    ends = {
-        what: [r["value"] for r in rows if r["odd"] == what and r["outcome"] == "refused"]
-        for what in dict.fromkeys(r["odd"] for r in rows)
-    }
-    told = list(dict.fromkeys(r["odd"] for r in rows if r["outcome"] == "told"))
     return [
         Finding(
             "odd_geometry",
             "Shafts drawn oddly",
-            "Beam and solid answer different questions once the lumped point leaves its surface, "
-            "a head is a disc, or parts hang together by a thin ring; seats narrower than the "
-            "mesh tie like a line.",
+            "Beam and solid answer different questions once the lumped point leaves its "
+            "surface, a head is a disc, or parts hang together by a thin ring.",
             f"Gaps of more than {100 * LIMIT:.0f} % in excess of the sound scene's, or no first "
-            f"bending at all, come without a caution for: {'; '.join(silent.values()) or 'none'}"
-            + (f". Told by `check`: {'; '.join(told)}" if told else "")
-            + (
-                f". Refused: {'; '.join(f'{what} at {v[0]:g}' for what, v in ends.items() if v)}."
-                if any(ends.values())
-                else "."
-            ),
-            "`solidgear compare` shows each gap between beam and solid and calls the beam out of "
-            "tolerance; `solidgear check` cautions on discs, thin joints, narrow seats and "
-            "lumped points off their surface, and a scene is refused where a part is a millionth "
-            "of the shaft.",
+            f"bending at all, come without a caution for: {'; '.join(silent.values()) or 'none'}.",
+            "`solidgear check` cautions on discs, thin joints, narrow seats and lumped "
+            "points off their surface. A scene is refused where a part is a millionth of "
+            "the shaft.",
             "tests/test_check_guards.py::test_guard[disc]",
             rows,
         ),
         Finding(
             "impossible_geometry",
             "Seats and spans that cannot be",
-            "Seats that overlap, cross a step or hang over the end, and lumped points off the "
-            "shaft, have no meaning that every model shares.",
+            "Seats that overlap, cross a step or hang over the end, and lumped points off "
+            "the shaft, have no meaning that every model shares.",
             f"Of {len(plain)} such scenes {sum(r['harmonic'] == 'scene refused' for r in plain)} "
-            "are refused as scenes; "
+            "are refused as scenes. Left are: "
             + "; ".join(
-                f"{r['odd']}: beam {r['timoshenko']}, solid {r['harmonic']}"
+                f"{r['odd']} ({r['harmonic']} by the solid)"
                 for r in plain
                 if r["harmonic"] != "scene refused"
             )
             + ".",
-            "Every command refuses such a scene in one sentence with the place and the numbers; "
-            "two rigid seats that touch are refused by the solids only, because only they share "
-            "points.",
+            "Every command refuses such a scene with the place and the numbers. Two rigid "
+            "seats that touch are refused by the solids only, for only they share points.",
             "tests/test_bad_scenes.py::test_refused_in_one_line",
             plain,
         ),
@@ -312,8 +298,6 @@ def draw(finding: Finding, axes) -> None:
                 [r["value"] for r in rows],
                 [max(r["worst"], 1e-5) for r in rows],
                 marker + "-",
-                ms=4,
-                lw=1.2,
                 label=what,
             )
             quiet = [r for r in rows if r["outcome"] == "silent"]

@@ -354,8 +354,7 @@ def measure(quick: bool = False) -> Finding:
         "operation",
         "A machine that fails the run",
         "A run can end for reasons outside the model: memory, back end, renderer, an "
-        "interrupt, a disk; what must not happen is a traceback, a wrong exit code, or a "
-        "file that looks whole and is not.",
+        "interrupt, a disk. A file must not look whole that is not.",
         f"Of {len(rows)} ways to fail {len(rows) - len(bad)} end with the right exit code, a "
         "sentence and whole files or none"
         + (
@@ -363,9 +362,9 @@ def measure(quick: bool = False) -> Finding:
             if bad
             else "."
         ),
-        "Every command ends in one sentence and exit code 1 (130 after Ctrl-C); files are "
-        "written under another name and moved into place; a picture is drawn in a child "
-        "process, so that its death costs only the picture.",
+        "Every command ends in one sentence and exit code 1 (130 after Ctrl-C). Files "
+        "are written under another name and moved into place; a picture is drawn in a "
+        "child process.",
         "tests/test_compare.py::test_disk_that_fills_up_is_a_sentence_and_leaves_no_halves",
         rows,
     )

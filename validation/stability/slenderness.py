@@ -129,10 +129,9 @@ def _finding(model, rows) -> Finding:
         f"slenderness_{model}",
         f"{name} beam, short shaft",
         f"The {name} beam is wrong on short uniform shafts, where {lacks}.",
-        f"1 % is passed below L/D of {words(0.01)}; 5 % below {words(0.05)} (down to L/D 0.5).",
-        "`solidgear check` cautions below the slenderness for 1 %, and for 5 % says not to "
-        "use it; `solidgear compare` measures the gap to the solid and calls the beam out of "
-        "tolerance.",
+        f"Errors of 1 % begin below L/D of {words(0.01)}. Errors of 5 % begin below "
+        f"{words(0.05)} (down to L/D 0.5).",
+        "`solidgear check` cautions below the slenderness for 1 %, and for 5 % says not to use it.",
         "tests/test_check_guards.py::test_guard["
         + {"euler": "Euler, L/D 17.9", "timoshenko": "Timoshenko, L/D 1.1"}[model]
         + "]",
@@ -149,13 +148,7 @@ def draw(finding: Finding, axes) -> None:
         ("C_zz on bearings", "#00805e", "D"),
     ):
         axes.loglog(
-            at,
-            [abs(r[name]) for r in finding.rows],
-            marker + "-",
-            color=colour,
-            ms=5,
-            lw=1.3,
-            label=name,
+            at, [abs(r[name]) for r in finding.rows], marker + "-", color=colour, label=name
         )
     axes.loglog(
         at,

@@ -239,7 +239,7 @@ RIGID_ROTOR = Case(
         numbered("bending", rigid_on_springs(BLOCK, PLACES, LATERAL)),
         "Hz",
         "closed_form",
-        "Newton: (k - w^2 m)(t - w^2 J) = c^2 with k, c, t the sums of k_i, k_i s_i, k_i s_i^2 "
+        "Newton's (k - w^2 m)(t - w^2 J) = c^2 with k, c, t the sums of k_i, k_i s_i, k_i s_i^2 "
         "about the centre of mass and J = m (3 a^2 + L^2) / 12",
         4e-7,
         SOFT,

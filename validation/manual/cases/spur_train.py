@@ -16,8 +16,8 @@ from solidgear.studies.train.models import Workshop
 from validation.manual.case import Answer, Case, Model, Reference, references
 
 RAO = (
-    "Rao, Shiau and Chang (1998), turbo-alternator coupled by spur gears; data as in the example "
-    "of ROSS's MultiRotor (github.com/petrobras/ross, ross/tests/test_multi_rotor.py)"
+    "Rao, Shiau and Chang (1998), turbo-alternator coupled by spur gears; data of "
+    "ross/tests/test_multi_rotor.py (github.com/petrobras/ross)"
 )
 #: lengths and diameters, m; discs as (node, kg, diametral, polar kg m^2); bearings as (node, N/m
 #: across and along the tangent of the teeth)

@@ -194,7 +194,7 @@ def _pair_tolerance() -> dict[str, float]:
 
 PAIR_WHY = (
     "5.0 % is what the best mass and inertia leave on 620.2 Hz, and half a per cent of room for "
-    "the digits of the identified numbers; torsional modes within 1 %, since their springs are "
+    "the digits of the identified numbers. Torsional modes are within 1 %: their springs are "
     "identified from them"
 )
 
@@ -255,7 +255,7 @@ PAIR = Case(
         ),
     ),
     remarks="The mesh stiffness that fits, 8.6e8 N/m, is three to four times the plotted 2.0e8 to "
-    "2.8e8 N/m: mass, inertia and mesh stiffness are identified, so agreement shows that one set "
+    "2.8e8 N/m. Mass, inertia and mesh stiffness are identified: agreement shows that one set "
     "explains all lists, not that the set is right.",
 )
 
