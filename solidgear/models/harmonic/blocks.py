@@ -164,7 +164,9 @@ class _Work:
         self.area = area
         k = stiffness.matrix()
         share = np.ones(2) if n == 0 else np.array([2.0, 2.0, 1.0])
+        # the product is written in dense blocks, whose zeros couple directions that mass does not
         m = sp.kron(heavy.matrix(), sp.diags(share)).tocsr()
+        m.eliminate_zeros()
 
         keep = self.free_unknowns(n)
         y = np.repeat(self.y, c)[keep]
