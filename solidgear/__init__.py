@@ -68,6 +68,7 @@ _WHERE = {
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
     "compare": "solidgear.studies.comparison",
+    "optimise": "solidgear.studies.optimise",
     "sweep": "solidgear.studies.sweep.table",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
@@ -110,6 +111,7 @@ __all__ = [
     "load_train",
     "mesh_spring",
     "modes",
+    "optimise",
     "rubin",
     "shaft_stress",
     "sweep",
@@ -143,6 +145,7 @@ if TYPE_CHECKING:
     from solidgear.solve.statics import condense
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
+    from solidgear.studies.optimise import optimise
     from solidgear.studies.stress.shaft import shaft_stress
     from solidgear.studies.sweep.table import sweep
     from solidgear.system import (

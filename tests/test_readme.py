@@ -19,20 +19,25 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 PAGE = (ROOT / PROJECT["readme"]).read_text(encoding="utf-8")
 LINK = re.compile(r"\]\(([^)]+)\)")
 
+
 def fenced(text, kind):
     return re.findall(rf"(?ms)^```{kind}\n(.*?)^```", text)
 
+
 def test_it_is_read_in_two_minutes():
     assert len(README.splitlines()) <= 120
+
 
 def test_every_link_and_picture_is_there():
     links = LINK.findall(README)
     assert len(links) > 15
     assert [link for link in links if not (ROOT / link).exists()] == []
 
+
 def test_the_page_of_a_package_leads_nowhere_else():
     """Beside it there is no folder in which a relative link could be found."""
     assert LINK.findall(PAGE) == [] and "<img" not in PAGE
+
 
 @pytest.mark.parametrize("text", [README, PAGE], ids=["README", "package"])
 def test_commands_that_are_named_exist(text):
@@ -41,6 +46,7 @@ def test_commands_that_are_named_exist(text):
     known = typer.main.get_command(app).commands
     named = set(re.findall(r"solidgear ([a-z-]+) (?=[\w.]*[A-Z_/\[-]|\w+\.toml)", text))
     assert len(named) >= 4 and named <= set(known)
+
 
 def test_the_scene_of_the_readme_runs(tmp_path):
     (text,) = fenced(README, "toml")
@@ -51,11 +57,13 @@ def test_the_scene_of_the_readme_runs(tmp_path):
     # held at both ends against all but turning
     assert found.names[0] == "rigid torsion" and found.frequency_hz[1] > 100
 
+
 def test_libraries_named_are_those_of_the_container():
     (asked,) = re.findall(r"`apt-get install -y (.*?)`", README)
     container = (ROOT / "Containerfile").read_text(encoding="utf-8").replace("\\\n", " ")
     assert set(asked.split()) <= set(container.split())
     assert f"apt-get install -y {asked}" in (ROOT / "docs/guide/install.md").read_text()
+
 
 def test_python_of_the_readme_runs(tmp_path):
     (code,) = fenced(README, "python")
@@ -65,6 +73,7 @@ def test_python_of_the_readme_runs(tmp_path):
         [sys.executable, "-c", light], cwd=ROOT, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
+
 
 @pytest.mark.parametrize("page", ["README.md", "docs/validation/index.md"])
 def test_counts_in_prose_are_those_of_the_source(page):

@@ -31,6 +31,7 @@ from solidgear.cli import (
     deflect,
     files,
     measured,
+    optimise,
     receptance,
     solve,
     stiffness,

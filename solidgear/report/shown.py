@@ -241,6 +241,13 @@ def identification(found: Any) -> Table:
     return entries(found)
 
 
+def optimum(found: Any) -> Table:
+    """All designs of a search."""
+    from solidgear.report.optimum_tables import designs
+
+    return designs(found)
+
+
 def two_shafts(found: Any) -> Table:
     """Numbers of two shafts, their differences and what of them is resolved."""
     rows = [

@@ -34,6 +34,7 @@ WORDS = {
         "How far each computed frequency is from the measured one; grey: two standard deviations of the "
         "measured and the bar of the computed one."
     ),
+    "designs": "The goal in every design that was solved, each with its error bar.",
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (

@@ -85,9 +85,18 @@ class FileVariants:
                 return index
             except SolidgearError as error:
                 refusal = refusal or self.located(error, index)
+        self.refuse_hopeless()
+        raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
+
+    def refuse_hopeless(self) -> None:
+        """Refuse an entry that no file may have, whatever its value.
+
+        Raises
+        ------
+        SolidgearError
+        """
         for one in self.entries:
             self._refuse_whatever_its_value(one)
-        raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
 
     def tried(self, index: int) -> None:
         """Read a variant; SceneError if files with these values would be refused."""

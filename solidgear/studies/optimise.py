@@ -1,0 +1,264 @@
+"""Entries of a scene chosen for a goal, as far as error bars tell one design from another.
+
+Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its bars are
+within the tolerance. What searches is SciPy: the bounded scalar search of Brent for one entry, which
+wants no derivative and stops after a dozen designs, and COBYQA (Ragonneau and Zhang 2024), a
+derivative-free trust-region method with bounds and constraints, for several or with limits to keep:
+a design costs seconds, and its small jumps from mesh to mesh would spoil differences.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+from solidgear.errors import SolidgearError, nearest
+from solidgear.scene.toml_file import parse
+from solidgear.studies.optimum import Design, Optimum
+from solidgear.studies.sweep.entries import Entry, Kept, entries_of, in_si, kept_of
+from solidgear.studies.sweep.file_variants import OWN
+from solidgear.studies.sweep.scene_variants import STATICS, SceneTask, SceneVariants
+from solidgear.studies.wishes import Wish, limit_of, plain_number, wish_of
+
+#: designs that are solved at most, with the file as it is: a few for one entry, more for each other
+MOST, MORE = 16, 12
+#: of a range: how near two designs are one, and how near to its end an optimum is at the end
+SAME, AT_END = 0.01, 0.01
+#: natural frequencies that a goal may be of
+MODES = 12
+
+
+def optimise(
+    scene: str | os.PathLike,
+    vary: Iterable[str],
+    goal: str,
+    keep: Iterable[str] = (),
+    *,
+    keep_sum: Iterable[str] = (),
+    model: str | None = None,
+    tol: float | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Optimum:
+    """Search entries of a scene file for the largest or smallest of a number.
+
+    Parameters
+    ----------
+    scene : path
+        Of the scene file.
+    vary : iterable of str
+        ``PATH=LOW:HIGH``, such as ``bearing.B.position=180 mm:240 mm``.
+    goal : str
+        ``max bending 1``, ``min C_zz``, ``min mass`` ...
+    keep : iterable of str
+        Limits such as ``C_zz < 5 um/kN``, ``f1 > 600 Hz``, ``mass < 12 kg``; bars included.
+    keep_sum : iterable of str
+        ``PATH+PATH``: sums that stay what they are in the file.
+    model : str, optional
+        Solve every design by it, such as ``timoshenko``, without bars; by default by the cheapest
+        mesh whose bars are within `tol`.
+    tol : float, optional
+        Relative, that bars of designs are brought to; a tenth of the tolerance of the scene by
+        default.
+
+    Returns
+    -------
+    Optimum
+
+    Raises
+    ------
+    SolidgearError
+        For texts that cannot be read, a number that designs do not have, and a file that cannot be
+        solved in any of them.
+
+    Examples
+    --------
+    A bearing of a stepped shaft, where bending 1 is highest:
+
+    >>> import solidgear as sg
+    >>> found = sg.optimise("geometry/shaft_stepped.toml", ["bearing.B.position=-60 mm:-30 mm"],
+    ...     "max bending 1", tol=0.01)
+    >>> found.best.number > 0, found.gain.verdict
+    (True, 'resolved')
+    """
+    return _Search(os.fspath(scene), vary, goal, keep, keep_sum, model, tol, progress).run()
+
+
+class _Search:
+    """Designs by their places in the ranges of all entries, each between 0 and 1."""
+
+    def __init__(
+        self,
+        path: str,
+        vary: Iterable[str],
+        goal: str,
+        keep: Iterable[str],
+        keep_sum: Iterable[str],
+        model: str | None,
+        tol: float | None,
+        progress: Callable[[str], None],
+    ):
+        self.goal = wish_of(goal)
+        self.keep = tuple(map(limit_of, keep))
+        self.progress = progress
+        files = {OWN: parse(path)}
+        owner = lambda entry: (OWN, entry)  # noqa: E731
+        texts = [_ends(text) for text in vary]
+        self.entries: tuple[Entry, ...] = entries_of(texts, files, owner)
+        if not self.entries:
+            raise SolidgearError(
+                'nothing is varied; give for example --vary "bearing.B.position=180 mm:240 mm"'
+            )
+        kept: tuple[Kept, ...] = kept_of(keep_sum, files, owner, self.entries)
+        # the variant that is read next is the last one
+        self.variants = SceneVariants(
+            Path(path), files, self.entries, np.full((1, len(self.entries)), math.nan), kept
+        )
+        self.variants.tried(0)
+        self.variants.refuse_hopeless()
+        base = self.variants.scene(0)
+        tol = base.ask.tolerance / 10 if tol is None else tol
+        self.task = SceneTask(self.variants, model, tol, {}, MODES)
+        self.title = base.title or base.name
+        self.designs: list[Design] = []
+        self.places: list[np.ndarray] = []
+
+    @property
+    def most(self) -> int:
+        return MOST + MORE * (len(self.entries) - 1 + len(self.keep))
+
+    def run(self) -> Optimum:
+        """Search from the file as it is."""
+        first = self._of_file()
+        if first.status == "ok" and first.value is None:
+            has = [
+                *map(str, STATICS),
+                "mass",
+                *(v for k, v in first.row.items() if k[:4] == "mode"),
+            ]
+            raise SolidgearError(
+                f"--goal {self.goal}: designs have no {self.goal.name}"
+                f"{nearest(self.goal.name, has)}; they have {', '.join(has)}"
+            )
+        if len(self.entries) == 1 and not self.keep:
+            self._scalar()
+        else:
+            self._trust_region(np.nan_to_num(self.places[0], nan=0.5))
+        sound = [one for one in self.designs if one.kept and one.value is not None]
+        best = min(sound, key=self._loss, default=None)
+        return Optimum(
+            self.title, self.goal, self.keep, tuple(self.designs), best, self._at_end(best)
+        )
+
+    def _loss(self, one: Design) -> float:
+        assert one.value is not None
+        return -one.value if self.goal.upward else one.value
+
+    def _scalar(self) -> None:
+        from scipy.optimize import minimize_scalar
+
+        for end in (0.0, 1.0):
+            self._solved(np.array([end]))
+        how = {"xatol": SAME, "maxiter": self.most - len(self.designs)}
+        minimize_scalar(
+            lambda x: self._objective(np.array([x])), bounds=(0, 1), method="bounded", options=how
+        )
+
+    def _trust_region(self, start: np.ndarray) -> None:
+        from scipy.optimize import NonlinearConstraint, minimize
+
+        limits = [
+            NonlinearConstraint(lambda x, w=wish: self._shortfall(x, w), -np.inf, 0.0)
+            for wish in self.keep
+        ]
+        how = {
+            "maxfev": self.most - len(self.designs),
+            "initial_tr_radius": 0.25,
+            "final_tr_radius": SAME,
+        }
+        minimize(
+            self._objective,
+            start,
+            bounds=[(0.0, 1.0)] * len(start),
+            constraints=limits,
+            method="COBYQA",
+            options=how,
+        )
+
+    def _objective(self, place: np.ndarray) -> float:
+        """Goal relative to that of the file, to be made small; of a refused design worse than any."""
+        one = self._solved(place)
+        known = [abs(d.value) for d in self.designs if d.value is not None]
+        size = known[0] if known and known[0] else 1.0
+        if one.value is None:
+            return 2 * max(known, default=1.0) / size
+        return self._loss(one) / size
+
+    def _shortfall(self, place: np.ndarray, wish: Wish) -> float:
+        return min(wish.missing(self._solved(place).row), 10.0)
+
+    def _solved(self, place: np.ndarray) -> Design:
+        """A design, or one that was solved as near as makes no difference."""
+        for one, there in zip(self.designs, self.places):
+            if np.array_equal(place, there) or np.all(abs(place - there) < SAME / 10):
+                return one
+        number = len(self.designs)
+        values = [_between(entry, x) for entry, x in zip(self.entries, place)]
+        self.variants.values[0] = values
+        self.progress(f"design {number}")
+        row = self.task.rows([0])[0]
+        told = self.goal.of(row)
+        kept = row["status"] == "ok" and all(wish.missing(row) <= 0 for wish in self.keep)
+        value, bar = told or (None, None)
+        one = Design(number, self.variants.told(0), value, bar, kept, row["status"], row)
+        self.designs.append(one)
+        self.places.append(place.copy())
+        return one
+
+    def _of_file(self) -> Design:
+        """The file as it is, at its place in the ranges as far as it is in them."""
+        first = self._solved(np.full(len(self.entries), math.nan))
+        self.places[0] = self._place_of_file()
+        return first
+
+    def _place_of_file(self) -> np.ndarray:
+        """Where the file lies in the ranges; not a number beyond them."""
+        out = []
+        for entry in self.entries:
+            low, high = (in_si(entry.put(value)) for value in (entry.values[0], entry.values[-1]))
+            there = in_si(entry.there)
+            if there is None or low is None or high is None or high == low:
+                out.append(math.nan)
+                continue
+            x = (there - low) / (high - low)
+            out.append(x if 0 <= x <= 1 else math.nan)
+        return np.array(out)
+
+    def _at_end(self, best: Design | None) -> tuple[str, ...]:
+        if best is None or best.number == 0:
+            return ()
+        place = self.places[best.number]
+        return tuple(entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) < AT_END)
+
+
+def _between(entry: Entry, x: float) -> float:
+    low, high = entry.values[0], entry.values[-1]
+    return math.nan if math.isnan(x) else float(f"{low + x * (high - low):.9g}")
+
+
+def _ends(text: str) -> str:
+    """A range for two ends, in the words of sweeps."""
+    path, _, spec = text.partition("=")
+    if spec.count(":") != 1:
+        raise SolidgearError(
+            f'--vary {text}: write PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm"'
+        )
+    low, high = map(str.strip, spec.split(":"))
+    if in_si(plain_number(low)) == in_si(plain_number(high)):
+        raise SolidgearError(
+            f"--vary {text}: both ends are the same, and nothing is left to choose"
+        )
+    return f"{path}={spec}:2"
