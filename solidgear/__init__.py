@@ -167,7 +167,7 @@ def __getattr__(name: str):
     if name not in _WHERE:
         from solidgear.errors import nearest
 
-        raise AttributeError(f"solidgear has no {name!r}{nearest(name, _WHERE)}")
+        raise AttributeError(f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}")
     value = getattr(importlib.import_module(_WHERE[name]), name)
     globals()[name] = value
     return value

@@ -217,10 +217,10 @@ def test_a_lumped_model_without_the_first_bending_is_not_valid():
 def test_a_beam_that_cannot_be_made_says_nothing_of_the_other(monkeypatch):
     real = Probe.solution
 
-    def solution(probe, model):
+    def solution(probe, model, *most):
         if model == "euler":
             raise sg.SolidgearError("an element is 5e-08 m long, and loses its digits")
-        return real(probe, model)
+        return real(probe, model, *most)
 
     monkeypatch.setattr(Probe, "solution", solution)
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")

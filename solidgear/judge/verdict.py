@@ -201,7 +201,7 @@ def _trust(solutions, reference, gaps, judged) -> list[str]:
     told = " and ".join(size) or "the numbers it has"
     out = [
         f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to "
-        f"{told} ({len(base.levels)} meshes)."
+        f"{told} ({len(base.levels)} mesh{'es' * (len(base.levels) != 1)})."
     ]
     for model in LADDER.of(SOLID):
         if model in solutions and model != reference:

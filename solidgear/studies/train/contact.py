@@ -316,7 +316,10 @@ def _scene_load(train: Train, side: str, found: tuple[MeshVector, MeshVector]) -
         f"the [load] of the {side}'s scene, ({', '.join(f'{v:.0f}' for v in force)}) N, under which "
         f"its bearings settle"
     )
-    way = "give the train an [operation] with its torque, and the mesh force follows"
+    way = (
+        f'give the train an [operation] with its torque and write scene_load = "replaced" under '
+        f"[{side}], so that the mesh force follows"
+    )
     if along < 0:
         raise SceneError(
             f"{told}, pulls the teeth apart: they push the {side} along "
