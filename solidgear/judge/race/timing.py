@@ -72,7 +72,7 @@ def race(
         Of each case; cases above 8 s get at most three, above 20 s one.
     budget : float
         Seconds for the rows; the reference takes what it takes.  A level that would not fit in with
-        all its runs is left out, but for beams and lumped models, which all run once.
+        all its runs, the first of a series with one, is left out, but for beams and lumped models.
     sure : float, optional
         Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
@@ -314,7 +314,7 @@ def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
 
 
 def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> None:
-    """Leave a row out if the budget would not hold all runs of all admitted rows and of this one."""
+    """Leave a row out if the budget would not hold it beside all runs of all admitted rows."""
     if any(
         r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level
     ):
@@ -328,7 +328,9 @@ def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> No
         for r in found.rows
         if r.status == "ok"
     )
-    if spent + owed + guess * _most_runs(guess, found.runs) > found.budget:
+    # a series with one point, run once, tells more than further runs of others
+    runs = 1 if row.level == 1 else _most_runs(guess, found.runs)
+    if spent + owed + guess * runs > found.budget:
         row.status = "left out"
         row.reason = f"the budget of {found.budget:g} s would not hold it" + (
             f" (about {guess:.2g} s a run)" if math.isfinite(guess) else ""
