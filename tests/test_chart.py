@@ -67,7 +67,6 @@ def light():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(cases, "plan", few)
         patch.setattr(racing, "SURE", 1e-2)
-        patch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
         patch.setattr(cases, "setup_seconds", lambda: SETUP)
         patch.setattr(automatic, "automatic_rows", list)
         yield
@@ -178,6 +177,7 @@ def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
     )
     reference = {
         "options": COARSE,
+        "model": "harmonic solid",
         "setting": "order 3",
         "unknowns": 1,
         "seconds": 9.0,

@@ -192,7 +192,7 @@ def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
 
 def test_like_for_like_is_against_section_ties(scene, raced):
     tied = scene.with_attachment("section")
-    reference = sg.build(tied, "harmonic", **racing.LIKE_FOR_LIKE)
+    reference = sg.build(tied, "harmonic", **raced.reference["options"])
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
     beam = raced.rows[0]
     own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[
@@ -236,6 +236,7 @@ class Stage:
         monkeypatch.setattr(racing, "answer", self.answer)
         reference = {
             "options": COARSE,
+            "model": "harmonic solid",
             "setting": "order 3",
             "unknowns": 1,
             "seconds": 1.0,
@@ -316,6 +317,47 @@ def test_a_budget_that_ends_early_leaves_fewer_runs_and_says_so(scene, monkeypat
     assert stage.now <= 12.0
 
 
+def test_what_the_reference_takes_is_none_of_the_budget(scene, monkeypatch):
+    stage = Stage(monkeypatch, scene, {"a1": 1.0})
+    told = racing._reference()
+
+    def slow(*_):
+        stage.now += 1000.0
+        return told
+
+    monkeypatch.setattr(racing, "_reference", slow)
+    found = race(scene, tagged("a1"), runs=2, budget=5.0)
+    assert len(found.rows[0].samples) == 2 and found.seconds >= 1000.0
+
+
+def test_a_beam_is_there_whatever_else_used_up_the_budget(scene, monkeypatch):
+    stage = Stage(monkeypatch, scene, {"a1": 0.1, "b1": 0.1})
+
+    def slow(*_):
+        stage.now += 100.0
+        return {("harmonic", None, False): 0.1}
+
+    monkeypatch.setattr(racing, "_warm_up", slow)
+    rows = tagged("a1", "b1")
+    rows[1].family = "beam"
+    found = race(scene, rows, runs=2, budget=5.0)
+    assert [(r.status, len(r.samples)) for r in found.rows] == [("left out", 0), ("ok", 1)]
+
+
+def test_a_chart_without_a_single_answer_is_an_error_that_says_why(scene, monkeypatch):
+    Stage(monkeypatch, scene, {"a1": SolidgearError("no mesh")})
+    with pytest.raises(SolidgearError, match="nothing to chart: no case.*no mesh"):
+        race(scene, tagged("a1"), runs=1, budget=1e6)
+
+
+def test_a_model_that_does_not_fit_a_scene_is_one_row_that_says_why():
+    rows = plan(sg.load(GEOMETRY / "pinion_keyed.toml"))
+    failed = {row.model: row.reason for row in rows if row.status == "failed"}
+    assert {"euler", "timoshenko", "harmonic"} <= set(failed)
+    assert "keyway" in failed["harmonic"]
+    assert {row.model for row in rows if row.status == "waiting"} >= {"corrected", "solid"}
+
+
 def test_an_interrupt_keeps_what_there_was(scene, monkeypatch):
     kept = []
     Stage(monkeypatch, scene, {"a1": 1.0, "b1": KeyboardInterrupt(), "c1": 1.0})
@@ -382,7 +424,6 @@ def test_the_bar_of_the_reference_holds_its_error(scene, monkeypatch):
     """Against a solid with further layers and a higher order: a bar that did not would be no
     floor.
     """
-    monkeypatch.setattr(racing, "LIKE_FOR_LIKE", COARSE)
     record, _ = racing._reference(scene, 1e-2, 10, lambda _: None)
     fine = sg.build(scene, "harmonic", order=5, layers=2, edge_layers=2)
     c = sg.condense(fine, scene, scene.port.name).compliance[2, 2]

@@ -449,8 +449,26 @@ def test_smeared_teeth_stay_smeared_beside_bolts():
     assert np.array_equal(a.mass_matrix(), b.mass_matrix())
 
 
+@pytest.mark.parametrize("segment", ["rod", "disc"])
+def test_teeth_and_a_keyway_are_refused_with_the_words_that_let_models_hold_both(segment):
+    """On one shaft, and on the very segment of the teeth."""
+    from solidgear.ladder.registry import LADDER
+
+    at = {"rod": 0.1, "disc": 0.044}[segment]
+    key = Keyway(name="key", segment=segment, y=at, length=0.012, width=0.006, depth=0.004)
+    spline = Spline(name="s", segment="disc", count=19, model="sector")
+    with pytest.raises(sg.SolidgearError) as caught:
+        sg.answer(shaft(spline, key), 0.1, "C_zz")
+    assert 'write model = "pitch_cone" for spline "s", which leaves out' in str(caught.value)
+    assert str(caught.value).endswith("use corrected or solid")
+    assert str(caught.value).count("no model") == 1
+    taught = shaft(spline.with_changes(model="pitch_cone"), key)
+    assert not any(LADDER[name].unfit(taught) for name in ("corrected", "solid"))
+
+
 def test_a_model_that_says_it_fits_can_be_built():
     """Fillets, counts and phases that leave no sector are told before anything is meshed."""
+    from solidgear.ladder import way_out
     from solidgear.ladder.registry import LADDER
     from solidgear.scene import Fillet
 
@@ -471,7 +489,7 @@ def test_a_model_that_says_it_fits_can_be_built():
     told = no_common_sector((TEETH, spline))
     turned = spline.with_changes(angle=re.search('angle = "(.*)"', told)[1])
     assert no_common_sector((TEETH, turned)) == ""  # as it was printed
-    smear, bolted = ("smear the teeth" in LADDER["sector"].unfit(s) for s in blended)
+    smear, bolted = ('write model = "pitch_cone" for teeth' in way_out(s) for s in blended)
     assert smear and not bolted  # holes are no teeth
     cone = shaft(TEETH.with_changes(model="pitch_cone")).with_changes(blends=(fillet,))
     assert "no fillets" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)

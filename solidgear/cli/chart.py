@@ -33,7 +33,10 @@ def chart(
         ),
     ] = Path("out"),
     full: Annotated[
-        bool, typer.Option("--full", help="More levels and larger solids, up to an hour.")
+        bool,
+        typer.Option(
+            "--full", help="More levels, larger solids, a surer reference, an hour and more."
+        ),
     ] = False,
     runs: Annotated[
         int, typer.Option("--runs", help="Runs of each case; slow cases get fewer.")
@@ -42,7 +45,8 @@ def chart(
         float | None,
         typer.Option(
             "--budget",
-            help="Seconds; levels that would not fit are left out and named. 240, or 3600 with --full.",
+            help="Seconds for the points, those of the reference not counted; levels that would not "
+            "fit are left out and named. 120, or 3600 with --full.",
         ),
     ] = None,
     run: Run,
@@ -72,7 +76,7 @@ def chart(
         say(*told, soft_wrap=False)
         if left_out(found):
             say(
-                f"left out ({found.budget:g} s allowed; reasons in {out / 'rows.csv'}): {left_out(found)}"
+                f"left out ({found.budget:g} s allowed for the points; reasons in {out / 'rows.csv'}): {left_out(found)}"
             )
         say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
     if not found.complete:
@@ -101,12 +105,13 @@ def run_chart(
     Raises
     ------
     SolidgearError
-        For a bad number, a folder that cannot be written, a scene with nothing to chart, or a
-        comparison of it by another version of solidgear: before anything is timed.
+        For a bad number, a folder that cannot be written, a scene with nothing to chart or a
+        comparison of it by another version of solidgear, before anything is timed; where no case
+        has an answer.
     """
     from solidgear.judge.race.automatic import automatic_rows, solved
     from solidgear.judge.race.cases import plan, setup_seconds
-    from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, race
+    from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
     from solidgear.report.folder import clear_halves, held
     from solidgear.report.html import write_report
     from solidgear.report.race_figure import draw
@@ -129,6 +134,7 @@ def run_chart(
                 solver=solved,
                 runs=runs,
                 budget=budget,
+                sure=FULL_SURE if full else None,
                 setup=once,
                 progress=progress,
                 keep=functools.partial(write_rows, folder=folder),

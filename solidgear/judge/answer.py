@@ -25,7 +25,7 @@ from solidgear.judge.quantities import judged, own_name
 from solidgear.judge.refinement import Progress
 from solidgear.judge.solving import ENOUGH
 from solidgear.judge.steps import Step, Value
-from solidgear.ladder import NO_MODEL, build
+from solidgear.ladder import NO_MODEL, build, way_out
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
@@ -202,11 +202,13 @@ def climbed(
                 climb.stop(str(error) or "not enough memory")
             return climb, steps + climb.steps
     whys: dict[str, list[str]] = {}
+    way = way_out(scene)
     for step in steps:
         if step.rung in LADDER.of(SOLID):
-            whys.setdefault(step.why.removesuffix(f"; {NO_MODEL}"), []).append(step.rung)
+            whys.setdefault(step.why.removesuffix(f"; {way}"), []).append(step.rung)
     failed = [f"{' and '.join(models)}: {why}" for why, models in whys.items()]
-    raise SolidgearError(f"no model can answer: {'; '.join(failed)}")
+    taught = way.removeprefix(NO_MODEL)
+    raise SolidgearError(f"no model can answer: {'; '.join(failed)}{taught}")
 
 
 def usable(tol: float | str) -> float:

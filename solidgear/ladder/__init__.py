@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.ladder.registry import LADDER
 from solidgear.ladder.remedies import refusal
 from solidgear.machine.memory import NoRoom, begin
 from solidgear.machine.threads import pinned
+from solidgear.models.kinds import CYCLIC
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -18,6 +19,27 @@ if TYPE_CHECKING:
 
 #: what to use instead, where there is nothing
 NO_MODEL = "no model holds all that the scene has"
+
+
+def way_out(scene: Any) -> str:
+    """Words to write into a scene that no model holds so that some do, and what is lost by them;
+    `NO_MODEL` alone where smearing its teeth does not help.
+    """
+    from solidgear.scene.shaft import named
+
+    features = getattr(scene, "features", ())
+    cut = [f for f in features if f.sort == CYCLIC and not f.smeared and f.toothed]
+    if not cut:
+        return NO_MODEL
+    cones = (f.with_changes(model="pitch_cone") if f in cut else f for f in features)
+    smeared = scene.with_changes(features=tuple(cones))
+    fit = [name for name in LADDER.fit(smeared) if not LADDER[name].unfit(smeared)]
+    if not fit:
+        return NO_MODEL
+    return (
+        f'{NO_MODEL}; write model = "pitch_cone" for {named(cut)}, which leaves out the shape of the '
+        f"teeth and keeps their pitch surface, and use {' or '.join(fit)}"
+    )
 
 
 @pinned
@@ -66,7 +88,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     unfit = model.unfit(scene)
     if unfit:
         fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
-        use = f"use {' or '.join(fit)}" if fit else NO_MODEL
+        use = f"use {' or '.join(fit)}" if fit else way_out(scene)
         raise SolidgearError(f"{unfit}; {use}")
     options = model.checked(model.given(scene, options))
     own, factoring = model.split(options)

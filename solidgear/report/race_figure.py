@@ -113,7 +113,7 @@ def _bar(panel: Panel, bar: float, low: float) -> None:
 def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float) -> None:
     """The reference itself, at its own error bar."""
     words = readout(
-        "reference, harmonic solid",
+        f"reference, {race.reference['model']}",
         ("own error bar", percent(race.reference["bands"][quantity], signed=False), ""),
         ("time", seconds(race.reference["seconds"]), "s"),
         ("unknowns", grouped(race.reference["unknowns"]), ""),

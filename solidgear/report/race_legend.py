@@ -87,7 +87,7 @@ def footer(race: Race) -> str:
     ]
     if left_out(race):
         lines.append(
-            f"Left out ({race.budget:g} s allowed): {left_out(race)}; reasons in rows.csv."
+            f"Left out ({race.budget:g} s allowed for the points): {left_out(race)}; reasons in rows.csv."
         )
     return "\n".join(lines)
 
@@ -95,8 +95,8 @@ def footer(race: Race) -> str:
 def _reference(race: Race) -> str:
     reference = race.reference
     return (
-        f"Reference: harmonic solid, {reference['setting']}, {reference['unknowns']} unknowns, "
-        f"{seconds(reference['seconds'])} s; its error bar is that of local problems."
+        f"Reference: {reference['model']}, {reference['setting']}, {reference['unknowns']} "
+        f"unknowns, {seconds(reference['seconds'])} s a run; its error bar is as `answer` tells it."
     )
 
 

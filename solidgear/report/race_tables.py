@@ -12,7 +12,7 @@ from solidgear.report.table import Column, Table, text, word
 from solidgear.report.words import count, grouped, seconds
 
 CAPTION = (
-    "Error against the refined harmonic solid with the attachments of the scene, over wall time "
+    "Error against the refined reference with the attachments of the scene, over wall time "
     "and over unknowns. Solid lines: meshes graded to shoulders and seat ends; dashed and pale: "
     "uniform. Thin bars: fastest and slowest run. Beams tie to nodes and cannot average over a "
     "seat: filled is the error a user of this scene makes, tie included; hollow, at the other end "

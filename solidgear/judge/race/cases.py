@@ -20,7 +20,8 @@ log = logging.getLogger(__name__)
 
 
 def plan(scene: Scene, full: bool = False) -> list[Row]:
-    """Series of every family, uniform and graded, level by level.
+    """Series of every family, uniform and graded, level by level; of a model that does not fit the
+    scene one row that says why.
 
     Parameters
     ----------
@@ -30,8 +31,15 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
     rows = [
         Row(family, label, level, model.name, options)
         for model in LADDER
+        if not model.unfit(scene)
         for family, label, all_options in model.series(scene, full)
         for level, options in enumerate(all_options, start=1)
+    ]
+    unfit = ((model, model.unfit(scene)) for model in LADDER if model.concerns(scene))
+    rows += [
+        Row(model.family, model.heading, 1, model.name, {}, "failed", why)
+        for model, why in unfit
+        if why
     ]
     return sorted(rows, key=lambda row: row.level)
 

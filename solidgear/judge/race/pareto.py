@@ -1,7 +1,7 @@
 """Error against cost: discretisations of one scene, and those that no other beats in both.
 
-The error is that against a refined harmonic solid, whose own error bar (of local problems) is the
-floor: what lies below it is not resolved.
+The error is that against the model that judges the scene, refined; its own error bar is the floor:
+what lies below it is not resolved.
 """
 
 from __future__ import annotations
@@ -75,14 +75,16 @@ class Race:
     Attributes
     ----------
     reference : dict
-        ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and
+        ``model`` (its title), ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and
         ``like_for_like``.
     setup : dict of str to float
         Seconds a process pays once, by what for.
     runs, modes : int
         Runs asked for; elastic shapes that every model is asked for.
-    budget, seconds : float
-        Allowed and used, s.
+    budget : float
+        Allowed for the rows, s.
+    seconds : float
+        Used for all, the reference included.
     complete : bool
         False after an interrupt.
     """

@@ -10,6 +10,7 @@ from __future__ import annotations
 import gc
 import json
 import logging
+import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,17 +25,19 @@ from solidgear.judge.settle import settle
 from solidgear.judge.solving import Answer, solve
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
-from solidgear.quantity import FIRST_BENDING
+from solidgear.quantity import FIRST_BENDING, Quantity
 from solidgear.reduction.effective_mass import synthesise
 
 log = logging.getLogger(__name__)
-#: relative error bar of the reference
-SURE = 1e-6
-#: good to about 3e-5, far below the error of any beam
-LIKE_FOR_LIKE = {"order": 4, "layers": 3, "edge_layers": 1}
-BUDGET, FULL_BUDGET = 240.0, 3600.0
+#: relative error bar of the reference, below what tells models apart; one of a millionth
+#: takes minutes on a shaft of ten edges
+SURE, FULL_SURE = 3e-4, 1e-6
+#: s for the points; with the reference a chart of a common shaft is there in four minutes
+BUDGET, FULL_BUDGET = 120.0, 3600.0
 #: a case above these seconds gets no more runs than that
 FEWER_RUNS = ((20.0, 1), (8.0, 3))
+#: families that run once whatever the budget
+CHEAP = (LUMPED, BEAM)
 #: cost of the next level over the last one, before a series has shown its own growth
 GROWTH = 3.0
 
@@ -68,9 +71,10 @@ def race(
     runs : int
         Of each case; cases above 8 s get at most three, above 20 s one.
     budget : float
-        Seconds for all, the reference included.  A level that would not fit in with all its runs is left out.
+        Seconds for the rows; the reference takes what it takes.  A level that would not fit in with
+        all its runs, the first of a series with one, is left out, but for beams and lumped models.
     sure : float, optional
-        Relative error bar that the reference is refined to; 1e-6 by default.
+        Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
         What a process pays once, for the record.
     progress : callable
@@ -86,8 +90,8 @@ def race(
     Raises
     ------
     SolidgearError
-        If ``runs`` or ``budget`` are not positive, or the reference fails or has none of the
-        charted quantities.
+        If ``runs`` or ``budget`` are not positive, the reference fails or has none of the charted
+        quantities with a bar, or no row has an answer.
     """
     if runs < 1:
         raise SolidgearError(f"runs = {runs} is not usable; give a whole number of at least 1")
@@ -101,9 +105,12 @@ def race(
         json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget
     )
 
+    began = time.perf_counter()
+
     def spent() -> float:
-        found.seconds = time.perf_counter() - start
-        return found.seconds
+        now = time.perf_counter()
+        found.seconds = now - start
+        return now - began
 
     def timed(row: Row, turn: int) -> None:
         progress(f"run {turn + 1} of {runs}: {row.series}, level {row.level}")
@@ -112,7 +119,7 @@ def race(
         keep(found)
 
     try:
-        first = _warm_up(scene, found.rows, n, progress, solver)
+        first = _warm_up(scene, found, n, progress, solver, spent)
         while waiting := [row for row in found.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
@@ -143,6 +150,9 @@ def race(
                 row.status, row.reason = "left out", "interrupted"
     spent()
     keep(found)
+    if found.complete and not any(row.status == "ok" for row in found.rows):
+        why = next((row.reason for row in found.rows), "no case was given")
+        raise SolidgearError(f"nothing to chart: no case has an answer; the first: {why}")
     return found
 
 
@@ -180,21 +190,26 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
 
 
 def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
-    """Record of the harmonic solid refined to an error bar, and its compliance."""
-    progress("reference: refined harmonic solid")
+    """Record of the model that judges the scene, refined to an error bar, and its compliance."""
+    progress(f"reference: refined to an error bar of {sure:g}")
     made = settle(scene, sure, progress=progress)
+    model = LADDER[made.rung]
     start = time.perf_counter()
-    found = answer(scene, "harmonic", made.options, n)
+    found = answer(scene, model.name, made.options, n)
     seconds, values = time.perf_counter() - start, found.quantities
-    have = [q for q in CHARTED if q in values and q in made.bars]
+    have = [q for q in CHARTED if q in values and math.isfinite(made.bars.get(q, math.inf))]
     if not have:
         raise SolidgearError(
-            f"nothing to chart: the reference has neither {' nor '.join(CHARTED)} at port "
-            f"{scene.port.name!r} (bearings must resist z there)"
+            f"nothing to chart: the reference, the {model.title}, tells neither "
+            f"{' nor '.join(CHARTED)} at port {scene.port.name!r} with an error bar "
+            "(bearings must resist z there)"
         )
-    progress("reference with section ties")
-    like = answer(scene.with_attachment("section"), "harmonic", LIKE_FOR_LIKE, n).quantities
+    like: dict[Quantity, float] = {}
+    if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
+        progress("reference with section ties")
+        like = answer(scene.with_attachment("section"), model.name, made.options, n).quantities
     record = {
+        "model": model.title,
         "options": json.loads(json.dumps(made.options)),
         "setting": made.setting,
         "unknowns": found.body.size,
@@ -202,7 +217,6 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
         "values": {q: values[q] for q in have},
         "bands": {q: made.bars[q] for q in have},
         "like_for_like": {q: like[q] for q in have if q in like},
-        "like_for_like_options": LIKE_FOR_LIKE,
     }
     return record, found.condensed.compliance
 
@@ -231,7 +245,7 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver:
     row.unknowns = 6 if row.family == LUMPED else found.body.size
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
-    if row.family in (LUMPED, BEAM):
+    if row.family in CHEAP and against["like_for_like"]:
         like = solver(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
             q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
@@ -263,13 +277,18 @@ def _kind(row: Row) -> tuple:
     return row.model, row.options.get("element"), row.options.get("order", 0) > 2
 
 
-def _warm_up(scene, rows: list[Row], n: int, progress, solver: Solve) -> dict[tuple, float]:
+def _warm_up(
+    scene, found: Race, n: int, progress, solver: Solve, spent: Callable[[], float]
+) -> dict[tuple, float]:
     """The first case of every kind once, outside the rows: first calls pay for imports and caches;
-    seconds by kind.
+    seconds by kind, infinite for those that half the budget does not reach.
     """
-    spent: dict[tuple, float] = {}
-    for row in rows:
-        if _kind(row) in spent:
+    first: dict[tuple, float] = {}
+    for row in found.rows:
+        if row.status != "waiting" or _kind(row) in first:
+            continue
+        if row.family not in CHEAP and spent() > found.budget / 2:
+            first[_kind(row)] = math.inf
             continue
         progress(f"warm-up: {row.series}")
         start = time.perf_counter()
@@ -277,8 +296,8 @@ def _warm_up(scene, rows: list[Row], n: int, progress, solver: Solve) -> dict[tu
             solver(scene, row.model, row.options, n)
         except Exception as error:  # reported when its own turn comes
             log.debug("warm-up of %s: %s", row.series, error)
-        spent[_kind(row)] = time.perf_counter() - start
-    return spent
+        first[_kind(row)] = time.perf_counter() - start
+    return first
 
 
 def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
@@ -295,11 +314,13 @@ def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
 
 
 def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> None:
-    """Leave a row out if the budget would not hold all runs of all admitted rows and of this one."""
+    """Leave a row out if the budget would not hold it beside all runs of all admitted rows."""
     if any(
         r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level
     ):
         row.status, row.reason = "left out", "the level before it was left out"
+        return
+    if row.family in CHEAP:
         return
     guess = _guess(row, found, first)
     owed = sum(
@@ -307,10 +328,12 @@ def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> No
         for r in found.rows
         if r.status == "ok"
     )
-    if spent + owed + guess * _most_runs(guess, found.runs) > found.budget:
+    # a series with one point, run once, tells more than further runs of others
+    runs = 1 if row.level == 1 else _most_runs(guess, found.runs)
+    if spent + owed + guess * runs > found.budget:
         row.status = "left out"
-        row.reason = (
-            f"the budget of {found.budget:g} s would not hold it (about {guess:.2g} s a run)"
+        row.reason = f"the budget of {found.budget:g} s would not hold it" + (
+            f" (about {guess:.2g} s a run)" if math.isfinite(guess) else ""
         )
 
 

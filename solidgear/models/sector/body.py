@@ -175,10 +175,8 @@ def no_sector(scene: Any) -> str:
     features = cyclic_features(scene)
     if features and scene.outline.corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.outline.corners)
-        teeth = all(f.toothed for f in features)
         return (
             f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
-            + ', or smear the teeth (model = "pitch_cone")' * teeth
         )
     return no_common_sector(features) if features else ""
 
