@@ -99,8 +99,23 @@ def beam(
             "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"
         )
     wanted = [*attached_stations(scene.stations, attachments)]
-    nodes, owner = mesh(scene, elements, wanted)
-    n = len(nodes)
+    nodes = mesh(scene, elements, wanted)
+    return on_nodes(scene, nodes, wanted, shear, rotary_inertia, head, mass, kappa, shoulder)
+
+
+def on_nodes(
+    scene,
+    nodes: np.ndarray,
+    wanted,
+    shear: bool,
+    rotary_inertia: bool,
+    head: str,
+    mass: str,
+    kappa: str,
+    shoulder: bool,
+) -> Body:
+    """The same with given nodes (m) and stations with their attachments."""
+    n, owner = len(nodes), owners(scene, nodes)
     if not shear:
         _long_enough(nodes)
     # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives
@@ -191,7 +206,7 @@ def beam(
 
 def mesh(scene, elements: int | None, wanted=()):
     """Nodes (n,) at segment ends, ports and ends of rigid seats, filled in evenly to at least so
-    many elements (None is eight to a diameter), m; and the segment of every element.
+    many elements (None is eight to a diameter), m.
     """
     found = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
     for station, attachment in wanted:
@@ -205,11 +220,14 @@ def mesh(scene, elements: int | None, wanted=()):
     filled = [marks[:1]]
     for a, b in zip(marks[:-1], marks[1:]):
         filled.append(np.linspace(a, b, max(1, int(np.ceil((b - a) / size - 1e-9))) + 1)[1:])
-    nodes = np.concatenate(filled)
+    return np.concatenate(filled)
+
+
+def owners(scene, nodes) -> list:
+    """The segment of every element."""
     middle = (nodes[1:] + nodes[:-1]) / 2
     ends = np.array([s.y1 for s in scene.segments])
-    owner = [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
-    return nodes, owner
+    return [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
 
 
 def _softened(nodes, steps: tuple[Hinge, ...]) -> dict[int, list[Hinge]]:
