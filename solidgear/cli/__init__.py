@@ -31,6 +31,7 @@ from solidgear.cli import (
     deflect,
     files,
     receptance,
+    sensitivities,
     solve,
     stiffness,
     stress,

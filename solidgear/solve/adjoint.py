@@ -112,9 +112,7 @@ def _loaded(body: Body, supports: Supports, here: np.ndarray, load: Sequence[flo
     size = np.concatenate([1 / np.sqrt(np.diag(system)[:r]), np.ones(6)])
     column = np.abs(system[:r, r:] * size[:r, None]).max(axis=0)
     size[r:] = 1 / np.where(column > 0, column, 1.0)
-    solved = size * np.linalg.lstsq(
-        system * np.outer(size, size), size * right, rcond=1e-13
-    )[0]
+    solved = size * np.linalg.lstsq(system * np.outer(size, size), size * right, rcond=1e-13)[0]
     np.subtract.at(forces, there, root @ solved[:r])
     motions = flex.matrix @ forces + rigid @ solved[r:]
     vectors = {}

@@ -10,11 +10,8 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
-
-import numpy as np
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SceneError, SolidgearError, listed, nearest
@@ -36,7 +33,7 @@ STEP, FROM_ZERO = 1e-4, 1e-5
 HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
 #: words in them that may look like numbers
 WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
-#: elasticities below this are rounding or symmetry, and shown as nothing
+#: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
 NOTHING = 1e-9
 _AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.S)
 
@@ -130,7 +127,9 @@ class Sensitivities:
         for one in self.of:
             if one.name == name:
                 return one
-        raise SolidgearError(f"{name} was not asked for; there are {listed([o.name for o in self.of])}")
+        raise SolidgearError(
+            f"{name} was not asked for; there are {listed([o.name for o in self.of])}"
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data in SI."""
@@ -251,12 +250,22 @@ def sensitivities(
             rows[k].append(Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart))
     first = found[0]
     given = [
-        OfNumber(str(q), v, q.unit, pair, tuple(sorted(r, key=lambda d: -abs(d.elasticity))))
+        OfNumber(str(q), v, q.unit, pair, _ranked(r))
         for q, v, pair, r in zip(numbers, first.values, first.pairs, rows)
     ]
     return Sensitivities(
         scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)
     )
+
+
+def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
+    """The strongest first; what is nothing beside it, and not by a length of zero, is zero."""
+    least = NOTHING * max((abs(d.elasticity) for d in rows), default=0.0)
+    kept = [
+        replace(d, by=0.0, elasticity=0.0) if d.at and abs(d.elasticity) <= least else d
+        for d in rows
+    ]
+    return tuple(sorted(kept, key=lambda d: -abs(d.elasticity)))
 
 
 def _supported(scene: Scene, model: str) -> None:

@@ -24,7 +24,7 @@ from solidgear.body.model import FURTHER, SINE
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import reference
 from solidgear.meshing.bands import radial_bands
-from solidgear.models.harmonic.blocks import _Work, _energy, _weight
+from solidgear.models.harmonic.blocks import _energy, _weight, _Work
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
 from solidgear.scene.outline import TOUCH
@@ -124,7 +124,9 @@ class HarmonicAdjoint:
                 for state in (a, b):
                     if (id(state), index) not in known:
                         known[id(state), index] = len(columns)
-                        columns.append((state, index, self._whole(waves, block, state.vectors[index])))
+                        columns.append(
+                            (state, index, self._whole(waves, block, state.vectors[index]))
+                        )
                     at.append(known[id(state), index])
                 uses.append((k, *at))
         for waves, (columns, _, uses) in groups.items():
@@ -311,11 +313,15 @@ class _Family:
         value, r, h, weight, dofs, cells, ends = work.surface(station, attachment)
         u = np.einsum("bq,bec->eqc", value, self.u[dofs][..., other])
         if self.waves == 1:
-            gram = 2 * np.pi * np.array(
-                [
-                    [(weight * r).sum(), (weight * r * h).sum()],
-                    [(weight * r * h).sum(), (weight * r * (h * h + r * r / 2)).sum()],
-                ]
+            gram = (
+                2
+                * np.pi
+                * np.array(
+                    [
+                        [(weight * r).sum(), (weight * r * h).sum()],
+                        [(weight * r * h).sum(), (weight * r * (h * h + r * r / 2)).sum()],
+                    ]
+                )
             )
             g = np.linalg.solve(gram, force)
             # distances of the surface from the mean rigid motion
@@ -433,7 +439,7 @@ class Motion:
 
     def _across(self, k: int, end: int, r: np.ndarray) -> np.ndarray:
         """Radial velocity on an end of a segment, at radii r."""
-        segments, joint = self.adjoint.scene.segments, k + end
+        segments = self.adjoint.scene.segments
         sides = [(k, end)] + [(j, 1 - end) for j in (k + 2 * end - 1,) if 0 <= j < len(segments)]
         marks: dict[float, float] = {}
         for j, at in sides:
@@ -511,6 +517,8 @@ def rings(scene, flat) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         for at in np.unique(t):
             here = t == at
             radii = (1 - at) * left[k] + at * right[k]
-            ends[:, here] = [np.interp(r[here], radii, side[: len(radii)]) for side in (left[k], right[k])]
+            ends[:, here] = [
+                np.interp(r[here], radii, side[: len(radii)]) for side in (left[k], right[k])
+            ]
         out.append((t, *ends))
     return out
