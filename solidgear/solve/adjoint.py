@@ -65,7 +65,7 @@ def of_entry(body: Body, supports: Supports, wanted: Quantity, port: str) -> tup
     at = condense(body, supports, port)
     matrix = at.compliance if wanted.kind == COMPLIANCE else at.stiffness
     value = float(matrix[wanted.place])
-    if not np.isfinite(value) or any(at.free[list(wanted.place)].any(axis=1)):
+    if not np.isfinite(value) or at.free[list(wanted.place)].any():
         raise SolidgearError(f"{wanted}: {port} moves freely there; there is no derivative")
     here = 6 * body.port_index(port) + np.arange(6)
     loads = np.eye(6) if wanted.kind == COMPLIANCE else at.stiffness

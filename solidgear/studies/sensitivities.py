@@ -224,7 +224,7 @@ def sensitivities(
     _supported(scene, model)
     numbers = [Quantity(name) for name in of or ("bending 1", "C_zz")]
     moves = [*_wanted(tables, by)]
-    levels = [{}]
+    levels: list[dict[str, Any]] = [{}]
     if coarser:
         levels.append(_coarser(scene, model, options))
     found = []
@@ -346,7 +346,7 @@ def _put(tables: Tables, keys: Keys, value: str | float) -> Tables:
 
 def _held(tables: Tables, scene: Scene, where: str) -> Scene:
     """A scene of tables, catalogue bearings as stiff as they are."""
-    other = scene_of(tables, where, part_of)
+    other = scene_of(dict(tables), where, part_of)
     if all(bearing.catalogue is None for bearing in scene.bearings):
         return other
     bearings = tuple(
@@ -432,7 +432,7 @@ class _Derived:
             return 0.0
         if self._last[0] is not low:
             if self.model == "harmonic":
-                from solidgear.models.harmonic.derivative import Motion
+                from solidgear.models.harmonic.motion import Motion
 
                 self._last = low, Motion(self.harmonic, low, high, step)
             else:

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from skfem import ElementQuad1
@@ -27,7 +28,6 @@ from solidgear.meshing.bands import radial_bands
 from solidgear.models.harmonic.blocks import _energy, _weight, _Work
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
-from solidgear.scene.outline import TOUCH
 from solidgear.solve.adjoint import Form, State
 
 #: key of torsion among numbers of waves
@@ -55,7 +55,7 @@ class Push:
     nodes: np.ndarray
     planes: np.ndarray
     ends: np.ndarray
-    surface: tuple[np.ndarray, np.ndarray]
+    surface: list[np.ndarray]
     lame: np.ndarray
     shear: np.ndarray
     density: np.ndarray
@@ -79,7 +79,7 @@ class HarmonicAdjoint:
             )
         if body.mesh["order"] < 3:
             raise SolidgearError("derivatives by the harmonic solid need order 3 or more")
-        geometry = body.geometry
+        geometry: Any = body.geometry
         self.flat, self.body = geometry.meridian, body
         self.work = _Work(
             scene, geometry.mesh, geometry.element, geometry.dofs, self.flat, body.mesh["order"]
@@ -100,11 +100,11 @@ class HarmonicAdjoint:
             first, second = (np.array([u[side] for u in use]) for side in (1, 2))
             family = _Family(self, waves, columns, first, second, lam, by, kept)
             family.volume()
-            family.ports(pairs, [k for k, _, _ in use])
+            family.ports()
 
     def _empty(self) -> Push:
         p, s = len(self.body.ports), len(self.scene.segments)
-        surface = tuple(np.zeros((len(self.sides[side]), 2)) for side in (1, 0))
+        surface = [np.zeros((len(self.sides[side]), 2)) for side in (1, 0)]
         by_segment = (np.zeros(s) for _ in range(3))
         return Push(
             np.zeros_like(self.flat.points), np.zeros(p), np.zeros((p, 2)), surface, *by_segment
@@ -174,8 +174,8 @@ class _Family:
             self.share = np.ones(2) if c == 2 else np.array([2.0, 2.0, 1.0])
             self.power = 1
         # forces that rigid seats hold surfaces by
-        self.rigid = waves in (0, 1) and any(a == "rigid" for _, a in whole.stations)
-        self.residual = np.zeros((self.work.n, c, self.u.shape[2])) if waves == 1 else None
+        self.rigid = waves == 1 and any(a == "rigid" for _, a in whole.stations)
+        self.residual = np.zeros((self.work.n, c, self.u.shape[2]))
 
     def _weight(self, t, dv):
         if self.waves == TORSION:
@@ -239,7 +239,7 @@ class _Family:
                 push.lame[segment] -= self.by[k] * (w[..., 0] * e_trace[..., k]).sum()
                 push.shear[segment] -= self.by[k] * (w[..., 0] * e_rest[..., k]).sum()
                 push.density[segment] += self.by[k] * (w[..., 0] * mass[..., k]).sum()
-            if self.rigid and self.residual is not None:
+            if self.rigid:
                 self._hold(part, material, t, w, value, stress)
         for side in (1, 0):
             self._surface(side)
@@ -286,9 +286,9 @@ class _Family:
         near = [(np.abs(y - at).min(axis=0) < tol) for at in edges]
         return np.any(near, axis=0) if near else np.zeros(y.shape[1], bool)
 
-    def ports(self, pairs, use) -> None:
+    def ports(self) -> None:
         """Terms of the rows of ports: F' dB u of both states."""
-        for k, (pair, push, by) in enumerate(zip(use, self.pushes, self.by)):
+        for k, (push, by) in enumerate(zip(self.pushes, self.by)):
             for mine, other in ((self.first[k], self.second[k]), (self.second[k], self.first[k])):
                 state, index, _ = self.columns[mine]
                 for p, (station, attachment) in enumerate(self.whole.stations):
@@ -366,141 +366,6 @@ class _Family:
         push.nodes[1][nodes] -= by * held[:, 0] * moved[1]
         push.planes[p] += by * held[:, 0].sum() * moved[1]
         push.nodes[0][nodes] += by * held[:, 2] * moved[1]
-
-
-class Motion:
-    """How nodes, seats and materials of a harmonic body move with one parameter, from the scene a
-    little before and after it.
-
-    Raises
-    ------
-    SolidgearError
-        If places of one line of the mesh move apart and something is held there rigidly.
-    """
-
-    def __init__(self, adjoint: HarmonicAdjoint, low, high, step: float):
-        self.low, self.high, self.step = coned(low), coned(high), step
-        self.adjoint = adjoint
-        scene = adjoint.scene
-        names = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
-        self.segment = self._rate(scene.segments, "segments", names)
-        self.station = self._rate(scene.stations, "stations", ("y", "lo", "hi"))
-
-    def _rate(self, of, key: str, names) -> np.ndarray:
-        one, two = getattr(self.low, key), getattr(self.high, key)
-        if not len(one) == len(two) == len(of):
-            raise SolidgearError("the shaft takes another form there")
-        ends = [[[getattr(x, n) for n in names] for x in things] for things in (one, two)]
-        return (np.array(ends[1]) - np.array(ends[0])) / self.step
-
-    def along(self) -> np.ndarray:
-        """(n,) axial velocity of the nodes."""
-        adjoint, scene = self.adjoint, self.adjoint.scene
-        tol = 1e-9 * scene.length
-        marks = {0.0: 0.0} | {s.y1: v[1] for s, v in zip(scene.segments, self.segment)}
-        for (s, attachment), (y, lo, hi) in zip(adjoint.stations, self.station):
-            wanted = [(s.y, y)] if attachment == "section" else [(s.lo, lo), (s.hi, hi)]
-            for place, rate in wanted:
-                near = [m for m in marks if abs(m - place) < tol]
-                known = marks[near[0]] if near else None
-                if known is None:
-                    marks[place] = rate
-                elif abs(known - rate) > 1e-6 * max(1.0, abs(rate)) and attachment != "average":
-                    raise SolidgearError(
-                        f"{s.name} is tied ({attachment}) at a line of the mesh that stays"
-                    )
-        self.marks = np.array(sorted(marks))
-        self.rates = np.array([marks[m] for m in self.marks])
-        return np.interp(adjoint.flat.points[1], self.marks, self.rates)
-
-    def radial(self, axial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(4, m) radial velocity of the corners of cells as their own segment has it, and the mean
-        (n,) at the nodes.
-        """
-        adjoint, flat, scene = self.adjoint, self.adjoint.flat, self.adjoint.scene
-        own = np.zeros(flat.cells.shape)
-        for k, s in enumerate(scene.segments):
-            cells = np.flatnonzero(flat.segment == k)
-            corner = flat.cells[:, cells]
-            t, left, right = adjoint.rings[k]
-            y0, y1, *_ = self.segment[k]
-            rate = (1 - t) * self._across(k, 0, left) + t * self._across(k, 1, right)
-            # what slides along a cone follows it
-            slope = (right - left) / s.length
-            own[:, cells] = rate + slope * (axial[corner] - (1 - t) * y0 - t * y1)
-        count, total = np.zeros((2, flat.points.shape[1]))
-        for k in range(len(scene.segments)):
-            # once a segment, however many cells of it meet there
-            cells = np.flatnonzero(flat.segment == k)
-            nodes, first = np.unique(flat.cells[:, cells].ravel(), return_index=True)
-            count[nodes] += 1
-            total[nodes] += own[:, cells].ravel()[first]
-        return own, total / count
-
-    def _across(self, k: int, end: int, r: np.ndarray) -> np.ndarray:
-        """Radial velocity on an end of a segment, at radii r."""
-        segments = self.adjoint.scene.segments
-        sides = [(k, end)] + [(j, 1 - end) for j in (k + 2 * end - 1,) if 0 <= j < len(segments)]
-        marks: dict[float, float] = {}
-        for j, at in sides:
-            for name, column in (("inner", 4), ("outer", 2)):
-                place = getattr(segments[j], f"{name}{at}")
-                if not any(abs(place - m) < TOUCH for m in marks):
-                    marks[place] = self.segment[j, column + at]
-        marks.setdefault(0.0, 0.0)
-        places = np.array(sorted(marks))
-        return np.interp(r, places, [marks[m] for m in places])
-
-    def of(self, push: Push) -> float:
-        """Derivative of a number by the parameter, but for what acts on its ports."""
-        return self._shape(push) + self._matter(push)
-
-    def _shape(self, push: Push) -> float:
-        if not self.segment.any() and not self.station.any():
-            return 0.0
-        if not hasattr(self, "velocity"):
-            self._move()
-        total = float((push.nodes * self.velocity).sum() + push.planes @ self.station[:, 0])
-        total += float((push.ends * self.slip).sum())
-        for felt, bulge in zip(push.surface, self.bulge):
-            total += float((felt * bulge).sum())
-        return total
-
-    def _move(self) -> None:
-        adjoint, flat = self.adjoint, self.adjoint.flat
-        axial = self.along()
-        own, mean = self.radial(axial)
-        self.velocity = np.array([mean, axial])
-        seats = self.station[:, 1:] - np.array(
-            [np.interp([s.lo, s.hi], self.marks, self.rates) for s, _ in adjoint.stations]
-        )
-        averaged = np.array([a == "average" for _, a in adjoint.stations])
-        self.slip = np.where(averaged[:, None], seats, 0.0)
-        rest = own - mean[flat.cells]
-        self.bulge = [
-            rest[list(ends)][:, adjoint.sides[side]].T for side, ends in ((1, (1, 2)), (0, (0, 3)))
-        ]
-        bulging = {
-            float(y)
-            for y in flat.points[1][flat.cells[[1, 2]][:, adjoint.sides[1]]][
-                np.abs(self.bulge[0].T) > 1e-9
-            ]
-        }
-        for s, attachment in adjoint.stations:
-            tol = 1e-9 * adjoint.scene.length
-            if attachment != "section" and any(s.lo - tol <= y <= s.hi + tol for y in bulging):
-                raise SolidgearError(f"the surface under {s.name} parts in two")
-
-    def _matter(self, push: Push) -> float:
-        out = 0.0
-        for k, (one, two) in enumerate(zip(self.low.segments, self.high.segments)):
-            if one.material == two.material:
-                continue
-            mu = [x.material.shear_modulus for x in (one, two)]
-            lame = [2 * m * x.material.nu / (1 - 2 * x.material.nu) for m, x in zip(mu, (one, two))]
-            out += push.lame[k] * (lame[1] - lame[0]) + push.shear[k] * (mu[1] - mu[0])
-            out += push.density[k] * (two.material.density - one.material.density)
-        return out / self.step
 
 
 def rings(scene, flat) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
