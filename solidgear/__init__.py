@@ -52,7 +52,7 @@ _WHERE = {
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
     "compare": "solidgear.studies.comparison",
-    "sensitivities": "solidgear.studies.sensitivities",
+    "sensitivities": "solidgear.studies.sensitivity.run",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
@@ -127,7 +127,7 @@ if TYPE_CHECKING:
     from solidgear.solve.statics import condense
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
-    from solidgear.studies.sensitivities import sensitivities
+    from solidgear.studies.sensitivity.run import sensitivities
     from solidgear.studies.stress.shaft import shaft_stress
     from solidgear.system import (
         BearingSpring,

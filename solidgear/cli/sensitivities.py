@@ -44,7 +44,7 @@ def sensitivities(
     from solidgear.report import sensitivity
     from solidgear.report.folder import held
     from solidgear.report.units import units_named
-    from solidgear.studies.sensitivities import sensitivities as derived
+    from solidgear.studies.sensitivity.run import sensitivities as derived
 
     given = options(fixed.settings)
     with held(out) if out else nullcontext(), run.progress() as progress:

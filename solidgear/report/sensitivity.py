@@ -17,7 +17,7 @@ from solidgear.report.words import percent
 #: rows of a table and bars of a chart: what comes behind moves the number little
 MOST = 15
 #: px; height of a bar, and of names on a wide and on a narrow page
-BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 150.0
+BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
 UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
 
 

@@ -8,34 +8,25 @@ materials, bearings and masses is multiplied with what the asked numbers feel of
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from solidgear.body import Body, as_supports
-from solidgear.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.errors import SolidgearError, listed, nearest
 from solidgear.machine.threads import pinned
 from solidgear.quantity import Quantity
 from solidgear.scene import Scene
-from solidgear.scene.file import scene_of
-from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
+from solidgear.scene.paths import entry, label_of
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import Form, of_entry, of_mode
 from solidgear.solve.modes import modes
-from solidgear.studies.loading import load, part_of
+from solidgear.studies.loading import load
+from solidgear.studies.sensitivity.entries import around, numbers, unit_of
 from solidgear.studies.sweep.entries import in_si
 
-#: relative step of a number in the file, and that of a length of zero, in lengths of the shaft: what
-#: they move is linear in it but for angles, materials and springs in series
-STEP, FROM_ZERO = 1e-4, 1e-5
-#: tables of a file whose numbers say how the shaft is
-HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
-#: words in them that may look like numbers
-WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
 #: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
 NOTHING = 1e-9
-_AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.S)
 
 
 @dataclass(frozen=True)
@@ -222,8 +213,8 @@ def sensitivities(
     where = os.fspath(file)
     scene, tables = load(where), parse(where)
     _supported(scene, model)
-    numbers = [Quantity(name) for name in of or ("bending 1", "C_zz")]
-    moves = [*_wanted(tables, by)]
+    asked = [Quantity(name) for name in of or ("bending 1", "C_zz")]
+    moves = [*numbers(tables, by)]
     levels: list[dict[str, Any]] = [{}]
     if coarser:
         levels.append(_coarser(scene, model, options))
@@ -231,19 +222,19 @@ def sensitivities(
     for more in levels:
         mesh = f" ({', '.join(f'{k} {v}' for k, v in more.items())})" if more else ""
         progress(f"{scene.name}: {model}{mesh}")
-        found.append(_Derived(scene, model, numbers, {**options, **more}))
-    rows: list[list[Derivative]] = [[] for _ in numbers]
+        found.append(Derived(scene, model, asked, {**options, **more}))
+    rows: list[list[Derivative]] = [[] for _ in asked]
     without: dict[str, str] = {}
     for keys in moves:
         path = label_of(keys, tables)
         try:
-            low, high, step, at = _around(scene, tables, keys, where)
-            fine, *rest = [[d.by(k, low, high, step) for k in range(len(numbers))] for d in found]
+            low, high, step, at = around(scene, tables, keys, where)
+            fine, *rest = [[d.by(k, low, high, step) for k in range(len(asked))] for d in found]
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
         text = str(entry(keys, tables))
-        unit = _AMOUNT.fullmatch(text)[2]  # type: ignore[index]
+        unit = unit_of(text)
         for k, value in enumerate(found[0].values):
             scale = at / value
             apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
@@ -251,7 +242,7 @@ def sensitivities(
     first = found[0]
     given = [
         OfNumber(str(q), v, q.unit, pair, _ranked(r))
-        for q, v, pair, r in zip(numbers, first.values, first.pairs, rows)
+        for q, v, pair, r in zip(asked, first.values, first.pairs, rows)
     ]
     return Sensitivities(
         scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)
@@ -281,81 +272,6 @@ def _supported(scene: Scene, model: str) -> None:
         )
 
 
-def _wanted(tables: Tables, by: Sequence[str] | None) -> Iterator[Keys]:
-    """Entries that are numbers, of those asked for."""
-    every = [keys for keys in entries(tables) if _is_number(keys, tables)]
-    labels = [label_of(keys, tables) for keys in every]
-    for one in by or ():
-        if not any(_within(label, one) for label in labels):
-            raise SolidgearError(f"--by {one}: no number of the file{nearest(one, labels)}")
-    for keys, label in zip(every, labels):
-        if not by or any(_within(label, one) for one in by):
-            yield keys
-
-
-def _within(label: str, path: str) -> bool:
-    return label == path or label.startswith(f"{path}.")
-
-
-def _is_number(keys: Keys, tables: Tables) -> bool:
-    value = entry(keys, tables)
-    if keys[0] not in HELD_TABLES or "catalogue" in keys or isinstance(value, bool):
-        return False
-    if keys[-1] in WORDS or (isinstance(value, str) and not _AMOUNT.fullmatch(value)):
-        return False
-    if len(keys) > 2 and keys[-3] == "matrix" and int(keys[-2]) > int(keys[-1]):
-        return False  # its mirror moves with the other
-    return in_si(value) is not None
-
-
-def _around(scene: Scene, tables: Tables, keys: Keys, where: str):
-    """The scene with an entry a little smaller and a little larger, the step in SI and the entry in
-    SI; one side is the scene itself where the file allows no other.
-    """
-    written = entry(keys, tables)
-    number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
-    one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
-    at = float(in_si(written) or 0.0)
-    step = abs(at) * STEP
-    if not step:
-        if keys[-1] not in ("position", "span"):
-            raise SolidgearError("it is zero")
-        step = FROM_ZERO * scene.length
-    sides: list[Scene] = []
-    refused: list[SceneError] = []
-    for sign in (-1, 1):
-        try:
-            value = float(number) + sign * step / one
-            put = f"{value!r} {unit}" if unit else value
-            sides.append(_held(_put(tables, keys, put), scene, where))
-        except SceneError as error:
-            refused.append(error)
-    if len(refused) == 2:
-        raise refused[0]
-    if refused:
-        raise SolidgearError("the scene holds to one side of it alone")
-    return sides[0], sides[1], 2 * step, at
-
-
-def _put(tables: Tables, keys: Keys, value: str | float) -> Tables:
-    out = changed(tables, keys, value)
-    if len(keys) > 2 and keys[-3] == "matrix":
-        out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
-    return out
-
-
-def _held(tables: Tables, scene: Scene, where: str) -> Scene:
-    """A scene of tables, catalogue bearings as stiff as they are."""
-    other = scene_of(dict(tables), where, part_of)
-    if all(bearing.catalogue is None for bearing in scene.bearings):
-        return other
-    bearings = tuple(
-        new if new.catalogue is None else new.with_changes(matrix=old.matrix)
-        for new, old in zip(other.bearings, scene.bearings)
-    )
-    return other.with_changes(bearings=bearings)
-
-
 def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any]:
     if model == "harmonic":
         return {"order": max(3, options.get("order", 5) - 1)}
@@ -369,7 +285,7 @@ def _plainly(error: SolidgearError) -> str:
     return str(getattr(error, "reason", "") or error).splitlines()[0]
 
 
-class _Derived:
+class Derived:
     """Numbers of one body and what they feel."""
 
     def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
