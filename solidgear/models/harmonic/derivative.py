@@ -288,21 +288,36 @@ class _Family:
 
     def ports(self) -> None:
         """Terms of the rows of ports: F' dB u of both states."""
+        if self.waves not in (TORSION, 0, 1):
+            return
+        if self.rigid:
+            self._unload()
         for k, (push, by) in enumerate(zip(self.pushes, self.by)):
             for mine, other in ((self.first[k], self.second[k]), (self.second[k], self.first[k])):
                 state, index, _ = self.columns[mine]
                 for p, (station, attachment) in enumerate(self.whole.stations):
                     self._row(p, station, attachment, state, index, other, push, by, mine)
 
-    def _row(self, p, station, attachment, state: State, index, other, push: Push, by, mine):
-        """Add what one port does under the forces of one state and the displacement of another."""
-        if self.waves not in (TORSION, 0, 1):
-            return
+    def _unload(self) -> None:
+        """Take from the forces on rigid seats what other ports bring there."""
+        for p, (station, attachment) in enumerate(self.whole.stations):
+            if attachment == "rigid":
+                continue
+            rows = self.work._mean(1, station, attachment)
+            for k, (state, index, _) in enumerate(self.columns):
+                force = self._own(state.forces, index, p)
+                self.residual[..., k] -= (force @ rows).reshape(-1, 3)
+
+    def _own(self, six: np.ndarray, index: int, p: int) -> np.ndarray:
+        """Components of a port in the plane that this family is written in."""
         block = self.whole.body.blocks[index]
         _, signs = block.mirror or (index, (1.0,) * len(block.components))
-        at = [6 * p + c for c in block.components]
-        force = np.array(signs) * state.forces[at]
-        moved = np.array(signs) * self.columns[other][0].motions[at]
+        return np.array(signs) * six[[6 * p + c for c in block.components]]
+
+    def _row(self, p, station, attachment, state: State, index, other, push: Push, by, mine):
+        """Add what one port does under the forces of one state and the displacement of another."""
+        force = self._own(state.forces, index, p)
+        moved = self._own(self.columns[other][0].motions, index, p)
         if attachment == "rigid":
             if self.waves == 1:
                 self._rigid(p, station, mine, moved, push, by)
@@ -313,16 +328,9 @@ class _Family:
         value, r, h, weight, dofs, cells, ends = work.surface(station, attachment)
         u = np.einsum("bq,bec->eqc", value, self.u[dofs][..., other])
         if self.waves == 1:
-            gram = (
-                2
-                * np.pi
-                * np.array(
-                    [
-                        [(weight * r).sum(), (weight * r * h).sum()],
-                        [(weight * r * h).sum(), (weight * r * (h * h + r * r / 2)).sum()],
-                    ]
-                )
-            )
+            ring = 2 * np.pi * weight * r
+            area, first, second = ((ring * f).sum() for f in (1.0, h, h * h + r * r / 2))
+            gram = np.array([[area, first], [first, second]])
             g = np.linalg.solve(gram, force)
             # distances of the surface from the mean rigid motion
             lift = u[..., 0] - moved[0] - h * moved[1]

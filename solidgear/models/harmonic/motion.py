@@ -105,14 +105,14 @@ class Motion:
         if not self.segment.any() and not self.station.any():
             return 0.0
         if not hasattr(self, "velocity"):
-            self._move()
+            self.move()
         total = float((push.nodes * self.velocity).sum() + push.planes @ self.station[:, 0])
         total += float((push.ends * self.slip).sum())
         for felt, bulge in zip(push.surface, self.bulge):
             total += float((felt * bulge).sum())
         return total
 
-    def _move(self) -> None:
+    def move(self) -> None:
         adjoint, flat = self.adjoint, self.adjoint.flat
         axial = self.along()
         own, mean = self.radial(axial)

@@ -19,6 +19,8 @@ STEP, FROM_ZERO = 1e-4, 1e-5
 HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
 #: words in them that may look like numbers
 WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
+#: keys of lengths that may be zero
+PLACES = {"position", "span"}
 _AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.S)
 
 
@@ -52,22 +54,25 @@ def _is_number(keys: Keys, tables: Tables) -> bool:
         return False
     if len(keys) > 2 and keys[-3] == "matrix" and int(keys[-2]) > int(keys[-1]):
         return False  # its mirror moves with the other
-    return in_si(value) is not None
+    # a place may be counted from zero; a term that is zero is none
+    return bool(in_si(value)) or (in_si(value) == 0.0 and PLACES.intersection(keys[-2:]) != set())
 
 
 def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     """The scene with an entry a little smaller and a little larger, the step in SI and the entry in
-    SI; one side is the scene itself where the file allows no other.
+    SI.
+
+    Raises
+    ------
+    SolidgearError
+        Where the file allows no other number on one side, or on both.
     """
     written = entry(keys, tables)
     number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
     one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
     at = float(in_si(written) or 0.0)
     step = abs(at) * STEP
-    if not step:
-        if keys[-1] not in ("position", "span"):
-            raise SolidgearError("it is zero")
-        step = FROM_ZERO * scene.length
+    step = step or FROM_ZERO * scene.length
     sides: list[Scene] = []
     refused: list[SceneError] = []
     for sign in (-1, 1):
