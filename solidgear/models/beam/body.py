@@ -125,14 +125,23 @@ def on_nodes(
     entries: dict[str, tuple[list, list, list, list]] = {name: ([], [], [], []) for name in size}
     fields: list[Fields] = []
     soft = _softened(nodes, hinges(scene.segments)) if shoulder else {}
+    made: dict[tuple[float, ...], tuple] = {}
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
-        section = Section(segment, left, right, head, kappa)
-        for step in soft.get(e, ()):
-            section.soften(step.bend, step.stretch, step.twist)
-        bend = bending_matrices(section, shear, rotary_inertia, mass)
-        stretch = rod_matrices(section, section.stretch, section.mass, mass)
-        twist = rod_matrices(section, section.twist, section.polar, mass)
+        # pieces of a cylinder that are as long as each other but for rounding are one
+        alike: tuple[float, ...] = (id(segment), round((right - left) / scene.length, 12))
+        if e in soft or segment.outer0 != segment.outer1 or segment.inner0 != segment.inner1:
+            alike = (*alike, e)
+        if alike not in made:
+            section = Section(segment, left, right, head, kappa)
+            for step in soft.get(e, ()):
+                section.soften(step.bend, step.stretch, step.twist)
+            made[alike] = (
+                bending_matrices(section, shear, rotary_inertia, mass),
+                rod_matrices(section, section.stretch, section.mass, mass),
+                rod_matrices(section, section.twist, section.polar, mass),
+            )
+        bend, stretch, twist = made[alike]
         ends = np.array([e, e + 1])
         both = np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)])
         fields.append(

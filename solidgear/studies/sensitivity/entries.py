@@ -12,9 +12,9 @@ from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_o
 from solidgear.studies.loading import part_of
 from solidgear.studies.sweep.entries import in_si
 
-#: relative step of a number in the file, and that of a length of zero, in lengths of the shaft: what
+#: relative step of a number in the file, and that of a place, in lengths of the shaft: what
 #: they move is linear in it but for angles, materials and springs in series
-STEP, FROM_ZERO = 1e-4, 1e-5
+STEP, OF_PLACES = 1e-4, 1e-5
 #: tables of a file whose numbers say how the shaft is
 HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
 #: words in them that may look like numbers
@@ -71,8 +71,7 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
     one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
     at = float(in_si(written) or 0.0)
-    step = abs(at) * STEP
-    step = step or FROM_ZERO * scene.length
+    step = OF_PLACES * scene.length if PLACES.intersection(keys[-2:]) else STEP * abs(at)
     sides: list[Scene] = []
     refused: list[SceneError] = []
     for sign in (-1, 1):
