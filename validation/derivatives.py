@@ -34,8 +34,8 @@ from validation.campaign.scenes.shafts import random_scene
 
 OF = ("bending 1", "C_zz", "K_thx", "axial 1")
 OPTIONS: dict[str, dict[str, Any]] = {
-    "harmonic": {"order": 3, "layers": 1, "edge_layers": 1},
-    "timoshenko": {"elements": 200},
+    "harmonic": {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 2.0},
+    "timoshenko": {"elements": 100},
     "euler": {"elements": 200},
 }
 
