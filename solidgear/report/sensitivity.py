@@ -34,7 +34,6 @@ def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
         text("entry of the file", lambda d: d.path),
         text("as written", lambda d: d.written),
         Column("for 1 % more", lambda d: d.elasticity / 100, percent),
-        Column(f"{unit} for it", lambda d: _signed(units, 0.01 * d.at * d.by, of.unit)),
         Column(
             "by its unit", lambda d: f"{_signed(units, d.by_unit, of.unit)} {_per(unit, d.unit)}"
         ),
@@ -47,7 +46,7 @@ def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
         most = percent(abs(rest[0].elasticity) / 100, signed=False)
         note.append(f"{len(rest) - still} more move it by {most} or less.")
     if still:
-        note.append(f"{still} do not move it.")
+        note.append(f"Without effect: {still}.")
     value = units.text(of.value, of.unit)
     return Table(f"What would move {of.name} ({value})", columns, shown, " ".join(note))
 
