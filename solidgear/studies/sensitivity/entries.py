@@ -77,8 +77,8 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     for sign in (-1, 1):
         try:
             value = float(number) + sign * step / one
-            put = f"{value!r} {unit}" if unit else value
-            sides.append(_held(_put(tables, keys, put), scene, where))
+            text = f"{value!r} {unit}" if unit else value
+            sides.append(_held(put(tables, keys, text), scene, where))
         except SceneError as error:
             refused.append(error)
     if len(refused) == 2:
@@ -88,7 +88,8 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     return sides[0], sides[1], 2 * step, at
 
 
-def _put(tables: Tables, keys: Keys, value: str | float) -> Tables:
+def put(tables: Tables, keys: Keys, value: str | float) -> Tables:
+    """Tables with a number changed, of a matrix with its mirror."""
     out = changed(tables, keys, value)
     if len(keys) > 2 and keys[-3] == "matrix":
         out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
