@@ -90,7 +90,7 @@ def _written(value: Any) -> str:
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{key} = {_written(own)}" for key, own in value.items()) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_written, value)) + "]"
+        return "[" + ",\n".join(map(_written, value)) + "]"
     return f'"{value}"' if isinstance(value, str) else repr(float(value))
 
 
