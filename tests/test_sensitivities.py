@@ -121,6 +121,22 @@ def test_every_number_moves_a_harmonic_solid_as_solids_meshed_anew_say(tmp_path,
         held_against(found, file, {one.path: 1.0}, "harmonic", **mesh)
 
 
+@pytest.mark.slow
+def test_a_step_that_opens_where_two_surfaces_meet_is_felt_as_a_step(tmp_path):
+    file = tmp_path / "shaft.toml"
+    file.write_text(
+        STUB.replace("30 mm", "40 mm").replace('attach_to = "rod"', "span = [0.05, 0.07]")
+    )
+    mesh = {"order": 6, "layers": 2, "edge_layers": 2}
+    found = sg.sensitivities(file, of=["bending 1", "C_zz"], coarser=False, **mesh)
+    # a small step has corners of its own: what differs falls with it
+    there = by_differences(
+        file, {"segment.rod.diameter": 1.0}, "harmonic", ["bending 1"], 3e-3, **mesh
+    )
+    here = found["bending 1"]["segment.rod.diameter"].elasticity
+    assert here == pytest.approx(there[0], rel=3e-5)
+
+
 def test_a_shaft_and_all_of_it_twice_as_large_is_half_as_fast(tmp_path):
     # lengths scale a frequency by -1 where springs, by length, and no mass stand against it
     file = shaft(tmp_path)
