@@ -37,7 +37,7 @@ OF = ("bending 1", "C_zz", "K_thx", "axial 1")
 DIRECTIONS = 2
 OPTIONS: dict[str, dict[str, Any]] = {
     "harmonic": {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 2.0},
-    "timoshenko": {"elements": 100},
+    "timoshenko": {"elements": 500},
     "euler": {"elements": 200},
 }
 
