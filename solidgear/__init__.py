@@ -70,6 +70,7 @@ _WHERE = {
     "compare": "solidgear.studies.comparison",
     "optimise": "solidgear.studies.optimise",
     "sweep": "solidgear.studies.sweep.table",
+    "sensitivities": "solidgear.studies.sensitivity.run",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
     "SolidgearError": "solidgear.errors",
@@ -113,6 +114,7 @@ __all__ = [
     "modes",
     "optimise",
     "rubin",
+    "sensitivities",
     "shaft_stress",
     "sweep",
     "torsion_spring",
@@ -146,6 +148,7 @@ if TYPE_CHECKING:
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
     from solidgear.studies.optimise import optimise
+    from solidgear.studies.sensitivity.run import sensitivities
     from solidgear.studies.stress.shaft import shaft_stress
     from solidgear.studies.sweep.table import sweep
     from solidgear.system import (

@@ -33,6 +33,7 @@ from solidgear.cli import (
     measured,
     optimise,
     receptance,
+    sensitivities,
     solve,
     stiffness,
     stress,

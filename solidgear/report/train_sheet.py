@@ -41,6 +41,7 @@ WORDS = {
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
         "largest, which is one."
     ),
+    "sensitivities": "Change of the number for one per cent more of each entry of the file.",
     "shares": "Strain energy of every mode by what it is in.",
 }
 

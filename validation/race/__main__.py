@@ -20,6 +20,7 @@ from validation.race.heat import Heat
 from validation.race.peers import PEERS
 from validation.race.race import Race, missed, told
 from validation.race.real_parts import REAL_PARTS
+from validation.race.sensitivities import SENSITIVITIES
 from validation.race.solids import SOLIDS
 from validation.race.sweep import SWEEP
 from validation.race.trains import TRAINS
@@ -31,6 +32,7 @@ RACES: dict[str, Race] = {
     "bearings": BEARINGS,
     "trains": TRAINS,
     "sweep": SWEEP,
+    "sensitivities": SENSITIVITIES,
     "solids": SOLIDS,
     "peers": PEERS,
     "real_parts": REAL_PARTS,
@@ -39,7 +41,7 @@ RACES: dict[str, Race] = {
 
 def main() -> int:
     """Command line."""
-    listed = "\n".join(f"  {name:11}{race.question}" for name, race in RACES.items())
+    listed = "\n".join(f"  {name:14}{race.question}" for name, race in RACES.items())
     parser = argparse.ArgumentParser(
         description=f"{__doc__}\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -99,8 +99,23 @@ def beam(
             "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"
         )
     wanted = [*attached_stations(scene.stations, attachments)]
-    nodes, owner = mesh(scene, elements, wanted)
-    n = len(nodes)
+    nodes = mesh(scene, elements, wanted)
+    return on_nodes(scene, nodes, wanted, shear, rotary_inertia, head, mass, kappa, shoulder)
+
+
+def on_nodes(
+    scene,
+    nodes: np.ndarray,
+    wanted,
+    shear: bool,
+    rotary_inertia: bool,
+    head: str,
+    mass: str,
+    kappa: str,
+    shoulder: bool,
+) -> Body:
+    """The same with given nodes (m) and stations with their attachments."""
+    n, owner = len(nodes), owners(scene, nodes)
     if not shear:
         _long_enough(nodes)
     # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives
@@ -110,14 +125,23 @@ def beam(
     entries: dict[str, tuple[list, list, list, list]] = {name: ([], [], [], []) for name in size}
     fields: list[Fields] = []
     soft = _softened(nodes, hinges(scene.segments)) if shoulder else {}
+    made: dict[tuple[float, ...], tuple] = {}
     for e, segment in enumerate(owner):
         left, right = nodes[e], nodes[e + 1]
-        section = Section(segment, left, right, head, kappa)
-        for step in soft.get(e, ()):
-            section.soften(step.bend, step.stretch, step.twist)
-        bend = bending_matrices(section, shear, rotary_inertia, mass)
-        stretch = rod_matrices(section, section.stretch, section.mass, mass)
-        twist = rod_matrices(section, section.twist, section.polar, mass)
+        # pieces of a cylinder that are as long as each other but for rounding are one
+        alike: tuple[float, ...] = (id(segment), round((right - left) / scene.length, 12))
+        if e in soft or segment.outer0 != segment.outer1 or segment.inner0 != segment.inner1:
+            alike = (*alike, e)
+        if alike not in made:
+            section = Section(segment, left, right, head, kappa)
+            for step in soft.get(e, ()):
+                section.soften(step.bend, step.stretch, step.twist)
+            made[alike] = (
+                bending_matrices(section, shear, rotary_inertia, mass),
+                rod_matrices(section, section.stretch, section.mass, mass),
+                rod_matrices(section, section.twist, section.polar, mass),
+            )
+        bend, stretch, twist = made[alike]
         ends = np.array([e, e + 1])
         both = np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)])
         fields.append(
@@ -191,7 +215,7 @@ def beam(
 
 def mesh(scene, elements: int | None, wanted=()):
     """Nodes (n,) at segment ends, ports and ends of rigid seats, filled in evenly to at least so
-    many elements (None is eight to a diameter), m; and the segment of every element.
+    many elements (None is eight to a diameter), m.
     """
     found = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
     for station, attachment in wanted:
@@ -205,11 +229,14 @@ def mesh(scene, elements: int | None, wanted=()):
     filled = [marks[:1]]
     for a, b in zip(marks[:-1], marks[1:]):
         filled.append(np.linspace(a, b, max(1, int(np.ceil((b - a) / size - 1e-9))) + 1)[1:])
-    nodes = np.concatenate(filled)
+    return np.concatenate(filled)
+
+
+def owners(scene, nodes) -> list:
+    """The segment of every element."""
     middle = (nodes[1:] + nodes[:-1]) / 2
     ends = np.array([s.y1 for s in scene.segments])
-    owner = [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
-    return nodes, owner
+    return [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
 
 
 def _softened(nodes, steps: tuple[Hinge, ...]) -> dict[int, list[Hinge]]:

@@ -25,6 +25,8 @@ from solidgear.kernel.cell_shapes import Shapes
 from solidgear.models.harmonic.sections import AXIAL, BENDING, TORSION, from_cells
 
 _CORNERS = ElementQuad1()
+#: corners at the ends of the local edge where a coordinate has a value
+_ENDS = {(0, 1.0): (1, 2), (1, 1.0): (3, 2), (1, 0.0): (0, 1)}
 
 
 def strains(n: int) -> tuple[np.ndarray, ...]:
@@ -250,7 +252,7 @@ class _Work:
                 ties.append((i, station.y, seat))
                 rows.append(np.zeros((1, self.n)))
             else:
-                value, r, _, weight, dofs = self._surface(station, attachment)
+                value, r, _, weight, dofs, *_ = self.surface(station, attachment)
                 row = np.zeros(self.n)
                 w = weight * r**3
                 np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, w))
@@ -275,9 +277,15 @@ class _Work:
             (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)
         ]
 
-    def _surface(self, station, attachment):
+    def on_edge(self, cells, direction: int, value: float):
+        """Basis tabulated on a local edge of straight cells: where a coordinate has a value."""
+        points = np.empty((2, len(self.g)))
+        points[direction], points[1 - direction] = value, self.g
+        return tabulate(_CORNERS, self._nodes(cells), self.element, points)
+
+    def surface(self, station, attachment):
         """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
-        section.
+        section; its cells, and their corners at both ends of it.
         """
         if attachment == "average":
             cells, direction, value = self._seat_cells(station), 0, 1.0
@@ -292,15 +300,14 @@ class _Work:
             raise SolidgearError(
                 f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"
             )
-        points = np.empty((2, len(self.g)))
-        points[direction], points[1 - direction] = value, self.g
-        t = tabulate(_CORNERS, self._nodes(cells), self.element, points)
+        t = self.on_edge(cells, direction, value)
         weight = np.linalg.norm(t.tangent[:, :, :, 1 - direction], axis=2) * self.gw
-        return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells]
+        ends = _ENDS[direction, value]
+        return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells], cells, ends
 
     def _mean(self, n, station, attachment):
         """Least-squares rigid motion of a surface, as rows on the unknowns of harmonic n."""
-        value, r, h, w, dofs = self._surface(station, attachment)
+        value, r, h, w, dofs, *_ = self.surface(station, attachment)
 
         def scatter(weight):
             row = np.zeros(self.n)

@@ -1,0 +1,1 @@
+"""Derivatives of numbers by the entries of a scene file."""

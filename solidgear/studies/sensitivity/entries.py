@@ -1,0 +1,108 @@
+"""Numbers of a scene file that derivatives are by, and the scene with one of them a little changed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from solidgear.errors import SceneError, SolidgearError, nearest
+from solidgear.scene import Scene
+from solidgear.scene.file import scene_of
+from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
+from solidgear.studies.loading import part_of
+from solidgear.studies.sweep.entries import in_si
+
+#: relative step of a number in the file, and that of a place, in lengths of the shaft: what
+#: they move is linear in it but for angles, materials and springs in series
+STEP, OF_PLACES = 1e-4, 1e-5
+#: tables of a file whose numbers say how the shaft is
+HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
+#: words in them that may look like numbers
+WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
+#: keys of lengths that may be zero
+PLACES = {"position", "span"}
+_AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.S)
+
+
+def unit_of(text: str) -> str:
+    """Unit of a number as the file has it; empty for SI."""
+    found = _AMOUNT.fullmatch(text)
+    return found[2] if found else ""
+
+
+def numbers(tables: Tables, by: Sequence[str] | None) -> Iterator[Keys]:
+    """Entries that are numbers, of those asked for."""
+    every = [keys for keys in entries(tables) if _is_number(keys, tables)]
+    labels = [label_of(keys, tables) for keys in every]
+    for one in by or ():
+        if not any(_within(label, one) for label in labels):
+            raise SolidgearError(f"--by {one}: no number of the file{nearest(one, labels)}")
+    for keys, label in zip(every, labels):
+        if not by or any(_within(label, one) for one in by):
+            yield keys
+
+
+def _within(label: str, path: str) -> bool:
+    return label == path or label.startswith(f"{path}.")
+
+
+def _is_number(keys: Keys, tables: Tables) -> bool:
+    value = entry(keys, tables)
+    if keys[0] not in HELD_TABLES or "catalogue" in keys or isinstance(value, bool):
+        return False
+    if keys[-1] in WORDS or (isinstance(value, str) and not _AMOUNT.fullmatch(value)):
+        return False
+    if len(keys) > 2 and keys[-3] == "matrix" and int(keys[-2]) > int(keys[-1]):
+        return False  # its mirror moves with the other
+    # a place may be counted from zero; a term that is zero is none
+    return bool(in_si(value)) or (in_si(value) == 0.0 and PLACES.intersection(keys[-2:]) != set())
+
+
+def around(scene: Scene, tables: Tables, keys: Keys, where: str):
+    """The scene with an entry a little smaller and a little larger, the step in SI and the entry in
+    SI.
+
+    Raises
+    ------
+    SolidgearError
+        Where the file allows no other number on one side, or on both.
+    """
+    written = entry(keys, tables)
+    number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
+    one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
+    at = float(in_si(written) or 0.0)
+    step = OF_PLACES * scene.length if PLACES.intersection(keys[-2:]) else STEP * abs(at)
+    sides: list[Scene] = []
+    refused: list[SceneError] = []
+    for sign in (-1, 1):
+        try:
+            value = float(number) + sign * step / one
+            text = f"{value!r} {unit}" if unit else value
+            sides.append(_held(put(tables, keys, text), scene, where))
+        except SceneError as error:
+            refused.append(error)
+    if len(refused) == 2:
+        raise refused[0]
+    if refused:
+        raise SolidgearError("the scene holds to one side of it alone")
+    return sides[0], sides[1], 2 * step, at
+
+
+def put(tables: Tables, keys: Keys, value: str | float) -> Tables:
+    """Tables with a number changed, of a matrix with its mirror."""
+    out = changed(tables, keys, value)
+    if len(keys) > 2 and keys[-3] == "matrix":
+        out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
+    return out
+
+
+def _held(tables: Tables, scene: Scene, where: str) -> Scene:
+    """A scene of tables, catalogue bearings as stiff as they are."""
+    other = scene_of(dict(tables), where, part_of)
+    if all(bearing.catalogue is None for bearing in scene.bearings):
+        return other
+    bearings = tuple(
+        new if new.catalogue is None else new.with_changes(matrix=old.matrix)
+        for new, old in zip(other.bearings, scene.bearings)
+    )
+    return other.with_changes(bearings=bearings)

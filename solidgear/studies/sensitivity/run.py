@@ -1,0 +1,377 @@
+"""Sensitivities: derivatives of compliances, stiffnesses and natural frequencies by every number of
+a scene file, from one solution (:mod:`solidgear.solve.adjoint`).
+
+The file is read with each number a little smaller and larger; what then moves of shaft, seats,
+materials, bearings and masses is multiplied with what the asked numbers feel of it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError, listed, nearest
+from solidgear.machine.threads import pinned
+from solidgear.quantity import Quantity
+from solidgear.scene import Scene
+from solidgear.scene.paths import entry, label_of
+from solidgear.scene.toml_file import parse
+from solidgear.solve.adjoint import Form, of_entry, of_mode
+from solidgear.solve.modes import modes
+from solidgear.studies.loading import load
+from solidgear.studies.sensitivity.entries import around, numbers, unit_of
+from solidgear.studies.sweep.entries import in_si
+
+#: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
+NOTHING = 1e-9
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """Of one number by one entry of the file.
+
+    Attributes
+    ----------
+    path : str
+        As in :mod:`solidgear.scene.paths`.
+    written : str
+        The entry as the file has it.
+    at : float
+        The entry in SI.
+    unit : str
+        That the file gives it in; empty for SI.
+    by : float
+        Derivative, SI over SI.
+    elasticity : float
+        Relative change of the number over that of the entry.
+    apart : float or None
+        Distance of the elasticity from that on a coarser mesh.
+    """
+
+    path: str
+    written: str
+    at: float
+    unit: str
+    by: float
+    elasticity: float
+    apart: float | None = None
+
+    @property
+    def by_unit(self) -> float:
+        """Derivative by one unit of the file."""
+        return self.by * ((in_si(f"1 {self.unit}") or 1.0) if self.unit else 1.0)
+
+
+@dataclass(frozen=True)
+class OfNumber:
+    """Derivatives of one number, the strongest first.
+
+    Attributes
+    ----------
+    name : str
+    value : float
+        SI.
+    unit : str
+    pair : bool
+        Whether it is the mean of a pair of equal frequencies.
+    derivatives : tuple of Derivative
+    """
+
+    name: str
+    value: float
+    unit: str
+    pair: bool
+    derivatives: tuple[Derivative, ...]
+
+    def __getitem__(self, path: str) -> Derivative:
+        for one in self.derivatives:
+            if one.path == path:
+                return one
+        known = [one.path for one in self.derivatives]
+        raise SolidgearError(f"there is no derivative by {path}{nearest(path, known)}")
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Derivatives of some numbers by entries of a scene file.
+
+    Attributes
+    ----------
+    title, model : str
+    of : tuple of OfNumber
+    without : dict of str to str
+        Entries without a derivative, and why.
+    notes : tuple of str
+        What was held fixed, and how sure derivatives are.
+    """
+
+    title: str
+    model: str
+    of: tuple[OfNumber, ...]
+    without: dict[str, str]
+    notes: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> OfNumber:
+        for one in self.of:
+            if one.name == name:
+                return one
+        raise SolidgearError(
+            f"{name} was not asked for; there are {listed([o.name for o in self.of])}"
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data in SI."""
+        return {
+            "title": self.title,
+            "model": self.model,
+            "of": [
+                {
+                    "name": one.name,
+                    "value": one.value,
+                    "unit": one.unit,
+                    "mean_of_pair": one.pair,
+                    "derivatives": [
+                        {
+                            "path": d.path,
+                            "written": d.written,
+                            "at": d.at,
+                            "derivative": d.by,
+                            "elasticity": d.elasticity,
+                            "from_coarser_mesh": d.apart,
+                        }
+                        for d in one.derivatives
+                    ],
+                }
+                for one in self.of
+            ],
+            "without": self.without,
+            "notes": list(self.notes),
+        }
+
+
+@pinned
+def sensitivities(
+    file: str | os.PathLike,
+    model: str = "harmonic",
+    of: Sequence[str] | None = None,
+    by: Sequence[str] | None = None,
+    *,
+    coarser: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+    **options: Any,
+) -> Sensitivities:
+    """Derivatives of compliances, stiffnesses and natural frequencies by the numbers of a scene file.
+
+    Exact derivatives of the discrete numbers on a mesh that moves with the shaft, by adjoints: the
+    problem is self-adjoint, so nothing is solved again (Haug, Choi and Komkov, Design Sensitivity
+    Analysis of Structural Systems, 1986). Of a pair of equal frequencies that of their mean.
+    The stiffness of catalogue bearings is held as it is.
+
+    Parameters
+    ----------
+    file : str or path
+        A scene file (TOML).
+    model : {'harmonic', 'timoshenko', 'euler'}
+    of : sequence of str, optional
+        Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
+        and the compliance ``C_zz``.
+    by : sequence of str, optional
+        Paths of entries, or what they begin with, such as ``"bearing.A"``; by default all numbers of
+        materials, segments, bearings, masses, housing and ports.
+    coarser : bool
+        Whether to derive on a coarser mesh as well, which tells how far mesh moves a derivative.
+    progress : callable
+        Told what is being done.
+    **options
+        Of the model, such as ``order=7``.
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    SceneError
+        As :func:`solidgear.load`.
+    SolidgearError
+        A model or a feature without derivatives, a number that there is not, a path of no number.
+
+    Examples
+    --------
+    First bending of a beam goes with the root of its modulus and of the stiffness of its bearings:
+
+    >>> import solidgear as sg
+    >>> found = sg.sensitivities("geometry/shaft_stepped.toml", "timoshenko", of=["bending 1"])
+    >>> bending = found["bending 1"]
+    >>> springs = [d.elasticity for d in bending.derivatives if ".stiffness." in d.path]
+    >>> round(bending["material.E"].elasticity + sum(springs), 6)
+    0.5
+    """
+    where = os.fspath(file)
+    scene, tables = load(where), parse(where)
+    _supported(scene, model)
+    asked = [Quantity(name) for name in of or ("bending 1", "C_zz")]
+    moves = [*numbers(tables, by)]
+    levels: list[dict[str, Any]] = [{}]
+    if coarser:
+        levels.append(_coarser(scene, model, options))
+    found = []
+    for more in levels:
+        mesh = f" ({', '.join(f'{k} {v}' for k, v in more.items())})" if more else ""
+        progress(f"{scene.name}: {model}{mesh}")
+        found.append(Derived(scene, model, asked, {**options, **more}))
+    rows: list[list[Derivative]] = [[] for _ in asked]
+    without: dict[str, str] = {}
+    for keys in moves:
+        path = label_of(keys, tables)
+        try:
+            low, high, step, at = around(scene, tables, keys, where)
+            fine, *rest = [[d.by(k, low, high, step) for k in range(len(asked))] for d in found]
+        except SolidgearError as error:
+            without[path] = _plainly(error)
+            continue
+        text = str(entry(keys, tables))
+        unit = unit_of(text)
+        for k, value in enumerate(found[0].values):
+            scale = at / value
+            apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
+            rows[k].append(Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart))
+    first = found[0]
+    given = [
+        OfNumber(str(q), v, q.unit, pair, _ranked(r))
+        for q, v, pair, r in zip(asked, first.values, first.pairs, rows)
+    ]
+    return Sensitivities(
+        scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)
+    )
+
+
+def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
+    """The strongest first; what is nothing beside it, and not by a length of zero, is zero."""
+    least = NOTHING * max((abs(d.elasticity) for d in rows), default=0.0)
+    kept = [
+        replace(d, by=0.0, elasticity=0.0) if d.at and abs(d.elasticity) <= least else d
+        for d in rows
+    ]
+    return tuple(sorted(kept, key=lambda d: -abs(d.elasticity)))
+
+
+def _supported(scene: Scene, model: str) -> None:
+    known = ("harmonic", "timoshenko", "euler")
+    if model not in known:
+        raise SolidgearError(
+            f"the {model} model has no derivatives; ask {', '.join(known[:-1])} or {known[-1]}"
+        )
+    if scene.body is not None or scene.features:
+        what = "a part from a file" if scene.body is not None else scene.features[0].name
+        raise SolidgearError(
+            f"{what}: derivatives are for shafts of segments; features and [body] have none"
+        )
+
+
+def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any]:
+    if model == "harmonic":
+        return {"order": max(3, options.get("order", 5) - 1)}
+    from solidgear.ladder import build
+
+    return {"elements": max(1, build(scene, model, **options).mesh["elements"] // 2)}
+
+
+def _plainly(error: SolidgearError) -> str:
+    """The reason alone, of an error that may name file and key."""
+    return str(getattr(error, "reason", "") or error).splitlines()[0]
+
+
+class Derived:
+    """Numbers of one body and what they feel."""
+
+    def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
+        from solidgear.ladder import build
+
+        self.scene, self.model = scene, model
+        self.body: Body = build(scene, model, **options)
+        self.supports = as_supports(scene)
+        self.values: list[float] = []
+        self.pairs: list[bool] = []
+        self.forms: list[Form] = []
+        shapes = None
+        if any(q.is_frequency for q in numbers):
+            shapes = modes(self.body, scene, n=scene.ask.modes)
+        for wanted in numbers:
+            if wanted.is_frequency:
+                assert shapes is not None
+                mode = shapes.named(str(wanted))
+                if mode is None:
+                    names = listed(list(map(str, shapes.names)))
+                    raise SolidgearError(f"{wanted}: no such mode was found; there are {names}")
+                self.values.append(mode.frequency_hz)
+                self.forms.append(of_mode(self.body, self.supports, mode))
+                self.pairs.append(mode.multiplicity > 1)
+                continue
+            points = wanted.points_among([p.name for p in scene.ports])
+            if len(points) > 1:
+                raise SolidgearError(f"{wanted}: terms between points have no derivatives here")
+            value, form = of_entry(self.body, self.supports, wanted, (*points, scene.port.name)[0])
+            self.values.append(value)
+            self.forms.append(form)
+            self.pairs.append(False)
+        if model == "harmonic":
+            from solidgear.models.harmonic.derivative import HarmonicAdjoint
+
+            self.harmonic = HarmonicAdjoint(scene, self.body, self.forms)
+        else:
+            from solidgear.models.beam.derivative import BeamAdjoint
+
+            self.beam = BeamAdjoint(scene, self.body, options)
+        self._last: tuple[Any, Any] = (None, None)
+
+    def by(self, number: int, low: Scene, high: Scene, step: float) -> float:
+        """Derivative of one of the numbers."""
+        form = self.forms[number]
+        return self._of_springs(form, low, high, step) + self._of_shaft(number, low, high, step)
+
+    def _of_springs(self, form: Form, low: Scene, high: Scene, step: float) -> float:
+        one, two = as_supports(low), as_supports(high)
+        stiff, heavy = two.stiffness - one.stiffness, two.masses - one.masses
+        there = self.supports.rows(self.body)
+        total = 0.0
+        for a, b in form.pairs:
+            moved = (stiff - a.eigenvalue * heavy) @ b.motions[there]
+            total -= a.motions[there] @ moved
+        return form.scale * float(total) / step
+
+    def _of_shaft(self, number: int, low: Scene, high: Scene, step: float) -> float:
+        if _same_shaft(low, high):
+            return 0.0
+        if self._last[0] is not low:
+            if self.model == "harmonic":
+                from solidgear.models.harmonic.motion import Motion
+
+                self._last = low, Motion(self.harmonic, low, high, step)
+            else:
+                self._last = low, (self.beam.moved(low), self.beam.moved(high))
+        if self.model == "harmonic":
+            return self._last[1].of(self.harmonic.pushes[number])
+        from solidgear.models.beam.derivative import change
+
+        return change(self.forms[number], *self._last[1]) / step
+
+
+def _same_shaft(low: Scene, high: Scene) -> bool:
+    seats = [[(s.y, s.lo, s.hi) for s in scene.stations] for scene in (low, high)]
+    return low.segments == high.segments and seats[0] == seats[1]
+
+
+def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:
+    held = [b.name for b in scene.bearings if b.catalogue is not None]
+    if held:
+        yield f"The stiffness of catalogue bearings ({listed(held)}) is held fixed."
+    pairs = [one.name for one in of if one.pair]
+    if pairs:
+        yield f"{listed(pairs)}: derivative of the mean of the pair."
+    if len(levels) > 1:
+        mesh = ", ".join(f"{key} {value}" for key, value in levels[1].items())
+        yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."
