@@ -51,6 +51,7 @@ _WHERE = {
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
+    "budget": "solidgear.studies.budget",
     "compare": "solidgear.studies.comparison",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
@@ -84,6 +85,7 @@ __all__ = [
     "Train",
     "__version__",
     "answer",
+    "budget",
     "build",
     "compare",
     "condense",
@@ -123,6 +125,7 @@ if TYPE_CHECKING:
     from solidgear.scene.train import Train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
+    from solidgear.studies.budget import budget
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
     from solidgear.studies.stress.shaft import shaft_stress

@@ -4,11 +4,11 @@ import json
 
 import numpy as np
 import pytest
+from solidgear.bearings.bounds import Ranges
 
 import solidgear as sg
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.ball import BallRow
-from solidgear.bearings.bounds import Ranges
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
