@@ -122,7 +122,7 @@ def _number(
     ranges = open_words.parts(record.open, name)
     mesh = "no bar" if bar is None else plus_minus(bar)
     if ranges:
-        mesh = ", ".join([mesh if bar is None else f"mesh {mesh}", *map(" ".join, ranges)])
+        mesh = "\n".join([mesh if bar is None else f"mesh {mesh}", *map(" ".join, ranges)])
     return [label, Cell(told, "strong"), mesh]
 
 
