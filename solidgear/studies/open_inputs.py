@@ -8,24 +8,27 @@ every range, 0 to 1.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solidgear.bearings.clearance import clearance_range
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
 from solidgear.body import Body
+from solidgear.judge.correlation import pair_modes
 from solidgear.judge.quantities import measure
 from solidgear.ladder import build
 from solidgear.quantity import STIFFNESS, Quantity
 from solidgear.scene import Scene
 from solidgear.scene.uncertain import scaled
-from solidgear.solve.modes import modes
+from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 from solidgear.studies.loading import SHAFT
 
 BEARINGS, LOAD, MATERIAL = "bearings", "load", "material"
 INSIDE, CLEARANCE, PRELOAD = ".inside", ".clearance", ".preload"
+#: modes beyond those asked for, among which one may be found that has moved up
+FURTHER_MODES = 4
 #: ends of an estimated inside; it is one of three bearings and none between them
 ENDS = ("softer", "middle", "stiffer")
 #: places of a smooth input by which its variance is taken, with their weights (Gauss, five points),
@@ -119,6 +122,7 @@ class Points:
         self.scene, self.inputs, self.body = scene, inputs, body
         self.lost: dict[str, None] = {}
         self._beams: dict[tuple, Body] = {}
+        self._first: ModeSet | None = None
 
     @property
     def model(self) -> str:
@@ -159,10 +163,18 @@ class Points:
 
     def _measured(self, body: Body, scene: Scene, frequencies: bool) -> dict[Quantity, float]:
         main, *further = (condense(body, scene, port.name) for port in scene.ports)
-        found = modes(body, scene, scene.ask.modes) if frequencies else None
-        numbers = measure(main, found, {one.port: one for one in further})
-        elastic = [m for m in found.modes if m.frequency_hz > 0] if found else []
-        return numbers | {Quantity(m.name): m.frequency_hz for m in elastic}
+        numbers = measure(main, None, {one.port: one for one in further})
+        return numbers | (self._frequencies(body, scene) if frequencies else {})
+
+    def _frequencies(self, body: Body, scene: Scene) -> dict[Quantity, float]:
+        """Frequencies of the modes of the first point, by their shapes: names are counted anew where
+        others come between.
+        """
+        found = modes(body, scene, scene.ask.modes + FURTHER_MODES)
+        if self._first is None:
+            self._first = replace(found, modes=found.modes[: -FURTHER_MODES or None])
+        pairs = pair_modes(found, self._first)
+        return {Quantity(p.reference.name): p.frequency_hz for p in pairs if p.mode is not None}
 
 
 def _choice(values: Mapping[str, float]) -> Choice:
