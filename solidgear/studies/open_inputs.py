@@ -8,7 +8,7 @@ every range, 0 to 1.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -170,9 +170,9 @@ class Points:
         """Frequencies of the modes of the first point, by their shapes: names are counted anew where
         others come between.
         """
-        found = modes(body, scene, scene.ask.modes + FURTHER_MODES)
         if self._first is None:
-            self._first = replace(found, modes=found.modes[: -FURTHER_MODES or None])
+            self._first = modes(body, scene, scene.ask.modes)
+        found = modes(body, scene, scene.ask.modes + FURTHER_MODES)
         pairs = pair_modes(found, self._first)
         return {Quantity(p.reference.name): p.frequency_hz for p in pairs if p.mode is not None}
 
