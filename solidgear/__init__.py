@@ -67,6 +67,7 @@ _WHERE = {
     "condense": "solidgear.solve.statics",
     "modes": "solidgear.solve.modes",
     "answer": "solidgear.judge.answer",
+    "budget": "solidgear.studies.budget",
     "compare": "solidgear.studies.comparison",
     "optimise": "solidgear.studies.optimise",
     "sweep": "solidgear.studies.sweep.table",
@@ -103,6 +104,7 @@ __all__ = [
     "Train",
     "__version__",
     "answer",
+    "budget",
     "build",
     "compare",
     "condense",
@@ -145,6 +147,7 @@ if TYPE_CHECKING:
     from solidgear.scene.train import Train
     from solidgear.solve.modes import modes
     from solidgear.solve.statics import condense
+    from solidgear.studies.budget import budget
     from solidgear.studies.comparison import compare
     from solidgear.studies.loading import load, load_train
     from solidgear.studies.optimise import optimise

@@ -7,7 +7,6 @@ from solidgear.judge.bars import ErrorBar
 from solidgear.judge.record import BarRecord, Record
 from solidgear.report import evidence_tables
 from solidgear.report.input_tables import bearings, scene_facts
-from solidgear.report.reading import left_open
 from solidgear.report.units import US
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
@@ -53,17 +52,6 @@ def test_the_mirrored_coupling_is_no_further_entry():
     assert "without a column" not in bearings(scene).note
     matrix[0][5] = matrix[5][0] = -5.0
     assert "6x6 of 'one'" in bearings(scene).note
-
-
-def test_the_range_of_bearings_names_the_model_it_was_worked_out_with():
-    # page one tells the trusted solid's frequency above: per cents of a beam's are not of that
-    bound = {"mode": "bending 1", "frequency_hz": 1590.5, "low": 717.4, "high": 1821.2}
-    found = record(
-        bearing_range={"bounds": [bound], "model": "timoshenko", "varied": "load 0.2 to 1.2 times"},
-        models={"timoshenko": {"title": "Timoshenko beam"}},
-    )
-    said = left_open(found)
-    assert "(-54.9 % to +14.5 % of the 1590.5 Hz of the Timoshenko beam" in said
 
 
 def test_a_mode_that_is_like_no_other_has_no_partner_by_name():

@@ -162,4 +162,5 @@ def test_the_command_tells_lives_of_a_train_over_its_duty_table(train, tmp_path)
     ]
     assert one["duty"]["worst"] == 1 and sum(one["duty"]["damage"]) == pytest.approx(1)
     assert "shaft and name" in str(command("bearing", path, "--bearing", "A").exception)
-    assert "--range belongs to a scene" in str(command("bearing", path, "--range").exception)
+    out = command("bearing", path, "--out", "a.png")
+    assert "--out belongs to a scene" in str(out.exception)

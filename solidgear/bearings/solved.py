@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,12 +31,15 @@ class Choice:
         Place in the range of a clearance class, 0 to 1.
     preload, load : float
         Times what the scene says.
+    apart : mapping of str to Choice
+        Those of single bearings by name, but for the load.
     """
 
     end: End = "middle"
     clearance: float = 0.5
     preload: float = 1.0
     load: float = 1.0
+    apart: Mapping[str, Choice] = field(default_factory=dict)
 
 
 AS_TOLD = Choice()
@@ -141,12 +144,13 @@ def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
     for k, bearing in enumerate(scene.bearings):
         if bearing.catalogue is None:
             continue
+        own = choice.apart.get(bearing.name, choice)
         try:
             made[bearing.name] = catalogued(
                 bearing.catalogue,
-                choice.end,
-                clearance_share=choice.clearance,
-                preload_factor=choice.preload,
+                own.end,
+                clearance_share=own.clearance,
+                preload_factor=own.preload,
             )
         except SceneError as error:
             raise located(error, k) from None

@@ -27,6 +27,7 @@ if _hears:
 from solidgear.cli import (
     answer,
     bearing,
+    budget,
     chart,
     deflect,
     files,

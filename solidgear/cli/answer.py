@@ -16,6 +16,7 @@ from solidgear.errors import SolidgearError
 
 if TYPE_CHECKING:
     from solidgear.judge.answer import Answered, Step
+    from solidgear.judge.open_record import OpenNumbers
     from solidgear.judge.settle import Settled
     from solidgear.judge.where import Whereabouts
     from solidgear.quantity import Quantity
@@ -57,6 +58,7 @@ def answer(
     """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
     from solidgear.cli.reading import load
     from solidgear.judge.answer import answer as solve
+    from solidgear.studies.budget import beside
 
     if picture is not None:
         from solidgear.report.plot import check_ending
@@ -67,6 +69,8 @@ def answer(
     unplaced = ""
     with run.progress() as progress:
         found = solve(loaded, tol, ask, progress=progress)
+        progress("what the data leave open")
+        open_ = beside(loaded)
         if where or picture is not None:
             progress("where the error sits")
             try:
@@ -76,12 +80,12 @@ def answer(
     if places is not None and picture is not None:
         _draw(places, picture)
     if run.as_json:
-        out = found.as_dict()
+        out = found.as_dict() | {"open": open_.model_dump(mode="json")}
         if where or picture is not None:
             out["where"] = {"error": unplaced} if places is None else _plain(places)
         print(json.dumps(out, allow_nan=False))
     else:
-        say(_values(found, run.units), _path(found))
+        say(_values(found, run.units, open_), _path(found))
         say(*sentences(found), *_of_round_part(loaded, found))
         if places is not None:
             say(_where_table(places), _sentence(places))
@@ -94,8 +98,10 @@ def answer(
         raise typer.Exit(NOT_REACHED)
 
 
-def _values(found: Answered, units: str) -> Table:
+def _values(found: Answered, units: str, open_: OpenNumbers) -> Table:
     from solidgear.judge.steps import ABOVE, BELOW
+    from solidgear.report.open_words import columns as ranges
+    from solidgear.report.open_words import remark
     from solidgear.report.table import Column, Table, text
     from solidgear.report.units import units_named
     from solidgear.report.words import bar_of
@@ -113,8 +119,10 @@ def _values(found: Answered, units: str) -> Table:
         Column("value", lambda row: "0" if row.zero else chosen.number(row.value, row.unit, 6)),
         text("unit", lambda row: chosen.unit(row.unit)),
         Column("bar", bar_of),
+        *ranges(open_, lambda row: row.quantity),
         text("from", lambda row: row.how),
     ]
+    notes += filter(None, [remark(open_)])
     return Table("", columns, found.values, "\n".join(notes))
 
 

@@ -15,12 +15,8 @@ from solidgear.errors import SceneError, SolidgearError, show
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from solidgear.bearings.bounds import Ranges
     from solidgear.scene import Scene
-    from solidgear.studies.bearing_study import BearingFacts, BearingRange, Bound
-
-#: what a torque of a gearbox and the preload of a bearing do, unless told
-USUAL_LOAD, USUAL_PRELOAD = "0.2:1.2", "0.7:1.3"
+    from solidgear.studies.bearing_study import BearingFacts
 
 
 @command
@@ -47,16 +43,6 @@ def bearing(
             "--out", "-o", help="Chart of stiffness over load: a file that ends in .png or .svg."
         ),
     ] = None,
-    ranged: Annotated[
-        bool,
-        typer.Option(
-            "--range", help="Also bounds on natural frequencies from what is not known of bearings."
-        ),
-    ] = False,
-    load_range: Annotated[str, typer.Option(help="Of --range: factors of the load.")] = USUAL_LOAD,
-    preload_range: Annotated[
-        str, typer.Option(help="Of --range: factors of the preload.")
-    ] = USUAL_PRELOAD,
     run: Run,
 ) -> None:
     """Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of a
@@ -67,18 +53,18 @@ def bearing(
     from solidgear.scene.file import load as read
     from solidgear.scene.toml_file import describes_train, parse
     from solidgear.studies.bearing_life import bearing_lives
-    from solidgear.studies.bearing_study import bearing_facts, bearing_range
+    from solidgear.studies.bearing_study import bearing_facts
     from solidgear.studies.loading import explained, shaft
 
     if describes_train(parse(str(scene))):
-        of_scenes = {"--load": load, "--speed": speed, "--out": out, "--range": ranged}
+        of_scenes = {"--load": load, "--speed": speed, "--out": out}
         show_train(scene, name, of_scenes, run.as_json)
         return
     if out is not None:
         from solidgear.report.plot import check_ending
 
         check_ending(out)
-    ranges, turns = _ranges(load_range, preload_range), speed_of(speed)
+    turns = speed_of(speed)
     loaded = read(scene)
     if load is not None:
         loaded = loaded_by(loaded, load, name)
@@ -88,21 +74,15 @@ def bearing(
         if not facts:
             raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
         lives = {one.name: one for one in bearing_lives(loaded, body, turns)}
-        found = bearing_range(loaded, ranges) if ranged else None
         if out is not None:
             _draw(out, loaded, body, facts)
     if run.as_json:
         bearings = [_plain(fact) | {"life": plain_life(lives[fact.name])} for fact in facts]
-        record: dict[str, Any] = {"scene": loaded.name, "bearings": bearings}
-        if found is not None:
-            record["range"] = found.as_dict()
-        print(json.dumps(record, allow_nan=False))
+        print(json.dumps({"scene": loaded.name, "bearings": bearings}, allow_nan=False))
         return
     for fact in facts:
         _print(fact)
         print_life(lives[fact.name])
-    if found is not None:
-        _print_range(found)
     if out is not None:
         say(f"Chart: {out}")
 
@@ -142,21 +122,6 @@ def _components(text: str) -> dict[str, str | float]:
         except ValueError:
             found[key] = value
     return found
-
-
-def _ranges(load: str, preload: str) -> Ranges:
-    from solidgear.bearings.bounds import Ranges
-
-    pairs: dict[str, tuple[float, float]] = {}
-    for key, text in (("load", load), ("preload", preload)):
-        try:
-            low, high = (float(part) for part in text.split(":"))
-        except ValueError:
-            raise SolidgearError(
-                f"--{key}-range {show(text)}: write two factors, such as 0.5:1.2"
-            ) from None
-        pairs[key] = (low, high)
-    return Ranges(load=pairs["load"], preload=pairs["preload"])
 
 
 def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
@@ -240,30 +205,6 @@ def _print(fact: BearingFacts) -> None:
         )
     for note in fact.notes:
         say(f"caution: bearing {fact.name!r}: {note}")
-
-
-def _print_range(found: BearingRange) -> None:
-    from solidgear.report.table import Column, Table
-
-    def hertz(value: float) -> str:
-        return f"{value:.1f}"
-
-    def change(end: float, bound: Bound) -> str:
-        return f"{100 * (end / bound.middle - 1):+.1f}"
-
-    columns = [
-        Column("mode", lambda b: b.mode),
-        Column("Hz", lambda b: b.middle, hertz),
-        Column("from", lambda b: b.low, hertz),
-        Column("to", lambda b: b.high, hertz),
-        Column("range", lambda b: f"{change(b.low, b)} / {change(b.high, b)} %"),
-    ]
-    say(Table("", columns, found.bounds))
-    say(f"Over {found.points} points: {found.ranges.text}.")
-    for name in found.lost:
-        say(f"caution: bearing {name!r} carries nothing somewhere in this range.")
-    for reason in found.refused:
-        say(f"caution: left out: {reason}")
 
 
 def _plain(fact: BearingFacts) -> dict[str, Any]:

@@ -170,6 +170,7 @@ def modes(
     from solidgear.judge.settle import bars_of_modes
     from solidgear.scene.rules import MOST_MODES
     from solidgear.solve.modes import modes as solve
+    from solidgear.studies.budget import beside
     from solidgear.studies.check import cautions
 
     if max_frequency is not None and not max_frequency > 0:
@@ -189,6 +190,7 @@ def modes(
     )
     bars = bars_of_modes(loaded, body, found, settled)
     said = cautions(loaded, body)
+    open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
     said += cut_short(found.modes, *asked, option="-n")
     rows = [
@@ -210,6 +212,7 @@ def modes(
             "modes": rows,
             "evidence": found.evidence,
             "cautions": said,
+            "open": open_.model_dump(mode="json"),
         }
         if settled is not None:
             record |= settled.as_dict() | {"without_bar": without_bar(found, bars)}
@@ -220,7 +223,7 @@ def modes(
     from solidgear.report.words import by_plane
     from solidgear.solve.mixtures import mixtures
 
-    say(heading(loaded, body, settled), modes_table(rows, bars), soft_wrap=False)
+    say(heading(loaded, body, settled), modes_table(rows, bars, open_), soft_wrap=False)
     if len(rows) > MANY:
         shapes = sum(m.multiplicity for m in found.modes)
         say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")

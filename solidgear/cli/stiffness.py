@@ -39,7 +39,10 @@ def stiffness(
 ) -> None:
     """6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."""
     from solidgear.cli.reading import load
+    from solidgear.report.open_words import table as open_table
+    from solidgear.report.units import units_named
     from solidgear.solve.statics import condense
+    from solidgear.studies.budget import beside
     from solidgear.studies.check import cautions
 
     loaded = load(scene)
@@ -51,6 +54,7 @@ def stiffness(
     found = condense(body, loaded, names[0])
     coupled = condense(body, loaded, names) if len(names) > 1 else None
     said = cautions(loaded, body)
+    open_ = beside(loaded, body)
 
     if run.as_json:
         record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
@@ -59,7 +63,7 @@ def stiffness(
         record |= {"dofs": body.size, **evidence, "cautions": said}
         if settled is not None:
             record |= settled.as_dict()
-        print(json.dumps(record))
+        print(json.dumps(record | {"open": open_.model_dump(mode="json")}))
         ended(settled)
         return
     head = heading(loaded, body, settled)
@@ -69,6 +73,9 @@ def stiffness(
         _tell_coupled(head, loaded, coupled, run.units)
         if settled is not None:
             say(_bars(settled, coupled))
+    if open_.inputs:
+        bars = settled.bars if settled is not None else {}
+        say(open_table(open_, bars, units_named(run.units)))
     say(*bar_lines(settled))
     say(*map(caution, said), soft_wrap=False)
     ended(settled)

@@ -139,7 +139,7 @@ def answer(
     """
     start = time.perf_counter()
     tol = usable(scene.ask.tolerance if tol is None else tol)
-    wanted = _quantities(scene, ask)
+    wanted = asked_for(scene, ask)
     climb, steps = climbed(scene, tol, wanted, Climb, progress)
     values = climb.values()
     known = {v.quantity for v in values}
@@ -236,7 +236,8 @@ def usable(tol: float | str) -> float:
     return tol
 
 
-def _quantities(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
+def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
+    """Quantities by the words of an option; those that a scene is judged by without any."""
     # C_z,thx has a comma of its own, and no quantity is called as a component alone
     given = re.split(COMMA, ask) if isinstance(ask, str) else list(ask)
     given = [name.strip() for name in given if name.strip()]

@@ -8,63 +8,17 @@ knows neither NaN nor infinity.  Quantities are called as in
 
 from __future__ import annotations
 
-import math
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidatorFunctionWrapHandler,
-    field_validator,
-)
-from pydantic_core import PydanticUseDefault
+from pydantic import ConfigDict, Field
 
 from solidgear.body.mode_names import ModeName
+from solidgear.judge.open_record import OpenNumbers
+from solidgear.judge.part import Facts, Matrix, Number, Numbers, Part, Quantities
 from solidgear.quantity import Quantity
 
 #: version of this layout; it rises when a field is renamed or removed
-SCHEMA = 3
-
-
-def _plain(value: Any) -> Any:
-    """The same as lists, dicts, texts and finite numbers; all else that numpy may bring is None."""
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
-Number = Annotated[float | None, BeforeValidator(_plain)]
-Numbers = Annotated[list[float | None], BeforeValidator(_plain)]
-Matrix = Annotated[list[list[float | None]], BeforeValidator(_plain)]
-Facts = Annotated[dict[str, Any], BeforeValidator(_plain)]
-Quantities = dict[str, Number]
-
-
-class Part(BaseModel):
-    """Part of a record: fields that are missing, or None where None says nothing, have their
-    default; unknown ones are kept.
-    """
-
-    model_config = ConfigDict(extra="allow")
-
-    @field_validator("*", mode="wrap")
-    @classmethod
-    def _none_is_missing(cls, value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
-        try:
-            return validate(value)
-        except ValidationError:
-            if value is None:
-                raise PydanticUseDefault from None
-            raise
+SCHEMA = 4
 
 
 class ModeRecord(Part):
@@ -359,7 +313,7 @@ class Record(Part):
     verdict: VerdictRecord = VerdictRecord()
     guards: list[GuardRecord] = []
     where: WhereRecord | None = None
-    bearing_range: Facts = {}
+    open: OpenNumbers = OpenNumbers()
     environment: Facts = {}
     images: dict[str, str] = {}
     warnings: list[str] = []

@@ -11,6 +11,7 @@ from typing import Any
 
 from solidgear.judge.record import Record
 from solidgear.report.border import as_record
+from solidgear.report.budget_chart import of_record as budget_chart
 from solidgear.report.change_charts import attachment_chart, cause_chart
 from solidgear.report.convergence_chart import convergence_chart
 from solidgear.report.cost_chart import cost_chart
@@ -39,6 +40,7 @@ def _drawn(name: str, make: Callable[..., Chart | None]) -> Drawing:
 
 
 _DESCRIBED = {
+    "budget": budget_chart,
     "modes": mode_chart,
     "mac": mac_chart,
     "convergence": convergence_chart,

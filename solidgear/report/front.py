@@ -13,13 +13,13 @@ from solidgear.body.mode_names import ModeName
 from solidgear.judge.record import ModelRecord, Record, VerdictRecord
 from solidgear.judge.ties import SCENE
 from solidgear.quantity import AT, COMPLIANCE, FIRST_BENDING, Quantity
+from solidgear.report import open_words
 from solidgear.report.reading import (
     BEAM,
     LUMPED,
     entry,
     first_frequency,
     is_resolved,
-    left_open,
     mode_of,
     model_name,
     model_of,
@@ -85,19 +85,19 @@ def numbers(record: Record, units: Units) -> Table:
     names = [Quantity(q) for q in (*ROWS, *(q for q in asked if AT not in q))]
     # by the names that results have: a scene may write those of points in another way
     names += [q for q in (record.verdict.judged if asked else ()) if q.points]
-    cells = [_number(model, name, _label(name), units) for name in dict.fromkeys(names)]
-    cells += _other_direction(model, units)
+    cells = [_number(record, model, name, _label(name), units) for name in dict.fromkeys(names)]
+    cells += _other_direction(record, model, units)
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
         caption += f", by the {model_name(record, key)}"
-    bearings = left_open(record)
-    open_too = f"{bearings}." if bearings else ""
+    told = open_words.remark(record.open)
+    rest = told or "it says nothing of bearings or load."
     return Table(
         caption,
         ["quantity", "value", "bar"],
         [row for row in cells if row],
-        "K holds all other motions still, C leaves them free. The bar is what mesh and solver "
-        f"leave open; it says nothing of bearings or load. {open_too}".strip(),
+        "K holds all other motions still, C leaves them free. The mesh bar is what mesh and solver "
+        f"leave open{'. ' if told else '; '}{rest}",
         style="numbers",
     )
 
@@ -110,14 +110,20 @@ def _label(name: Quantity) -> str:
     return ", ".join(filter(None, (said, at, symbol)))
 
 
-def _number(model: ModelRecord, name: Quantity, label: str, units: Units) -> list[Any]:
+def _number(
+    record: Record, model: ModelRecord, name: Quantity, label: str, units: Units
+) -> list[Any]:
     """The cells of one quantity; none where there is no such number."""
     value = _frequency(model, name) if name.is_frequency else value_of(model, name)
     if value is None or value == 0:
         return []
     bar = model.band.each.get(name) if model.band else None
     told = units.text(value, name.unit, digits_for(bar))
-    return [label, Cell(told, "strong"), "no bar" if bar is None else plus_minus(bar)]
+    ranges = open_words.parts(record.open, name)
+    mesh = "no bar" if bar is None else plus_minus(bar)
+    if ranges:
+        mesh = "\n".join([mesh if bar is None else f"mesh {mesh}", *map(" ".join, ranges)])
+    return [label, Cell(told, "strong"), mesh]
 
 
 def _frequency(model: ModelRecord, name: Quantity) -> float | None:
@@ -126,13 +132,15 @@ def _frequency(model: ModelRecord, name: Quantity) -> float | None:
     return exact if exact is not None or asked.number != 1 else first_frequency(model, asked.family)
 
 
-def _other_direction(model: ModelRecord, units: Units) -> Iterable[list[Any]]:
+def _other_direction(record: Record, model: ModelRecord, units: Units) -> Iterable[list[Any]]:
     """The other direction across the shaft, where bearings or features make it another number."""
     one, other = (entry(model.stiffness, i, i) for i in (2, 0))
     change = relative_change(other, one)
     if change is None or abs(change) <= ALIKE:
         return []
-    return [_number(model, Quantity("K_xx"), "Stiffness across, other direction, K_xx", units)]
+    return [
+        _number(record, model, Quantity("K_xx"), "Stiffness across, other direction, K_xx", units)
+    ]
 
 
 def reasons(record: Record) -> list[str]:

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from solidgear.judge.record import Record
 from solidgear.quantity import Quantity
 from solidgear.report.bearing_words import catalogue, load_row, speed_row, without_column
-from solidgear.report.reading import entry, model_name
+from solidgear.report.reading import entry
 from solidgear.report.table import Column, Table, given, text, word
 from solidgear.report.train_tables import mark, material_words
 from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import DASH, engineering, hertz, is_number, percent, short_percent
+from solidgear.report.words import DASH, engineering, is_number, short_percent
 
 #: of a bearing's 6x6
 BEARING_ENTRIES = tuple(map(Quantity, ("K_xx", "K_yy", "K_zz", "K_z,thx", "K_thx", "K_thz")))
@@ -170,31 +170,6 @@ def _note(bearing: Mapping, units: Units) -> str:
         entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())
         words.append(f"Stands in a housing of its own, SI: {entries}.")
     return " ".join(filter(None, words))
-
-
-def bearing_range(record: Record) -> Table:
-    """Ranges of natural frequencies that unknowns of catalogue bearings leave open, apart from the
-    error bars of mesh and solver.
-    """
-    found = record.bearing_range
-
-    def ends(b: Mapping) -> str:
-        return " / ".join(percent(b[end] / b["frequency_hz"] - 1) for end in ("low", "high"))
-
-    columns = [
-        Column("mode", lambda b: str(b["mode"])),
-        Column("at the scene's load", lambda b: b["frequency_hz"], hertz),
-        Column("from", lambda b: b["low"], hertz),
-        Column("to", lambda b: b["high"], hertz),
-        Column("range", ends),
-    ]
-    lost = [f"Bearing {name} carries nothing somewhere in it." for name in found.get("lost") or []]
-    note = (
-        f"Of the {model_name(record, found.get('model'))} over {found.get('points')} points: "
-        f"{found.get('varied')}. {' '.join(lost)}"
-    )
-    title = "What the bearings leave open, natural frequencies in Hz"
-    return Table(title, columns, found.get("bounds") or [], note.strip())
 
 
 def features(scene: Mapping, units: Units = ENGINEERING) -> Table:

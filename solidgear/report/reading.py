@@ -15,7 +15,8 @@ from solidgear.judge.record import (
 )
 from solidgear.judge.ties import SCENE, SECTION
 from solidgear.quantity import FIRST_BENDING, Quantity
-from solidgear.report.words import DASH, hertz, is_number, percent
+from solidgear.report import open_words
+from solidgear.report.words import DASH, is_number
 
 #: families of models, as the ladder has them
 LUMPED, BEAM = "lumped", "beam"
@@ -34,21 +35,10 @@ def model_name(record: Record, key: str | None) -> str:
 
 
 def left_open(record: Record) -> str:
-    """Sentence on the range of first bending that catalogue bearings leave open; nothing where there
-    are none.
-    """
-    bounds = record.bearing_range.get("bounds") or []
-    first = next((b for b in bounds if b["mode"] == FIRST_BENDING), None)
-    if first is None:
-        return ""
-    middle, low, high = first["frequency_hz"], first["low"], first["high"]
-    model = model_name(record, record.bearing_range.get("model"))
-    return (
-        f"What is not known of the bearings leaves first bending anywhere from {hertz(low)} to "
-        f"{hertz(high)} Hz ({percent(low / middle - 1)} to {percent(high / middle - 1)} of the "
-        f"{hertz(middle)} Hz of the {model}, which it was worked out with; "
-        f"{record.bearing_range.get('varied')}), and stiffness with it"
-    )
+    """Sentence on the range of first bending that open inputs leave; nothing where there are none."""
+    ranges = ", ".join(" ".join(part) for part in open_words.parts(record.open, FIRST_BENDING))
+    told = open_words.remark(record.open)
+    return f"First bending: {ranges}. {told}" if ranges else told
 
 
 def heading(record: Record, key: str) -> str:

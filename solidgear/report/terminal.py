@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from solidgear.judge.open_record import OpenNumbers
 from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
-from solidgear.report import reading, words
+from solidgear.report import open_words, reading, words
 from solidgear.report.border import as_record
 from solidgear.report.matrices import block
 from solidgear.report.table import MARK, Column, Table, text, word
@@ -171,8 +172,8 @@ def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
     """
     record = as_record(found)
     lines = [f"caution: {w}" for w in record.warnings]
-    if bearings := reading.left_open(record):
-        lines.append(f"{bearings}.")
+    if told := reading.left_open(record):
+        lines.append(told)
     trusted = record.verdict.trust
     counted = reading.model_of(record, trusted).evidence.complete
     if counted:
@@ -242,10 +243,12 @@ def matrix_table(
 
 
 def modes_table(
-    modes: Sequence[ModeRecord | Mapping[str, Any]], bars: Mapping[str, float] | None = None
+    modes: Sequence[ModeRecord | Mapping[str, Any]],
+    bars: Mapping[str, float] | None = None,
+    open_: OpenNumbers | None = None,
 ) -> Table:
-    """Natural frequencies with names and multiplicity, and relative bars by name where there are
-    any.
+    """Natural frequencies with names and multiplicity, and where there are any relative bars by name
+    and ranges by what is open.
     """
     columns = [
         text("mode", lambda m: m.name or None),
@@ -260,4 +263,8 @@ def modes_table(
             return "" if own is None else words.percent(own, signed=False)
 
         columns.append(Column("bar", bar))
-    return Table("", columns, list(map(ModeRecord.model_validate, modes)))
+    note = ""
+    if open_ is not None:
+        columns += open_words.columns(open_, lambda mode: mode.name)
+        note = open_words.remark(open_)
+    return Table("", columns, list(map(ModeRecord.model_validate, modes)), note)

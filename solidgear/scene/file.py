@@ -42,6 +42,7 @@ from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
 from solidgear.scene.toml_file import describes_train, name_of, parse, place_of
 from solidgear.scene.typed import Gathered, Holds, Model
+from solidgear.scene.uncertain import stated
 
 Table = dict[str, Any]
 #: entries of the lists of a file
@@ -76,6 +77,7 @@ class _File(Model):
     port: Annotated[list[Table], BeforeValidator(_several), Holds(Port)]
     load: BearingLoad | None = None
     lubrication: Lubrication | None = None
+    uncertain: Table = {}
     ask: _Ask = _Ask()
 
 
@@ -218,7 +220,7 @@ class _Reading:
         things = {key: tuple(row.thing for row in of) for key, of in rows.items()}
         main, *further = things.pop("ports")
         stations = [main, *further, *things["bearings"], *things["masses"]]
-        return Scene.from_parts(
+        scene = Scene.from_parts(
             self.segments,
             self._material(),
             port=main,
@@ -234,6 +236,7 @@ class _Reading:
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
+        return stated(scene, file.uncertain, file.bearing)
 
     def _tables(self) -> tuple[_File, set[str]]:
         """The file without the keys that cannot be used, and these keys."""

@@ -32,6 +32,7 @@ from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import ONE_HOUSING, no_such_point, question_problems, shaft_problems
 from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.typed import Model
+from solidgear.scene.uncertain import Uncertain
 from solidgear.scene.units import AxialSpring
 
 
@@ -65,6 +66,8 @@ class Scene(Displayed, Model):
     load : BearingLoad or None
         Load on the shaft at the main port, under which bearings of catalogue data settle.
     lubrication : Lubrication or None
+    uncertain : tuple of Uncertain
+        Ranges of entries, as factors.
     ask : Ask
 
     Raises
@@ -102,6 +105,7 @@ class Scene(Displayed, Model):
     further_ports: tuple[Port, ...] = ()
     load: BearingLoad | None = None
     lubrication: Lubrication | None = None
+    uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
 
     @model_validator(mode="after")
@@ -391,10 +395,5 @@ class Scene(Displayed, Model):
         return self.with_changes(port=first, further_ports=tuple(known.values()))
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything resolved, in SI, as plain data that JSON can hold.
-
-        Returns
-        -------
-        dict
-        """
+        """Everything resolved, in SI, as plain data that JSON can hold."""
         return plain_data(self)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def plain_data(scene: Scene) -> dict[str, Any]:
     """See :meth:`Scene.as_dict`."""
     data = scene.model_dump(mode="json")
-    for key in ("masses", "features", "blends", "further_ports"):
+    for key in ("masses", "features", "blends", "further_ports", "uncertain"):
         if not data[key]:
             del data[key]
     for row, corner in zip(data.get("blends", ()), scene.corners):

@@ -1,21 +1,17 @@
-"""Catalogue bearings of a scene: at their load, over load, and what their ranges leave open."""
+"""Catalogue bearings of a scene: at their load, and over load."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from solidgear.bearings.bounds import Ranges, choices
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import Choice, Solved, solved, wants_equilibrium
+from solidgear.bearings.solved import Choice, Solved, solved
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.scene import Scene
-from solidgear.solve.modes import modes
-from solidgear.studies.loading import SHAFT
 
 #: times the load that the scene says
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
@@ -198,115 +194,6 @@ def over_load(
             np.array(factors), at_load, ends[0], ends.min(axis=0), ends.max(axis=0)
         )
     return curves
-
-
-@dataclass(frozen=True)
-class Bound:
-    """Range of one natural frequency.
-
-    Attributes
-    ----------
-    middle, low, high : float
-        Hz.
-    """
-
-    mode: str
-    middle: float
-    low: float
-    high: float
-
-
-@dataclass(frozen=True)
-class BearingRange:
-    """Ranges of natural frequencies and of what they come from.
-
-    Attributes
-    ----------
-    bounds : tuple of Bound
-        Modes that every point has, by name.
-    lost : tuple of str
-        Bearings that carry nothing somewhere in the range.
-    refused : tuple of str
-        Why points could not be solved, each reason once.
-    model : str
-        Model that was solved.
-    """
-
-    bounds: tuple[Bound, ...]
-    ranges: Ranges
-    points: int
-    lost: tuple[str, ...]
-    refused: tuple[str, ...]
-    model: str = SHAFT
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain data that JSON can hold."""
-        return {
-            "model": self.model,
-            "points": self.points,
-            "varied": self.ranges.text,
-            "bounds": [
-                {"mode": b.mode, "frequency_hz": b.middle, "low": b.low, "high": b.high}
-                for b in self.bounds
-            ],
-            "lost": list(self.lost),
-            "refused": list(self.refused),
-        }
-
-
-def bearing_range(
-    scene: Scene, ranges: Ranges, body: Body | None = None, n: int = 10, fidelity: str = SHAFT
-) -> BearingRange:
-    """Bounds on natural frequencies from what is not known of the bearings.
-
-    Parameters
-    ----------
-    body : Body, optional
-        Made at `fidelity` unless given; factored once.
-    n : int
-        Elastic modes.
-
-    Raises
-    ------
-    SolidgearError
-        If what the scene itself says cannot be solved.
-    """
-    if body is None:
-        from solidgear.ladder import build
-
-        body = build(scene, fidelity)
-    ranges = ranges.for_scene(scene)
-    settles = body if wants_equilibrium(scene) else None
-    frequencies: list[dict[str, float]] = []
-    lost: dict[str, None] = {}
-    refused: dict[str, None] = {}
-    points = list(choices(ranges))
-    for k, point in enumerate(points):
-        try:
-            at = solved(scene, settles, point)
-            found = modes(body, at.scene, n)
-        except SolidgearError as error:
-            if k == 0:
-                raise
-            refused[str(error)] = None
-            continue
-        frequencies.append({m.name: m.frequency_hz for m in found.modes if m.frequency_hz > 0})
-        for name in at.made:
-            if not at.made[name].bearing.load(at.motion[name]).any():
-                lost[name] = None
-    names = [m for m in frequencies[0] if all(m in other for other in frequencies)]
-    bounds = tuple(
-        Bound(
-            name,
-            frequencies[0][name],
-            min(f[name] for f in frequencies),
-            max(f[name] for f in frequencies),
-        )
-        for name in names
-    )
-    return BearingRange(
-        bounds, ranges, len(frequencies), tuple(lost), tuple(refused), body.fidelity
-    )
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:

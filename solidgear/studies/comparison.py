@@ -8,12 +8,13 @@ import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.judge.lumped import synthesise_all
+from solidgear.judge.open_record import OpenNumbers
 from solidgear.judge.quantities import change
 from solidgear.judge.record import CauseRecord, GuardRecord, LumpedRecord, Record, WhereRecord
 from solidgear.judge.recording import recorded
@@ -27,6 +28,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
 from solidgear.machine.threads import pinned
+from solidgear.studies.budget import opened
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -181,12 +183,13 @@ def compare(
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     found = _Found({}, {}, [], {}, [])
     complete = True
-    ranged: dict[str, Any] = {}
+    open_ = OpenNumbers()
     overall = Meter()
     with overall.stage("all"), one_run() as run:
         try:
             _run(scene, models, options, found, progress)
-            ranged = _bearing_range(scene, progress)
+            progress("what the data leave open")
+            open_ = opened(scene)
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
@@ -194,25 +197,11 @@ def compare(
         scene, found.solutions, found.failed, found.causes, found.lumped, found.guards, complete
     )
     record.where = found.where
-    record.bearing_range = ranged
+    record.open = open_
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
     return Comparison(scene, record, found.solutions)
-
-
-def _bearing_range(scene: Scene, progress) -> dict[str, Any]:
-    """Range that loads, preloads and insides of catalogue bearings leave open, as plain data."""
-    if all(bearing.catalogue is None for bearing in scene.bearings):
-        return {}
-    from solidgear.bearings.bounds import USUAL
-    from solidgear.studies.bearing_study import bearing_range
-
-    progress("what the bearings leave open")
-    try:
-        return bearing_range(scene, USUAL, n=scene.ask.modes).as_dict()
-    except SolidgearError as error:
-        return {"refused": [str(error)]}
 
 
 @dataclass

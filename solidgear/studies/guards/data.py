@@ -118,7 +118,7 @@ def oblique_softness(probe: Probe) -> Notices:
                 f"at this load few rolling elements of bearing {b.name!r} carry, all of them to "
                 f"one side: in one oblique direction it has {share}, and what it has changes with "
                 "the load; more load, preload or less clearance makes more of them carry, and "
-                "solidgear bearing --range tells what this leaves open",
+                "solidgear budget tells what the inside leaves open",
             )
         elif least < FOUR_DIGITS:
             what = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"

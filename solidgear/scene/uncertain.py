@@ -1,0 +1,215 @@
+"""Ranges that a scene states of its own entries: the table ``[uncertain]`` of its file.
+
+A path of the file stands for an entry, a text for its range: ``"material.E" = "206 GPa ± 3 %"``,
+``"bearing.A.stiffness.kxx" = "3e8 N/m : 6e8 N/m"``, ``"load" = "0.2 : 1.2"``. What is kept is by how
+much an entry is multiplied, so that it goes with a scene that is changed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SceneError, show
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.scene.typed import Gathered, Model
+from solidgear.scene.units import quantity
+
+if TYPE_CHECKING:
+    from solidgear.scene import Bearing, Scene
+
+#: what the word "assumed" of a bearing means where its file states no range: a factor two each way
+ASSUMED = "0.5 : 2"
+#: entries that are multiplied as a whole, and are no numbers with a unit
+FACTOR = "dimensionless"
+_PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
+_KNOWN = (
+    "a range may have material.E, material.density, load, load.z, housing, bearing.NAME.stiffness, "
+    "bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
+)
+
+
+class Uncertain(Model):
+    """An entry with its range.
+
+    Attributes
+    ----------
+    path : str
+    said : str
+        The range as the file states it.
+    low, high : float
+        Times what the scene says; 1 lies between.
+    """
+
+    path: str
+    said: str
+    low: float
+    high: float
+
+
+def stated(
+    scene: Scene, table: Mapping[str, Any], bearings: Sequence[Mapping[str, Any]] = ()
+) -> Scene:
+    """A scene with ranges of its entries.
+
+    Parameters
+    ----------
+    table : mapping
+        Of texts by paths, nested or not.
+    bearings : sequence of mapping
+        Tables of the bearings of its file: one that says of itself that it is assumed has a range.
+
+    Raises
+    ------
+    SceneError
+        A path that cannot have a range, a text that is none, or one that leaves out what the scene
+        says.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = stated(sg.load("geometry/shaft_stepped.toml"), {"material.E": "± 3 %"})
+    >>> scene.uncertain[0].low, scene.uncertain[0].high
+    (0.97, 1.03)
+    """
+    texts: dict[str, Any] = {
+        f"bearing.{one['name']}.stiffness": ASSUMED
+        for one in bearings
+        if one.get("status") == "assumed" and ("stiffness" in one or "matrix" in one)
+    }
+    given = dict(_flat(table))
+    for path in given:  # an entry of a bearing, or all of it: what is said says enough
+        bearing, whole, _ = path.partition(".stiffness")
+        texts.pop(bearing + whole, None)
+    problems = Gathered()
+    found = [
+        problems.read(partial(_read, scene, path, text), ("uncertain", path))
+        for path, text in {**texts, **given}.items()
+    ]
+    problems.tell()
+    return scene.with_changes(uncertain=tuple(found)) if found else scene
+
+
+def scaled(scene: Scene, path: str, factor: float) -> Scene:
+    """The scene with the entry of a path multiplied; factors of all loads and of preloads are
+    nothing of a scene (:class:`solidgear.bearings.solved.Choice`).
+
+    Raises
+    ------
+    SceneError
+        A stiffness that is none.
+    """
+    kind, _, rest = path.partition(".")
+    if kind == "material":
+        constant = getattr(scene.material, rest) * factor
+        return scene.with_changes(material=scene.material.with_changes(**{rest: constant}))
+    if kind == "housing":
+        own, axial = scene.housing, scene.housing_axial
+        return scene.with_changes(
+            housing=own and own.scaled(factor), housing_axial=axial and axial * factor
+        )
+    if kind == "load":
+        assert scene.load is not None
+        return scene.with_changes(
+            load=scene.load.with_changes(**{rest: getattr(scene.load, rest) * factor})
+        )
+    bearing, key = _bearing(scene, path)
+    return scene.with_changes(
+        bearings=tuple(_scaled(b, key, factor) if b is bearing else b for b in scene.bearings)
+    )
+
+
+def _scaled(bearing: Bearing, key: str, factor: float) -> Bearing:
+    name = key.removeprefix("stiffness").removeprefix(".")
+    if not name:
+        return bearing.scaled(factor)
+    i, j, _ = STIFFNESS_NAMES[name]
+    rows = [list(row) for row in bearing.matrix or ()]
+    rows[i][j] *= factor
+    rows[j][i] = rows[i][j]
+    return bearing.with_changes(matrix=rows)
+
+
+def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def _bearing(scene: Scene, path: str) -> tuple[Bearing | None, str]:
+    """The bearing of a path, and what follows its name."""
+    for bearing in scene.bearings:
+        own = f"bearing.{bearing.name}."
+        if path.startswith(own):
+            return bearing, path.removeprefix(own)
+    return None, ""
+
+
+def _read(scene: Scene, path: str, text: Any) -> Uncertain:
+    value, dimension = _entry(scene, path)
+    if not isinstance(text, str):
+        raise SceneError('must be a text such as "± 3 %" or "0.5 : 2"', value=show(text))
+    low, high = sorted(end / value for end in _ends(text, value, dimension))
+    if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
+        what = "1" if dimension == FACTOR else f"{value:.6g} in SI"
+        raise SceneError(
+            f"must be a range above zero that holds what the scene says, {what}", value=show(text)
+        )
+    return Uncertain(path=path, said=text, low=low, high=high)
+
+
+def _entry(scene: Scene, path: str) -> tuple[float, str]:
+    """Value of an entry, SI, and its dimension; 1 of what is multiplied as a whole."""
+    value, dimension = None, FACTOR
+    if path in ("material.E", "material.density"):
+        name = path.removeprefix("material.")
+        value = getattr(scene.material, name)
+        dimension = "pressure" if name == "E" else "density"
+    elif path == "housing" and (scene.housing or scene.housing_axial):
+        value = 1.0
+    elif path == "load" and (scene.load or any(b.catalogue for b in scene.bearings)):
+        value = 1.0
+    elif path.startswith("load.") and scene.load is not None:
+        value = getattr(scene.load, path.removeprefix("load."), None)
+        dimension = "torque" if path.startswith("load.th") else "load"
+    else:
+        bearing, key = _bearing(scene, path)
+        name = key.removeprefix("stiffness.")
+        data = bearing.catalogue if bearing else None
+        if bearing and data is None and not bearing.hold and key == "stiffness":
+            value = 1.0
+        elif bearing and data is None and not bearing.hold and name in STIFFNESS_NAMES:
+            i, j, dimension = STIFFNESS_NAMES[name]
+            value = (bearing.matrix or ())[i][j]
+        elif data is not None and data.preload is not None and key == "catalogue.preload":
+            value = data.preload.force or data.preload.displacement
+            dimension = "load" if data.preload.force else "length"
+    if not isinstance(value, float) or value == 0:
+        raise SceneError(f"this is no entry with a value here that can have a range; {_KNOWN}")
+    return value, dimension
+
+
+def _ends(text: str, value: float, dimension: str) -> tuple[float, float]:
+    """Ends of a range, SI."""
+
+    def number(word: str) -> float:
+        word = word.strip()
+        try:
+            return float(word)
+        except ValueError:
+            return quantity(word, dimension)
+
+    if found := _PLUS_MINUS.fullmatch(text):
+        middle = number(found[1]) if found[1].strip() else value
+        part = found[2].strip()
+        share = part.endswith("%")
+        apart = abs(middle) * number(part[:-1]) / 100 if share else number(part)
+        return middle - apart, middle + apart
+    low, colon, high = text.partition(":")
+    if not colon:
+        raise SceneError('must be two ends such as "3e8 N/m : 6e8 N/m", or "206 GPa ± 3 %"')
+    return number(low), number(high)

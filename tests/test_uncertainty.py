@@ -1,0 +1,143 @@
+"""What the data of a scene leave open of its numbers."""
+
+import pytest
+from pytest import approx
+
+import solidgear as sg
+from solidgear.judge.open_record import IntervalRecord
+from solidgear.judge.record import Record
+from solidgear.report.front import numbers
+from solidgear.report.open_words import acting, interval, parts
+from solidgear.report.open_words import budget as budget_table
+from solidgear.report.units import ENGINEERING
+from solidgear.scene.uncertain import stated
+from solidgear.studies.budget import beside, budget
+from solidgear.studies.open_inputs import open_inputs
+from tests.command import command
+
+STEPPED, GEARBOX = "geometry/shaft_stepped.toml", "geometry/gearbox_catalogue.toml"
+
+
+@pytest.fixture(scope="module")
+def gearbox():
+    # modes as high as the seventh bending may pass the points that were solved, by 1e-4 of themselves
+    scene = sg.load(GEARBOX).with_changes(ask=sg.Ask(modes=4))
+    return budget(scene, samples=50, seed=3)
+
+
+def test_a_modulus_and_a_density_move_a_free_shaft_by_their_roots():
+    free = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.03)])
+    found = beside(stated(free, {"material.E": "± 4 %", "material.density": "± 2 %"}))
+    total = found.of("bending 1").total
+    assert total.low == approx((0.96 / 1.02) ** 0.5 - 1, rel=1e-6)  # f ~ sqrt(E / rho)
+    assert total.high == approx((1.04 / 0.98) ** 0.5 - 1, rel=1e-6)
+
+
+def test_a_body_of_its_own_takes_a_modulus_without_being_built_again():
+    scene = stated(sg.load(STEPPED), {"material.E": "0.5e11 Pa : 3e11 Pa"})
+    by_body = beside(scene, sg.build(scene, "timoshenko"))
+    for quantity in ("C_zz", "K_thx", "C_yy"):
+        own, built = by_body.of(quantity).total, beside(scene).of(quantity).total
+        # springs stay as they are, so that these are no factors of a modulus; but for rounding equal
+        assert (own.low, own.high) == approx((built.low, built.high), rel=1e-6)
+
+
+def test_ranges_of_catalogue_bearings_hold_samples_of_all_their_data(gearbox):
+    for one in gearbox.numbers:
+        # rounding of what does not move is 1e-9
+        assert one.total.low - 1e-9 <= one.sampled.low, one.quantity
+        assert one.sampled.high <= one.total.high + 1e-9, one.quantity
+    first = gearbox.of("bending 1").total
+    assert first.low < -0.5 and first.high > 0.1  # the load decides, and is taken from a fifth on
+
+
+def test_what_is_worth_measuring_comes_first(gearbox):
+    shares = gearbox.of("bending 1").shares
+    assert next(iter(shares)) == "load" and sum(shares.values()) == approx(1.0)
+    by_source = gearbox.of("bending 1").by_source
+    assert by_source["load"].low < by_source["bearings"].low < 0
+
+
+def test_inputs_that_do_not_act_on_one_another_add_up_as_squares():
+    scene = sg.load(STEPPED).with_changes(ask=sg.Ask(modes=3))
+    scene = stated(scene, {"material.E": "± 5 %", "material.density": "± 5 %"})
+    found = budget(scene, samples=40, seed=1)
+    first = found.of("bending 1")
+    # a deviation of 40 samples is good to 1 / sqrt(80); Latin squares are better than that
+    assert first.sampled.deviation == approx(first.total.deviation, rel=0.1)
+    assert not acting(found, found.numbers)
+
+
+def test_inputs_that_act_on_one_another_are_told(gearbox):
+    # less load than a fifth of it softens a bearing more where its clearance is large: the deviation
+    # of all lies beyond the root of squares of each, as 2,000 samples show (validation)
+    found = gearbox.model_copy(deep=True)
+    one = found.of("bending 1")
+    one.sampled.deviation = 1.4 * one.total.deviation
+    found.samples = 200
+    assert "bending 1" in [told.quantity for told in acting(found, [one])]
+    assert "there samples hold, not s" in budget_table(found, ["bending 1"]).note
+
+
+def test_a_bearing_that_its_file_calls_assumed_has_a_range():
+    opened = open_inputs(sg.load("geometry/intermediate_shaft.toml"))
+    assert [(one.path, one.low, one.high) for one in opened] == [
+        ("bearing.A.stiffness", 0.5, 2.0),
+        ("bearing.B.stiffness", 0.5, 2.0),
+    ]
+
+
+def test_a_mode_is_followed_through_its_neighbours(gearbox):
+    # axial 1 and bending 1 pass each other where the load is small: by name, one would end there
+    axial = gearbox.of("axial 1").total
+    assert -0.25 < axial.low < -0.1 and axial.high < 0.05
+
+
+def test_a_scene_that_states_all_of_its_data_prints_as_without_ranges():
+    scene = sg.load(STEPPED)
+    assert open_inputs(scene) == () and beside(scene).inputs == []
+    with pytest.raises(sg.SolidgearError, match="no input is open"):
+        budget(scene)
+    assert "uncertain" not in scene.as_dict()
+
+
+@pytest.mark.parametrize(
+    "path, text, sentence",
+    [
+        ("material.E", "300 GPa : 400 GPa", "that holds what the scene says"),
+        ("material.E", "3 %", "must be two ends"),
+        ("bearing.A.stiffness", "1 : 2", "no entry with a value here"),
+        ("bearing.B.catalogue.preload", "100 um : 1 N", "preload"),
+        ("segment.left.length", "± 1 %", "a range may have"),
+    ],
+)
+def test_a_range_that_is_none_is_refused_by_its_path(path, text, sentence):
+    with pytest.raises(sg.SceneError, match=sentence) as refused:
+        stated(sg.load(GEARBOX), {path: text})
+    assert path in str(refused.value)
+
+
+def test_ranges_stand_in_the_column_of_the_bar_on_page_one(gearbox):
+    record = Record.model_validate(
+        {
+            "open": gearbox.model_dump(),
+            "models": {"harmonic": {"modes": [{"name": "bending 1", "frequency_hz": 1574.6}]}},
+        }
+    )
+    (row,) = numbers(record, ENGINEERING).rows
+    assert row[2] == "no bar\nbearings -10 / +12 %\nload -39 / +3.2 %\nin all -55 / +15 %"
+    assert dict(parts(record.open, "bending 1"))["in all"] == "-55 / +15 %"
+
+
+def test_a_range_is_told_to_the_figures_it_has():
+    told = [
+        interval(IntervalRecord(low=a, high=b)) for a, b in ((-0.015, 0.015), (0, 0.024), (0, 0))
+    ]
+    assert told == ["± 1.5 %", "0 / +2.4 %", "0"]
+
+
+def test_the_commands_tell_ranges(tmp_path):
+    chart, scene = tmp_path / "budget.png", "geometry/intermediate_shaft.toml"
+    done = command("budget", scene, "--ask", "bending", "--out", chart)
+    assert done.exit_code == 0, done.output
+    assert "bearing.A.stiffness" in done.output and chart.stat().st_size > 10_000
