@@ -89,7 +89,7 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/machine.md", "guide/large.md", "guide/points.md"}
+SECONDS = {"guide/compare.md", "guide/large.md", "guide/points.md"}
 
 
 @pytest.mark.parametrize(

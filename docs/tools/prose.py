@@ -16,7 +16,7 @@ GENERATED = {"docs/gallery.md", "docs/validation/scoreboard.md", "docs/validatio
 EXEMPT = ("docs/theory/", "docs/validation/")
 PARAGRAPH, SENTENCE, RUN = 120, 35, 12
 #: words of the pages that are not exempt: the longest page, and all of them
-PAGE, TOTAL = 1000, 11500
+PAGE, TOTAL = 1000, 13000
 #: what docs/glossary.md has another word for
 BANNED = {
     r"\bFE model": "model",
