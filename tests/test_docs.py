@@ -24,6 +24,7 @@ sys.path.insert(0, str(DOCS / "tools"))
 import build  # noqa: E402
 import console  # noqa: E402
 import gallery  # noqa: E402
+import prose  # noqa: E402
 import stability  # noqa: E402
 
 MADE = ("written",)
@@ -88,7 +89,7 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/machine.md", "guide/large.md", "guide/points.md"}
+SECONDS = {"guide/compare.md", "guide/large.md", "guide/points.md"}
 
 
 @pytest.mark.parametrize(
@@ -251,3 +252,33 @@ def test_the_site_builds_without_a_warning_and_without_a_broken_link(tmp_path):
 def test_pages_and_pictures_stay_small():
     size = sum(p.stat().st_size for p in DOCS.rglob("*") if p.is_file())
     assert size < 3e6
+
+
+def test_pages_are_within_their_limits():
+    assert prose.faults(prose.hand_written()) == []
+
+
+LONG_SENTENCE = "A shaft " + "is long and " * 12 + "ends."
+
+
+@pytest.mark.parametrize(
+    "text, rule",
+    [
+        ("It is short. " * 41, "paragraph"),
+        (LONG_SENTENCE, "more than 35"),
+        (f"| a | {LONG_SENTENCE} |", "more than 35"),
+        ("Its eigenfrequency is high.", "natural frequency"),
+        ("\n\n".join(["No run of twelve words may stand on any page more than once."] * 2), "too"),
+        ("\n\n".join(f"Word {k} of many." for k in range(prose.PAGE // 4 + 1)), "page"),
+        ("\n\n".join(f"Word {k} of many." for k in range(prose.TOTAL // 4 + 1)), "all pages"),
+    ],
+    ids=["paragraph", "sentence", "cell", "glossary", "twice", "page", "total"],
+)
+def test_prose_beyond_a_limit_is_told_with_its_place(text, rule):
+    told = prose.faults({"page.md": f"# Page\n\n{text}\n"})
+    assert [t for t in told if rule in t or (rule == "page" and t.startswith("page.md:1:"))]
+
+
+def test_code_is_no_prose():
+    page = f"```sh\n{LONG_SENTENCE}\n```\n\n`{LONG_SENTENCE}` runs.\n"
+    assert prose.faults({"page.md": page}) == [] and prose.size("page.md", page) == 2

@@ -31,16 +31,16 @@ def tutorial_scene() -> str:
 
 
 def small(source: Path, name: str) -> None:
-    """A picture at the size of the page, in 64 colours."""
+    """A picture at the size of the page; a mode in all its colours, for steps look like facets."""
     from PIL import Image
 
     with Image.open(source) as picture:
         width = WIDTHS[name]
         height = round(picture.height * width / picture.width)
         scaled = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
-        scaled.quantize(256 if name == "turning" else 64).save(
-            PICTURES / f"{name}.png", optimize=True
-        )
+        if name != "mode":
+            scaled = scaled.quantize(256 if name == "turning" else 64)
+        scaled.save(PICTURES / f"{name}.png", optimize=True)
 
 
 def turning(page: Path, target: Path) -> None:

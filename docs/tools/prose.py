@@ -1,0 +1,159 @@
+"""Prose of README and documentation held to its limits: `python docs/tools/prose.py`.
+
+Prose and tables count as words; code, consoles, directives and formulas do not.
+"""
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+#: made by a program from something else that is checked
+GENERATED = {"docs/gallery.md", "docs/validation/scoreboard.md", "docs/validation/stability.md"}
+#: not yet brought below the limits
+EXEMPT = ("docs/theory/", "docs/validation/")
+PARAGRAPH, SENTENCE, RUN = 120, 35, 12
+#: words of the pages that are not exempt: the longest page, and all of them
+PAGE, TOTAL = 1000, 13000
+#: what docs/glossary.md has another word for
+BANNED = {
+    r"\bFE model": "model",
+    r"\bconfidence (?:band|interval)": "error bar",
+    r"\berror bands?\b": "error bar",
+    r"\buncertainty bands?\b": "error bar",
+    r"\bspoke model": "sector",
+    r"\b(?:eigenfrequency|eigenfrequencies)\b": "natural frequency",
+    r"\bgear ?shafts? assembl\w+": "train",
+    r"\bsubstructures?\b": "superelement",
+    r"\breference point of the gear": "lumped point",
+    r"\bmultipoint constraint": "attachment",
+    r"\bgrounded springs?\b": "bearing",
+}
+
+
+class Piece(NamedTuple):
+    """Prose that belongs together: a paragraph, an item of a list, or a cell of a table."""
+
+    line: int
+    text: str
+    cell: bool
+
+
+def plain(text: str) -> str:
+    """Text as it is read: links by their words, pictures left out, code as one word."""
+    text = re.sub(r"!\[[^\]]*\]\([^)]*\)", " ", text)
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text)
+    text = re.sub(r"`[^`]*`", "`code`", text)
+    return re.sub(r"\$[^$]+\$", "`code`", text)
+
+
+def pieces(text: str) -> Iterator[Piece]:
+    """Paragraphs, items and cells of a page, each with its first line."""
+    fence, start, held = "", 0, list[str]()
+    for number, line in enumerate([*text.splitlines(), ""], 1):
+        mark = re.match(r"\s*(```+|:::+|\$\$)", line)
+        inside = bool(fence)
+        if mark and (not fence or line.strip() == fence):
+            fence = "" if fence else mark[1]
+        table = line.lstrip().startswith("|")
+        heading = line.startswith("#")
+        item = re.match(r"\s*(?:[-*]|\d+\.) ", line)
+        out = inside or mark or table or heading or line.startswith("    ") or not line.strip()
+        if held and (out or item):
+            yield Piece(start, plain(" ".join(held)), False)
+            held = []
+        if not out:
+            start = start if held else number
+            held.append(line.strip())
+        elif (table or heading) and not inside:
+            for cell in re.split(r"(?<!\\)\|", line.strip("# ")):
+                if cell.strip(" -:"):
+                    yield Piece(number, plain(cell.strip()), True)
+
+
+def words(text: str) -> list[str]:
+    """Words of prose."""
+    return [w for w in re.findall(r"[^\s]+", text) if re.search(r"\w", w)]
+
+
+def sentences(text: str) -> list[str]:
+    """Sentences of a piece; a colon or a semicolon ends none."""
+    return re.split(r"(?<=[.!?])[*)\"]*\s+(?=[*`\"(\[]*[A-Z0-9`])", text)
+
+
+def length(page: str, text: str) -> Iterator[str]:
+    """Paragraphs and sentences that are too long."""
+    for piece in pieces(text):
+        count = len(words(piece.text))
+        if count > PARAGRAPH:
+            yield f"{page}:{piece.line}: a paragraph of {count} words, more than {PARAGRAPH}"
+        for one in sentences(piece.text):
+            count = len(words(one))
+            if count > SENTENCE:
+                told = " ".join(words(one)[:6])
+                yield f"{page}:{piece.line}: {count} words, more than {SENTENCE}: {told} ..."
+
+
+def banned(page: str, text: str) -> Iterator[str]:
+    """Words for which the glossary has another one."""
+    for piece in pieces(text):
+        for pattern, better in BANNED.items():
+            if found := re.search(pattern, piece.text, re.I):
+                yield f"{page}:{piece.line}: {found[0]!r}, in the glossary {better!r}"
+
+
+def twice(pages: dict[str, str]) -> Iterator[str]:
+    """Runs of words that stand in more than one place."""
+    seen: dict[tuple[str, ...], tuple[str, int]] = {}
+    for page, text in pages.items():
+        for piece in pieces(text):
+            run = [w.strip(".,;:()*\"'").lower() for w in words(piece.text)]
+            told = False
+            for k in range(len(run) - RUN + 1):
+                key = tuple(run[k : k + RUN])
+                first = seen.setdefault(key, (page, piece.line))
+                if first != (page, piece.line) and not told:
+                    told = True
+                    where = f"{first[0]}:{first[1]}"
+                    yield f"{page}:{piece.line}: stands in {where} too: {' '.join(key)}"
+
+
+def size(page: str, text: str) -> int:
+    """Words of a page that count."""
+    return sum(len(words(piece.text)) for piece in pieces(text))
+
+
+def faults(pages: dict[str, str]) -> list[str]:
+    """Everything that is out of its limits, as file:line and the rule."""
+    found = [told for page, text in pages.items() for told in length(page, text)]
+    found += [told for page, text in pages.items() for told in banned(page, text)]
+    found += twice(pages)
+    sizes = {page: size(page, text) for page, text in pages.items()}
+    found += [f"{p}:1: {n} words, more than {PAGE}" for p, n in sizes.items() if n > PAGE]
+    if sum(sizes.values()) > TOTAL:
+        found.append(f"all pages: {sum(sizes.values())} words, more than {TOTAL}")
+    return found
+
+
+def hand_written() -> dict[str, str]:
+    """Pages that somebody writes, by their path."""
+    paths = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    names = {p.relative_to(ROOT).as_posix(): p for p in paths if "written" not in p.parts}
+    return {
+        name: path.read_text(encoding="utf-8")
+        for name, path in names.items()
+        if name not in GENERATED and not name.startswith(EXEMPT)
+    }
+
+
+if __name__ == "__main__":
+    pages = hand_written()
+    if "--sizes" in sys.argv:
+        for page, text in pages.items():
+            print(f"{size(page, text):6} {page}")
+        print(f"{sum(size(p, t) for p, t in pages.items()):6} in all")
+    told = faults(pages)
+    print("\n".join(told))
+    sys.exit(bool(told))
