@@ -166,7 +166,7 @@ def lives_at_rating(text, share):
     """
     found = []
     for name, dynamic, static in bearings(text):
-        data = Catalogue(designation=name, load_rating=dynamic, static_rating=static)
+        data = Catalogue(designation=name, load_rating=dynamic, static_rating=static, holds="+y")
         made = catalogued(data)
         capacity = raceways(made.inside, dynamic)
         lives = []
@@ -207,7 +207,7 @@ def test_estimated_insides_have_the_other_rating_of_their_catalogue(text, median
     # worst are the smallest, of which makers tell less than ISO 76 would allow
     off = []
     for name, dynamic, static in bearings(text):
-        data = Catalogue(designation=name, load_rating=dynamic, static_rating=static)
+        data = Catalogue(designation=name, load_rating=dynamic, static_rating=static, holds="+y")
         inside = inner_geometry(data).middle
         own = static_ball_rating(inside) / static if data.balls else rated(data, inside) / dynamic
         off.append(abs(own - 1))
@@ -226,7 +226,7 @@ def test_static_factor_is_that_of_iso_76():
 def angular(degrees, **more):
     data = Catalogue(
         kind="angular_contact", bore=0.04, outer_diameter=0.08, width=0.018,
-        contact_angle=math.radians(degrees), **more,
+        contact_angle=math.radians(degrees), holds="+y", **more,
     )  # fmt: skip
     return data, inner_geometry(data).middle
 

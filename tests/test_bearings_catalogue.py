@@ -57,7 +57,7 @@ def test_static_and_dynamic_rating_of_rollers_agree():
         ("32018", 168e3, 270e3),
         ("32318", 457e3, 610e3),
     ):
-        found = inner_geometry(Catalogue(designation=name, static_rating=static))
+        found = inner_geometry(Catalogue(designation=name, static_rating=static, holds="+y"))
         assert roller_rating(found.middle) == pytest.approx(dynamic, rel=0.05), name
 
 
@@ -73,7 +73,7 @@ def test_nothing_is_estimated_where_all_is_given():
     [
         {"designation": "6208", "load": {"z": 3000.0}},
         {"designation": "NU 208", "load": {"z": 3000.0}, "static_rating": "53 kN"},
-        {"designation": "32018", "load": {"y": 9000.0}},
+        {"designation": "32018", "holds": "+y", "load": {"y": 9000.0}},
     ],
 )
 def test_the_spread_holds_the_middle(data):
@@ -192,7 +192,7 @@ def test_needle_of_the_reducer():
 
 @pytest.mark.parametrize("kind", get_args(Kind))
 def test_every_kind_carries_load_and_is_rated_by_its_boundary_dimensions_alone(kind):
-    size = {"kind": kind, "bore": 0.04, "outer_diameter": 0.08, "width": 0.018}
+    size = {"kind": kind, "bore": 0.04, "outer_diameter": 0.08, "width": 0.018, "holds": "+y"}
     along = 2e3 if Catalogue(**size).angled else 0.0
     data = Catalogue(**size, load={"y": along, "z": 2e3})
     made = catalogued(data)
@@ -204,18 +204,20 @@ def test_every_kind_carries_load_and_is_rated_by_its_boundary_dimensions_alone(k
     assert 15e3 < found.dynamic < 150e3 and 0.5 < found.static / found.dynamic < 2.0
 
 
+ONE_WAY = {"designation": "7208 B", "holds": "+y"}
 BAD = (
     ({"designation": "6208", "contact_angle": "15 deg"}, "no contact angle of its own"),
     ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
     ({"designation": "6208", "conformity": 0.49}, "above 0.5"),
     ({"designation": "hurz"}, "not understood"),
     (BACK_TO_BACK | {"preload": "90 kN", "static_rating": "20 kN"}, "beyond the static rating"),
-    ({"designation": "7208 B", "load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
+    (ONE_WAY | {"load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
     ({"designation": "6206", "load_rating": "195 kN"}, "has a rating of"),
     ({"designation": "6208", "preload": "10 N"}, "not preloaded along y"),
     ({"designation": "NU 206", "speed": "3000 rpm"}, "belongs to balls"),
-    ({"designation": "7208 B", "preload_spring": "1e6 N/m"}, "needs arrangement"),
-    ({"designation": "7208 B", "clearance": "C3"}, "no clearance class"),
+    ({"designation": "7208 B"}, r'write holds = "\+y" if this'),
+    (ONE_WAY | {"preload_spring": "1e6 N/m"}, "needs arrangement"),
+    (ONE_WAY | {"clearance": "C3"}, "no clearance class"),
     ({"kind": "tapered", "bore": 0.05, "outer_diameter": 0.04, "width": 0.02}, "larger than the bore"),
 )  # fmt: skip
 

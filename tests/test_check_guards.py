@@ -16,6 +16,7 @@ import solidgear as sg
 from solidgear.judge.study import study
 from solidgear.ladder.registry import LADDER
 from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
+from solidgear.scene.catalogue import Catalogue
 from solidgear.studies import check, guards
 from solidgear.studies.check import cautions, check_scene, notices
 from solidgear.studies.guards import GUARDS, Notice, elements, models
@@ -36,6 +37,19 @@ def stiff(**entries) -> np.ndarray:
     """A bearing's 6x6: sound by default, with entries of its diagonal replaced."""
     base = {"x": 1e9, "y": 5e8, "z": 1e9, "thx": 2e6, "thy": 0.0, "thz": 2e6}
     return np.diag([(base | entries)[name] for name in base])
+
+
+def angular(*ways: str) -> Scene:
+    """The stout head on single rows with a contact angle, and the way in which each holds."""
+    rows = [
+        b.with_changes(
+            catalogue=Catalogue(
+                designation="7320 B", load_rating="190 kN", holds=way, preload="2 kN"
+            ),
+        )
+        for b, way in zip(scene().bearings, ways)
+    ]
+    return scene().with_changes(bearings=tuple(rows))
 
 
 def coupled(share: float) -> np.ndarray:
@@ -229,6 +243,12 @@ CASES = {
         "taken as free",
         scene(matrices=[coupled(1.0), stiff()]),
         scene(matrices=[coupled(1 - 1e-09), stiff()]),
+    ),
+    "rows that face one way": Case(
+        "one_way",
+        "all hold the shaft towards +y",
+        angular("+y", "+y"),
+        angular("+y", "-y"),
     ),
     "pair split": Case(
         "split_pair",

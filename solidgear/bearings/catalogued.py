@@ -96,7 +96,7 @@ def catalogued(
 
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
     """Rows at their places along y, each turned by half a pitch against the one before."""
-    first = 1 if data.holds == "+y" else -1
+    first = -1 if data.holds == "-y" else 1
     if data.arrangement == "single":
         return [_row(data, inside, clearance, first, 0.0, 0.0)]
     distance = data.row_distance or data.width * (0.5 if data.arrangement == "double_row" else 1.0)

@@ -174,7 +174,8 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
     --------
     >>> from solidgear.bearings.geometry import inner_geometry
     >>> from solidgear.scene.catalogue import Catalogue
-    >>> data = Catalogue(designation="7208 B", arrangement="tandem", load_rating="32.1 kN")
+    >>> data = Catalogue(designation="7208 B", arrangement="tandem", holds="+y",
+    ...                  load_rating="32.1 kN")
     >>> found = ratings(data, inner_geometry(data).middle)
     >>> round(found.dynamic / 32.1e3, 3), found.sources["C"], found.sources["Cu"]
     (1.625, 'catalogue, of two bearings by ISO 281', 'C0 / 22 (ISO 281, B.3.3)')

@@ -186,8 +186,9 @@ class Catalogue(Model):
         back_to_back or face_to_face.
     row_distance : float or None
         Of the rows' middles, m; the width where not given.
-    holds : {'+y', '-y'}
-        Which way single rows and tandems with a contact angle hold the shaft.
+    holds : {'+y', '-y'} or None
+        Direction in which single rows and tandems with a contact angle keep the shaft from moving;
+        these have to tell it, as their mounting decides it.
     clearance : float or str
         Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
     shaft_interference, housing_interference : float
@@ -235,7 +236,7 @@ class Catalogue(Model):
     profile: Literal["logarithmic", "straight"] = "logarithmic"
     arrangement: Arrangement = "single"
     row_distance: PositiveLength | None = None
-    holds: Literal["+y", "-y"] = "+y"
+    holds: Literal["+y", "-y"] | None = None
     clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
     shaft_interference: Length = 0.0
     housing_interference: Length = 0.0

@@ -50,6 +50,12 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
             f"two rows of {what} bearings are back_to_back, face_to_face or tandem",
             path=("arrangement",),
         )
+    if data.one_sided and data.holds is None:
+        yield SceneError(
+            f"{data.arrangement} {what} bearings hold the shaft in one direction only: "
+            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y"',
+            path=("holds",),
+        )
     for key, wanted in (("conformity", True), ("element_length", False), ("speed", True)):
         if getattr(data, key) and data.balls is not wanted:
             owner = "balls" if wanted else "rollers"

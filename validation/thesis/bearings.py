@@ -165,7 +165,7 @@ def possible(demands: dict[str, Demand]) -> str:
 def real_stiffness(designation: str, share: float) -> np.ndarray:
     """(6, 6) of a real bearing preloaded to a share of its static rating."""
     dynamic, static = REAL[designation]
-    data = Catalogue(designation=designation, load_rating=dynamic, static_rating=static)
+    data = Catalogue(designation=designation, load_rating=dynamic, static_rating=static, holds="+y")
     angle = catalogued(data).inside.angle
     force = share * static * math.tan(angle) / 0.22
     made = catalogued(data.with_changes(preload=f"{force!r} N"))

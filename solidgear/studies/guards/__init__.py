@@ -23,6 +23,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         data.doubtful_data,
         data.free_motions,
         data.oblique_softness,
+        data.one_way,
         data.split_pair,
         models.beam_against_solid,
         models.slenderness,

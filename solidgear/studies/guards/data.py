@@ -131,6 +131,31 @@ def oblique_softness(probe: Probe) -> Notices:
             )
 
 
+def one_way(probe: Probe) -> Notices:
+    """Bearings with a contact angle that all hold the shaft in the same direction along y."""
+    rows = [b for b in probe.scene.bearings if b.catalogue and b.catalogue.one_sided]
+    ways = {b.catalogue.holds for b in rows if b.catalogue}
+    held_otherwise = any(
+        b.catalogue.opposed or b.catalogue.kind == "deep_groove"
+        if b.catalogue
+        else b.stiffness[1, 1]
+        for b in probe.scene.bearings
+    )
+    if len(rows) > 1 and len(ways) == 1:
+        way = ways.pop()
+        alone = (
+            "only other bearings hold it the other way, and feel all their preload"
+            if held_otherwise
+            else "nothing holds it the other way"
+        )
+        yield Notice(
+            "caution",
+            (),
+            f"the bearings {listed([repr(b.name) for b in rows])} all hold the shaft towards {way}: "
+            f'{alone}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"',
+        )
+
+
 def split_pair(probe: Probe) -> Notices:
     """A bending pair that the bearings split."""
     split = probe.split
