@@ -38,6 +38,7 @@ HEAD = """# Where methods fail
 Every method was driven to its edge: what fails, where it was measured to fail, and what the program does about it. `python -m validation.stability` measures all, `python -m validation.stability.NAME` one, and `docs/tools/stability.py` makes the page.
 """
 
+
 def titles() -> dict[str, tuple[str, str]]:
     """Folder of a finding -> its method and the test that guards it, from the report of a run."""
     report = (RESULTS / "report.md").read_text()
@@ -48,6 +49,7 @@ def titles() -> dict[str, tuple[str, str]]:
         guard = re.search(r"Guard held by `(.+?)`", part)
         out[name] = (method[1] if method else name, guard[1] if guard else "")
     return out
+
 
 def sections(known: dict[str, tuple[str, str]]) -> list[str]:
     """The page, line by line."""
@@ -66,6 +68,7 @@ def sections(known: dict[str, tuple[str, str]]) -> list[str]:
                 lines.append(f"Held by the test `{guard}`.\n")
     return lines
 
+
 def shrink(names: list[str]) -> None:
     """Charts at the width of the page, in few colours."""
     from PIL import Image
@@ -77,6 +80,7 @@ def shrink(names: list[str]) -> None:
             small = chart.convert("RGB").resize((WIDTH, height), Image.Resampling.LANCZOS)
             small.quantize(32).save(PICTURES / f"{name}.png", optimize=True)
 
+
 def main() -> int:
     """Write the page, or say what is missing."""
     names = [name for chapter in CHAPTERS.values() for name in chapter]
@@ -87,6 +91,7 @@ def main() -> int:
     PAGE.write_text("\n".join(sections(titles())).rstrip() + "\n")
     shrink(names)
     return 0
+
 
 if __name__ == "__main__":
     sys.exit(main())
