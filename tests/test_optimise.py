@@ -14,7 +14,7 @@ from solidgear.cli.app import app
 from solidgear.studies.wishes import Wish, limit_of, wish_of
 
 SHAFT = "geometry/shaft_stepped.toml"
-#: stiffness of a cantilevered point has its largest value inside this range
+#: the tilt compliance of the middle has its least value inside this range
 SPAN = "bearing.B.position=-75 mm:-20 mm"
 
 
@@ -23,21 +23,26 @@ BEAM = {"model": "timoshenko"}
 
 @pytest.fixture(scope="module")
 def span():
-    return sg.optimise(SHAFT, [SPAN], "min C_zz", **BEAM)
+    return sg.optimise(SHAFT, [SPAN], "min C_thx", **BEAM)
 
 
 def test_the_best_of_a_span_is_that_of_a_grid(span):
-    grid = sg.sweep(SHAFT, "bearing.B.position=-75 mm:-20 mm:80", model="timoshenko", n=1)
-    assert span.best.value <= grid["C_zz"].min() * (1 + 1e-3)
-    # a tenth of its solutions, and of its time
-    assert len(span.path) <= 16
+    grid = sg.sweep(SHAFT, "bearing.B.position=-75 mm:-20 mm:56", model="timoshenko", n=1)
+    # the least is flat: within a hundredth of the range it changes by less than this
+    assert span.best.value == pytest.approx(grid["C_thx"].min(), rel=2e-4)
+    assert len(span.path) <= 12
     assert "no error bars" in span.sentences[1]
 
 
 def test_an_optimum_inside_a_range_is_found_and_one_at_its_end_is_told(span):
-    assert not span.at_end or span.best.values["bearing.B.position"] in (-0.075, -0.02)
+    assert span.at_end == () and -0.075 < span.best.values["bearing.B.position"] < -0.02
     found = sg.optimise(SHAFT, ["segment.middle.diameter=70 mm:90 mm"], "min C_zz", **BEAM)
     assert found.best.values["segment.middle.diameter"] == 0.09
+    # also where that is the file, and not where the file lies outside of the range
+    as_it_is = sg.optimise(SHAFT, ["segment.middle.diameter=70 mm:80 mm"], "min C_zz", **BEAM)
+    assert as_it_is.best.number == 0 and as_it_is.at_end == ("segment.middle.diameter",)
+    outside = sg.optimise(SHAFT, ["segment.middle.diameter=60 mm:70 mm"], "min C_zz", **BEAM)
+    assert outside.best.values["segment.middle.diameter"] == 0.07
     assert found.at_end == ("segment.middle.diameter",)
     assert any("at the end of its range" in sentence for sentence in found.sentences)
 
@@ -87,7 +92,7 @@ def test_words_of_goals_and_limits():
         (["segment.left.diameter=40 mm:40 mm"], "max f1", [], "both ends are the same"),
         (["segment.left.diamter=40 mm:50 mm"], "max f1", [], "diamter"),
         ([SPAN], "bending 1", [], "max NUMBER"),
-        ([SPAN], "max bnding 1", [], "have no bnding 1.*bending 1"),
+        ([SPAN], "max bnding 1", [], "has no bnding 1.*bending 1"),
         ([SPAN], "max f1", ["C_zz = 5"], "NUMBER < VALUE"),
         ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is no unit"),
     ],

@@ -13,6 +13,7 @@ import math
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from solidgear.studies.sweep.scene_variants import STATICS, SceneTask, SceneVari
 from solidgear.studies.wishes import Wish, limit_of, plain_number, wish_of
 
 #: designs that are solved at most, with the file as it is: a few for one entry, more for each other
-MOST, MORE = 16, 12
+MOST, MORE = 12, 12
 #: of a range: how near two designs are one, and how near to its end an optimum is at the end
 SAME, AT_END = 0.01, 0.01
 #: natural frequencies that a goal may be of
@@ -132,22 +133,17 @@ class _Search:
 
     def run(self) -> Optimum:
         """Search from the file as it is."""
-        first = self._of_file()
-        if first.status == "ok" and first.value is None:
-            has = [
-                *map(str, STATICS),
-                "mass",
-                *(v for k, v in first.row.items() if k[:4] == "mode"),
-            ]
-            raise SolidgearError(
-                f"--goal {self.goal}: designs have no {self.goal.name}"
-                f"{nearest(self.goal.name, has)}; they have {', '.join(has)}"
-            )
+        self._of_file()
         if len(self.entries) == 1 and not self.keep:
             self._scalar()
         else:
             self._trust_region(np.nan_to_num(self.places[0], nan=0.5))
-        sound = [one for one in self.designs if one.kept and one.value is not None]
+        sound = [
+            one
+            for one, place in zip(self.designs, self.places)
+            # the file as it is may lie outside of the ranges
+            if one.kept and one.value is not None and np.all(np.isfinite(place))
+        ]
         best = min(sound, key=self._loss, default=None)
         return Optimum(
             self.title, self.goal, self.keep, tuple(self.designs), best, self._at_end(best)
@@ -212,11 +208,21 @@ class _Search:
         row = self.task.rows([0])[0]
         told = self.goal.of(row)
         kept = row["status"] == "ok" and all(wish.missing(row) <= 0 for wish in self.keep)
+        if row["status"] == "ok" and told is None:
+            self._refuse_goal(row)
         value, bar = told or (None, None)
         one = Design(number, self.variants.told(0), value, bar, kept, row["status"], row)
         self.designs.append(one)
         self.places.append(place.copy())
         return one
+
+    def _refuse_goal(self, row: dict[str, Any]) -> None:
+        named = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
+        has = [*map(str, STATICS), "mass", *named]
+        raise SolidgearError(
+            f"--goal {self.goal}: a design has no {self.goal.name}{nearest(self.goal.name, has)}; "
+            f"it has {', '.join(has)}"
+        )
 
     def _of_file(self) -> Design:
         """The file as it is, at its place in the ranges as far as it is in them."""
@@ -238,7 +244,7 @@ class _Search:
         return np.array(out)
 
     def _at_end(self, best: Design | None) -> tuple[str, ...]:
-        if best is None or best.number == 0:
+        if best is None:
             return ()
         place = self.places[best.number]
         return tuple(entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) < AT_END)

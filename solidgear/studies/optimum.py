@@ -108,6 +108,9 @@ def _sentences(found: Optimum) -> Iterator[str]:
     best, gain = found.best, found.gain
     solved = sum(one.status == "ok" for one in found.path)
     limits = ", ".join(map(str, found.keep))
+    if not solved:
+        yield f"No design could be solved; the file as it is: {found.path[0].status}."
+        return
     if best is None:
         yield f"No design of {solved} keeps {limits}, error bars included."
         yield from _nearest_miss(found)
@@ -116,7 +119,7 @@ def _sentences(found: Optimum) -> Iterator[str]:
     told = _with_bar(best.value, best.bar)
     yield f"{found.goal}: {told} (SI) at {values}; {solved} designs solved."
     if best.number == 0:
-        yield "No design is better than the file as it is."
+        yield "No design is better than the file as it is, as far as the error bars tell."
     elif gain is not None:
         file = f"the file as it is, {_with_bar(gain.a, gain.bar_a)}"
         if not found.path[0].kept:
@@ -162,5 +165,3 @@ def _nearest_miss(found: Optimum) -> Iterator[str]:
         short, one = min(misses, key=lambda pair: pair[0])
         values = ", ".join(f"{label} = {value:.6g}" for label, value in one.values.items())
         yield f"The nearest misses by {100 * short:.3g} % of the limit, at {values} (SI)."
-    elif found.path:
-        yield f"No design could be solved; the file as it is: {found.path[0].status}."
