@@ -17,6 +17,7 @@ What there is, each with an example in its help:
     scenes       load, Scene, Segment, Bearing, Port, PointMass, Housing, Lubrication, Material,
                  STEEL, Ask
     questions    answer, compare, condense, modes, shaft_stress, turn
+    studies      sweep, sensitivities, optimise, budget
     bodies       build, Body, Supports
     trains       load_train, Train
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,

@@ -117,7 +117,9 @@ def test_every_chart_of_values_is_read_and_the_narrow_drawing_says_what_the_wide
     made_up_charts,
 ):
     """All of the report but the drawing of the shaft, and with the numbers of the run."""
-    drawn = {name: made_up_charts.svg[name].decode() for name in CHARTS}
+    # the run leaves nothing open, and has no chart of that
+    named = [name for name in CHARTS if name != "budget"]
+    drawn = {name: made_up_charts.svg[name].decode() for name in named}
     for name, svg in drawn.items():
         wide, narrow = re.findall(r"<svg.*?</svg>", svg, re.S)
         assert bool(words_of(wide)) == (name != "sketch")

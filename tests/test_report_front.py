@@ -206,8 +206,8 @@ def test_without_trust_page_one_says_so():
 def test_no_section_is_empty_and_the_contents_name_all_that_are_there():
     page = render_page(fixture_results())
     there = re.findall(r'<h2 id="([^"]+)">', page)
-    # one point, no pictures, no chart of speed, and no synthesis asked for
-    empty = ("points", "shapes", "between", "renders", "speed", "lumped")
+    # one point, no open input, no pictures, no chart of speed, and no synthesis asked for
+    empty = ("points", "open", "shapes", "between", "renders", "speed", "lumped")
     assert there == [anchor for anchor in (*CUSTOMER, *APPENDIX) if anchor not in empty]
     assert re.findall(r'<a href="#([^"]+)">', page) == there
     assert "not available" not in page

@@ -275,7 +275,11 @@ def test_a_variant_without_equilibrium_is_refused_as_well(tmp_path):
     path = by_hand(
         tmp_path,
         GEARBOX,
-        ("gearbox_catalogue.toml", 'arrangement = "back_to_back"', 'arrangement = "single"'),
+        (
+            "gearbox_catalogue.toml",
+            'arrangement = "back_to_back"',
+            'arrangement = "single"\nholds = "+y"',
+        ),
     )
     vary = ["operation.full.torque=100 N*m,-100 N*m"]
     _, rows = swept(path, vary, tmp_path / "rows.csv", ask=AT_REST)

@@ -324,7 +324,7 @@ MUTATIONS = (
     Mutation(
         "sign of the tilt in the x plane",
         "solidgear/models/beam/body.py",
-        "beam",
+        "on_nodes",
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))',
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, 1.0))',
         "tests/test_ports.py::test_ports_follow_rigid_motions",

@@ -12,11 +12,9 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 #: made by a program from something else that is checked
 GENERATED = {"docs/gallery.md", "docs/validation/scoreboard.md", "docs/validation/stability.md"}
-#: not yet brought below the limits
-EXEMPT = ("docs/theory/", "docs/validation/")
 PARAGRAPH, SENTENCE, RUN = 120, 35, 12
-#: words of the pages that are not exempt: the longest page, and all of them
-PAGE, TOTAL = 1000, 13000
+#: words of the longest page, and of all of them
+PAGE, TOTAL = 1050, 24000
 #: what docs/glossary.md has another word for
 BANNED = {
     r"\bFE model": "model",
@@ -144,7 +142,7 @@ def hand_written() -> dict[str, str]:
     return {
         name: path.read_text(encoding="utf-8")
         for name, path in names.items()
-        if name not in GENERATED and not name.startswith(EXEMPT)
+        if name not in GENERATED
     }
 
 

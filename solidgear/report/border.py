@@ -33,7 +33,7 @@ def as_record(found: Record | Mapping[str, Any], name: str = "the results") -> R
     >>> as_record({"schema": 2}, "out/results.json")
     Traceback (most recent call last):
     solidgear.errors.SolidgearError: out/results.json: written by an older version of solidgear \
-(layout 2; this version reads 3); run solidgear compare again
+(layout 2; this version reads 4); run solidgear compare again
     """
     if isinstance(found, Record):
         return found
