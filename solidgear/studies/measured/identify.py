@@ -29,6 +29,8 @@ from solidgear.studies.sweep.entries import in_si
 Progress = Callable[[str], None]
 #: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none
 ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
+#: rounds in which pairs count from a lower probability on
+EARLY, LIKELY = 2, 0.5
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
 UNDETERMINED = math.log(2.0)
 #: of the logarithm of entries, along what is not told where it begins
@@ -146,7 +148,8 @@ class _Study:
             else:
                 self.progress(f"round {turn + 1}")
                 computed = computed_like(computed, scene)
-            fit = _Fit(self, computed)
+            # far from the data pairs are doubtful, and the likelier half of them leads there
+            fit = _Fit(self, computed, LIKELY if turn < EARLY else SURE)
             if turn == 0 and not fit.determined:
                 # where planes are alike to first order no frequency tells them apart; a little off it
                 # may
@@ -154,7 +157,7 @@ class _Study:
                 continue
             step = fit.step()
             self.x = self.x + step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
-            if abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
+            if turn >= EARLY and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
                 break
         else:
             raise SolidgearError(
@@ -247,12 +250,12 @@ class _Study:
 class _Fit:
     """A linear fit about one scene."""
 
-    def __init__(self, study: _Study, computed: Computed):
+    def __init__(self, study: _Study, computed: Computed, sure: float):
         self.study = study
         found = align(*peaks_of(study.measured, computed))
         likely = found.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
-        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= SURE]
+        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]
         unknowns = len(study.keys)
         if len(self.pairs) < unknowns:
             raise SolidgearError(
