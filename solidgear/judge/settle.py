@@ -239,15 +239,16 @@ def _settled_block(scene: Scene, tol: float, progress: Progress) -> Settled:
         found = modes(body, scene, scene.ask.modes)
         bars = {Quantity(name): bar for name, bar in nested_bars(scene, body, found).items()}
         largest = max(bars.values(), default=math.inf)
-        done = largest <= tol or refinement == NESTED[-1]
-        why = "" if largest <= tol else "no finer mesh is calibrated" if done else ""
+        reached = largest <= tol
+        done = reached or refinement == NESTED[-1]
+        why = "no finer mesh is calibrated" * (done and not reached)
         setting = mesh_words(options)
         steps.append(
             Step(MODEL, setting, True, why, largest, body.size, chosen=done, options=options)
         )
         if done:
             break
-    reached, point = largest <= tol, scene.port.name
+    point = scene.port.name
     return Settled(
         scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
     )

@@ -44,7 +44,7 @@ class BodyTable(Model):
 
     step: str | None = None
     mesh: str | None = None
-    block: Annotated[list[PositiveLength], Field(min_length=3, max_length=3)] | None = None
+    block: list[PositiveLength] | None = None
     unit: Unit | None = None
     axis: Axis = "y"
     origin: Origin = None
@@ -65,6 +65,8 @@ class BodyTable(Model):
             both = " or ".join(given)
             raise SceneError(f"give either {both}, not both", path=(given[-1],))
         if self.block is not None:
+            if len(self.block) != 3:
+                raise SceneError("give three edges, along x, y and z", path=("block",))
             for key in sorted(self.model_fields_set - {"block", "mass_check"}):
                 raise SceneError("this key is of a file, and a block has none", path=(key,))
         if self.mesh is not None and self.unit is None:

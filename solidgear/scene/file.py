@@ -202,7 +202,7 @@ class _Reading:
         housing = None
         if (given := file.housing) is not None:
             housing = self.problems.read(lambda: housing_of(given, place), ("housing",))
-        if not (file.port or "port" in self.spoilt):
+        if not (file.port or {"port", "body"} & self.spoilt):
             self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
