@@ -81,6 +81,8 @@ def test_models_of_shafts_refuse_a_block(block, model):
 
 
 def test_a_block_is_not_compared_and_has_no_stiffness(block):
+    with pytest.raises(sg.SolidgearError, match="modes alone"):
+        sg.answer(block, ask="f1")
     with pytest.raises(sg.SolidgearError, match="one model"):
         sg.compare(block)
     with pytest.raises(sg.SolidgearError, match="no seat"):

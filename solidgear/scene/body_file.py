@@ -87,8 +87,8 @@ class BodyTable(Model):
         return self.step if self.step is not None else str(self.mesh)
 
 
-#: what would hold a block, or be held by it
-_ATTACHED = ("bearing", "port", "mass", "housing", "load")
+#: what would hold a block or be held by it, and what is told by beams, which a block has not
+_ATTACHED = ("bearing", "port", "mass", "housing", "load", "lubrication", "uncertain")
 
 
 def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -100,7 +100,7 @@ def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
         return raw
     given = [key for key in _ATTACHED if key in raw]
     if given:
-        why = "a block is free, with no seat to attach this to; leave it out"
+        why = "a block is free, and has modes alone; leave this out"
         raise SceneError.of(SceneError(why, path=(key,)) for key in given)
     return {**raw, "port": {"at": "start", "attach_to": "s1", "attachment": "section"}}
 
