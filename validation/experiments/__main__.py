@@ -128,7 +128,7 @@ Dimensions are as their sources print them; of the steel cylinder a length 0.1 %
 
 Of the steel cylinder and of both blocks the lower half of the measured resonances was fitted. The {predicted} modes above the highest fitted one were predicted, with standard deviations, before any comparison: `validation/experiments/*_predicted.csv`.
 
-Resonances whose mode is not sure are left out: of the blocks {doubtful}, which lie closer to a neighbour than the scatter. Of a block nothing is assumed but its edges and density.
+Resonances whose mode is not sure are left out: of the blocks {doubtful}, whose neighbours lie too near to tell which is which. Of a block nothing is assumed but its edges and density.
 
 ## Beams beside the solid
 
