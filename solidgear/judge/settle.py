@@ -27,14 +27,16 @@ from solidgear.judge.answer import climbed, usable
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import at_points, between, in_order
-from solidgear.judge.question import Question
+from solidgear.judge.question import Question, mesh_words
 from solidgear.judge.refinement import Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
+from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
-from solidgear.solve.modes import ModeSet
+from solidgear.scene.shaft import is_block
+from solidgear.solve.modes import ModeSet, modes
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -170,6 +172,10 @@ def settle(
     tol = usable(scene.ask.tolerance if tol is None else tol)
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
+    if is_block(scene):
+        if ask == "stiffness":
+            raise SolidgearError(f"{scene.name}: a block has no seat to be stiff at; ask for modes")
+        return _settled_block(scene, tol, progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
         both = {scene.port.name, *points}
@@ -203,12 +209,64 @@ def bars_of_modes(
     """
     if settled is None:
         return {}
+    if is_block(scene):
+        return nested_bars(scene, body, found)
     bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
         bars = mode_bars(scene, body, as_supports(scene), found)
     # what the mesh was chosen by keeps the bar it was chosen with
     asked = [name for name in map(Quantity, found.names) if name in settled.bars]
     return bars | {name: settled.bars[name] for name in asked}
+
+
+#: the only model that holds a block
+MODEL = "solid"
+#: refinements of the nested meshes of a block, each of which tells the next one's bar
+NESTED = (1.0, 2.0, 4.0)
+#: share of the step from a mesh with half the cells along an edge that is taken for what is left:
+#: errors of smooth modes fall to a sixteenth, which leaves a fifteenth of it; this is what errors
+#: that fall to an eighth leave, twice as much
+LEFT = 1 / 7
+
+
+def _settled_block(scene: Scene, tol: float, progress: Progress) -> Settled:
+    """The first of the nested meshes of a block whose bars of its lowest modes are within a tolerance."""
+    steps: list[Step] = []
+    for refinement in NESTED[1:]:
+        options = {**LADDER[MODEL].given(scene, {}), "refinement": refinement}
+        progress(f"{LADDER[MODEL].title}: refinement {refinement:g}")
+        body = build(scene, MODEL, **options)
+        found = modes(body, scene, scene.ask.modes)
+        bars = {Quantity(name): bar for name, bar in nested_bars(scene, body, found).items()}
+        largest = max(bars.values(), default=math.inf)
+        reached = largest <= tol
+        done = reached or refinement == NESTED[-1]
+        why = "no finer mesh is calibrated" * (done and not reached)
+        setting = mesh_words(options)
+        steps.append(
+            Step(MODEL, setting, True, why, largest, body.size, chosen=done, options=options)
+        )
+        if done:
+            break
+    point = scene.port.name
+    return Settled(
+        scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
+    )
+
+
+def nested_bars(scene: Scene, body: Body, found: ModeSet) -> dict[str, float]:
+    """Relative bars of the frequencies of a block, from a mesh with half as many cells along every
+    edge: the finer one holds all motions of the coarser, and both integrate exactly, so that the
+    mode of each place in the list comes from above on both.
+    """
+    options = {"element": body.mesh["element"], "refinement": body.mesh["refinement"] / 2}
+    elastic = [mode for mode in found.modes if mode.frequency_hz > 0]
+    coarse = modes(build(scene, MODEL, **options), scene, len(elastic))
+    above = [mode.frequency_hz for mode in coarse.modes if mode.frequency_hz > 0]
+    return {
+        str(mode.name): LEFT * max(before / mode.frequency_hz - 1, 0.0) + mode.error
+        for mode, before in zip(elastic, above)
+    }
 
 
 class Whole(Climb):

@@ -9,7 +9,7 @@ from solidgear.elements import ELEMENTS
 from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, least_radius, levels
 from solidgear.ladder.model import Options, Series, features_of
 from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
-from solidgear.models.kinds import CUTS, CYCLIC, PARTS
+from solidgear.models.kinds import BLOCKS, CUTS, CYCLIC, PARTS
 from solidgear.models.options import SOLID_OPTIONS
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Solid(Volume):
     marker = "D"
     options = SOLID_OPTIONS
     coarser = "lower refinement or the layers, or raise size"
-    holds = (CUTS, CYCLIC, PARTS)
+    holds = (CUTS, CYCLIC, PARTS, BLOCKS)
     _nature = "one mesh of tetrahedra,"
 
     def builder(self) -> Callable[..., Body]:
@@ -108,9 +108,12 @@ class Solid(Volume):
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
         """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,
-        or from a file: layered hexahedra converge too slowly beside fillets for error bars.
+        or from a file, and hexahedra in a block, which has no arcs: layered hexahedra converge too slowly beside fillets for error bars.
         """
-        special = features_of(scene) or scene.outline.corners
+        features = features_of(scene)
+        if BLOCKS in {f.sort for f in features}:
+            return {"element": "hex27", **options}
+        special = features or scene.outline.corners
         return {**({"element": "tet10"} if special else {}), **options}
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:

@@ -27,6 +27,8 @@ from solidgear.scene.recognised import Recognised
 LOOK_SECONDS = 25.0
 #: least share of the surface that is round about the axis, for a part to be a shaft
 LEAST_ROUND = 0.2
+#: of a part, m
+LEAST_LENGTH, MOST_LENGTH = 1e-3, 20.0
 #: relative difference of a size from what it is checked against
 SIZE_CHECK = 1e-3
 #: factors between units that are taken for one another
@@ -41,6 +43,8 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     that is no part, another unit or size than the table says, or a part that is not round about the
     axis.
     """
+    if table.block is not None:
+        return _block(table.block)
     path = (folder / table.file).resolve()
     try:
         content = _content(path)
@@ -98,6 +102,33 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         partial(seat_share, points, triangles),
         tuple(tuple((kinds[k], part) for k, part in share.groups) for share in shares),
     )
+
+
+def _block(edges: list[float]) -> Recognised:
+    """A rectangular block from y = 0 on; its one wall is the largest cylinder inside, by which places
+    along y are told and nothing is solved.
+    """
+    for k, edge in enumerate(edges):
+        if not LEAST_LENGTH <= edge <= MOST_LENGTH:
+            raise SceneError(
+                f"an edge of {1e3 * edge:.4g} mm is outside 1 mm to 20 m", path=("body", "block", k)
+            )
+    x, y, z = edges
+    wall = Frustum(0.0, y, *(2 * (min(x, z) / 2,)), 0.0, 0.0)
+    body = BodyFile(
+        kind="block",
+        name=f"{' x '.join(f'{1e3 * edge:.6g}' for edge in edges)} mm",
+        path="",
+        sha256="",
+        unit=1.0,
+        turn=TURNS["y"],
+        foot=(0.0, 0.0, 0.0),
+        volume=x * y * z,
+        round_share=0.0,
+        round_volume=volume_of(Outline((wall,))) / (x * y * z),
+        edges=(x, y, z),
+    )
+    return Recognised(body, (wall,), 0.0, (), lambda radius, lo, hi: 0.0)
 
 
 def _rounded(value: float) -> float:
@@ -253,7 +284,7 @@ def _sizes(table: BodyTable, points) -> None:
                 f"the {what} of the part about {table.axis} is {1e3 * own:.6g} mm{_slip(ratio)}",
                 path=("size_check", k),
             )
-    if not 1e-3 <= length <= 20.0:
+    if not LEAST_LENGTH <= length <= MOST_LENGTH:
         raise SceneError(
             f"the part is {length:.4g} m long about {table.axis}, outside 1 mm to 20 m: probably "
             "drawn in another unit than the file says",

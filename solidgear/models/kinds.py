@@ -2,5 +2,6 @@
 
 from __future__ import annotations
 
-#: cut out at one place, or repeating themselves around the axis; and whole parts
-CUTS, CYCLIC, PARTS = "cut", "cyclic", "part"
+#: cut out at one place, or repeating themselves around the axis; whole parts;
+#: and blocks, which have no axis
+CUTS, CYCLIC, PARTS, BLOCKS = "cut", "cyclic", "part", "block"

@@ -6,7 +6,8 @@ the file was read.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -43,6 +44,7 @@ class BodyTable(Model):
 
     step: str | None = None
     mesh: str | None = None
+    block: list[PositiveLength] | None = None
     unit: Unit | None = None
     axis: Axis = "y"
     origin: Origin = None
@@ -53,14 +55,20 @@ class BodyTable(Model):
 
     @model_validator(mode="after")
     def _one_file(self):
-        given = [key for key in ("step", "mesh") if getattr(self, key) is not None]
+        given = [key for key in ("step", "mesh", "block") if getattr(self, key) is not None]
         if not given:
             raise SceneError(
                 'this key is missing; name a file: step = "part.step", or mesh = "part.msh"',
                 path=("step",),
             )
-        if len(given) == 2:
-            raise SceneError("give either step or mesh, not both", path=("mesh",))
+        if len(given) > 1:
+            both = " or ".join(given)
+            raise SceneError(f"give either {both}, not both", path=(given[-1],))
+        if self.block is not None:
+            if len(self.block) != 3:
+                raise SceneError("give three edges, along x, y and z", path=("block",))
+            for key in sorted(self.model_fields_set - {"block", "mass_check"}):
+                raise SceneError("this key is of a file, and a block has none", path=(key,))
         if self.mesh is not None and self.unit is None:
             raise SceneError(
                 f"this key is missing: a mesh file does not say it; one of {', '.join(UNITS)}",
@@ -71,12 +79,30 @@ class BodyTable(Model):
     @property
     def key(self) -> str:
         """The key that names the file."""
-        return "step" if self.step is not None else "mesh"
+        return next(k for k in ("step", "mesh", "block") if getattr(self, k) is not None)
 
     @property
     def file(self) -> str:
         """The file as written."""
         return self.step if self.step is not None else str(self.mesh)
+
+
+#: what would hold a block or be held by it, and what is told by beams, which a block has not
+_ATTACHED = ("bearing", "port", "mass", "housing", "load", "lubrication", "uncertain")
+
+
+def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The tables of a file; of a block, which is free, with the port that every scene has, on the
+    face at y = 0.
+    """
+    body = raw.get("body")
+    if not isinstance(body, Mapping) or "block" not in body:
+        return raw
+    given = [key for key in _ATTACHED if key in raw]
+    if given:
+        why = "a block is free, and has modes alone; leave this out"
+        raise SceneError.of(SceneError(why, path=(key,)) for key in given)
+    return {**raw, "port": {"at": "start", "attach_to": "s1", "attachment": "section"}}
 
 
 Triple = tuple[float, float, float]
@@ -111,13 +137,13 @@ class PartGroup(Model):
 
 
 class BodyFile(Model):
-    """A part from a file, as far as a scene knows it.
+    """A part from a file, or a rectangular block, as far as a scene knows it.
 
     Attributes
     ----------
-    kind : {'step', 'mesh'}
+    kind : {'step', 'mesh', 'block'}
     name : str
-        Of the file, without its folder.
+        Of the file, without its folder; of a block its edges in words.
     path : str
         Where it is; no part of what identifies the body.
     sha256 : str
@@ -147,6 +173,8 @@ class BodyFile(Model):
         Segments of the round part that are of several materials across.
     remarks : tuple of str
         What is odd about the file.
+    edges : tuple of float or None
+        Of a block along x, y and z, m.
 
     Raises
     ------
@@ -161,9 +189,7 @@ class BodyFile(Model):
     ('shaft_step.step', False)
     """
 
-    sort: ClassVar[str] = "part"
-
-    kind: Literal["step", "mesh"]
+    kind: Literal["step", "mesh", "block"]
     name: str
     path: str = Field(exclude=True, repr=False)
     sha256: str
@@ -180,10 +206,18 @@ class BodyFile(Model):
     told: tuple[str, ...] = ()
     mixed: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    edges: Triple | None = None
+
+    @property
+    def sort(self) -> str:
+        """Its sort among features and parts."""
+        return "part" if self.edges is None else "block"
 
     @property
     def what(self) -> str:
         """Its kind in words."""
+        if self.edges is not None:
+            return "block"
         return "part of several materials side by side," if self.mixed else "part"
 
     @property

@@ -18,7 +18,7 @@ from solidgear.errors import SceneError
 from solidgear.scene.ask import Ask
 from solidgear.scene.between import problems_between
 from solidgear.scene.blends import BLENDS
-from solidgear.scene.body_file import BodyTable
+from solidgear.scene.body_file import BodyTable, with_port
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.features import FEATURES
 from solidgear.scene.housing import Housing, housing_of
@@ -202,7 +202,7 @@ class _Reading:
         housing = None
         if (given := file.housing) is not None:
             housing = self.problems.read(lambda: housing_of(given, place), ("housing",))
-        if not (file.port or "port" in self.spoilt):
+        if not (file.port or {"port", "body"} & self.spoilt):
             self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
@@ -246,14 +246,14 @@ class _Reading:
                 what = "masses" if key == "mass" else f"{key}s"
                 raise SceneError(too_many(what, len(raw[key]), most), path=(key,))
         try:
-            return kind(**raw), set()
+            return kind(**with_port(raw)), set()
         except SceneError as error:
             found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
         self.problems += found
         spoilt = {str(one.path[0]) for one in found}
         sound = {key: value for key, value in raw.items() if key not in spoilt}
         needed = {"material": STEEL, "segment": [], "port": []}
-        return _File(**{**needed, **sound}), spoilt
+        return _File(**{**needed, **with_port(sound)}), spoilt
 
     def _name_datums(self) -> None:
         """Tell what is called by which name, read from the file as it stands: a segment of a wrong

@@ -49,6 +49,12 @@ def resolved(scene: Any) -> tuple[Any, ...]:
     return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *whole)
 
 
+def is_block(scene: Any) -> bool:
+    """True for a rectangular block, which has no axis; its segments only tell places."""
+    body = getattr(scene, "body", None)
+    return body is not None and body.edges is not None
+
+
 def named(features: Iterable[Any]) -> str:
     """Features in a sentence, such as ``keyway "key"``."""
     return ", ".join(f'{f.what} "{f.name}"' for f in features)

@@ -18,7 +18,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
-from solidgear.scene.shaft import named, resolved
+from solidgear.scene.shaft import is_block, named, resolved
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing
@@ -86,11 +86,12 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         it rests on.
     """
     probe = probe or Probe(scene.plain, body, whole=scene)
-    said = [("shaft", _of_the_shaft(scene))]
+    block = is_block(scene)
+    said = [("shaft", _of_the_block(scene) if block else _of_the_shaft(scene))]
     said += [("mesh", notice) for notice in _of_the_mesh(scene, body)]
     said += [("features", notice) for notice in _beyond_the_segments(scene)]
-    said += [("round_part", notice) for notice in described(scene)]
-    for name in GUARDS:
+    said += [("round_part", notice) for notice in described(scene) if not block]
+    for name in _guards(scene):
         said += [(name, notice) for notice in _heard(name, probe)]
     records = [_record(name, notice, notice.models) for name, notice in said]
     out = {
@@ -131,7 +132,7 @@ def notices(
         heard = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
         for notice in (n for n in heard if n.level != "fact"):
             out[notice.sentence] = _record("round_part", notice, _about(notice, solutions))
-    for name in names or tuple(n for n in GUARDS if n not in NOT_IN_COMPARISONS):
+    for name in names or tuple(n for n in _guards(scene) if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
                 about = _about(notice, solutions)
@@ -172,7 +173,7 @@ def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]
         silent.add("beam_against_solid")
     if model != body.fidelity:
         silent.update(OF_A_MESH)
-    for name in GUARDS:
+    for name in _guards(scene):
         if name not in silent:
             out += [
                 n.sentence
@@ -241,6 +242,11 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     unfit = [m for m in unfit if LADDER[m].unfit(scene)]
     if not unfit:
         return  # a part from a file may be of revolution all through
+    if is_block(scene):
+        yield Notice(
+            "avoid", tuple(unfit), "a block has no axis, and models of shafts do not hold it"
+        )
+        return
     names = named(features)
     # fillets of a part from a file are neither, and are not recognised
     known = ", as far as cylinders and cones tell" if scene.body is not None else ""
@@ -277,6 +283,19 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
             f"the scene has {names}, of which a model of revolution knows nothing: it would answer "
             f"for the plain part; {use}",
         )
+
+
+def _guards(scene: Scene) -> tuple[str, ...]:
+    """Names of the guards to be heard: they speak of the plain part of a shaft, and a block has none."""
+    return () if is_block(scene) else tuple(GUARDS)
+
+
+def _of_the_block(scene: Scene) -> Notice:
+    """Edges and mass."""
+    assert scene.body is not None  # that is a block
+    mass = scene.body.mass(scene.material)
+    text = f"{scene.name}: block of {scene.body.name} along x, y and z, free, mass {mass:.4g} kg"
+    return Notice("fact", (), text)
 
 
 def _of_the_shaft(scene: Scene) -> Notice:

@@ -14,7 +14,7 @@ from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
-from solidgear.models.kinds import CYCLIC, PARTS
+from solidgear.models.kinds import BLOCKS, CYCLIC, PARTS
 from solidgear.models.options import SOLID_OPTIONS, checked
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.mesh import _isoparametric
@@ -103,6 +103,10 @@ def solid(
         )
     wanted = [*attached_stations(scene.stations, attachments)]
     features = resolved(scene)
+    if any(f.sort == BLOCKS for f in features):
+        from solidgear.models.solid.rectangular import block_body
+
+        return block_body(scene, wanted, element=element, size=size, refinement=refinement)
     if features:
         if element != "tet10":
             raise SolidgearError(

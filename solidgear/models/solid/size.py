@@ -11,7 +11,7 @@ from solidgear.kernel.assembly import unknowns
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import without
 from solidgear.meshing.hexahedra import hexahedra
-from solidgear.models.kinds import CUTS, CYCLIC, PARTS
+from solidgear.models.kinds import BLOCKS, CUTS, CYCLIC, PARTS
 from solidgear.models.sector.body import whole_mesh
 from solidgear.models.size import Size, of_mesh
 from solidgear.models.solid.body import _tets
@@ -19,6 +19,7 @@ from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.mesh import basis_of
 from solidgear.models.solid.part import SOLVED_AS
 from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_plan
+from solidgear.models.solid.rectangular import block_mesh
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.shaft import resolved
 
@@ -49,6 +50,9 @@ def solid_size(
     sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
     if PARTS in sorts and scene.body.counts is not None:
         return _of_file(scene.body)
+    if BLOCKS in sorts:
+        mesh = block_mesh(scene, wanted, element, size, refinement)
+        return of_mesh(unknowns(mesh, basis_of(element)))
     if CYCLIC in sorts:
         mesh, _, _ = whole_mesh(scene, wanted, **sizes)
         return of_mesh(unknowns(mesh, basis_of("tet10")))

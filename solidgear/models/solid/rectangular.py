@@ -1,0 +1,61 @@
+"""3D solid of a rectangular block, in cells that are boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, prod
+from typing import Any
+
+import numpy as np
+from skfem import Mesh, MeshHex
+
+from solidgear.body import Body
+from solidgear.errors import SolidgearError
+from solidgear.kernel.room import assemblable
+from solidgear.models.solid.own_mesh import solid_body
+
+#: cells along the shortest edge at refinement 1; an even number has a section in the middle
+CELLS = 4
+
+
+def block_body(
+    scene: Any, wanted: Sequence, *, element: str, size: float | None, refinement: float
+) -> Body:
+    """Free body, in one block, of a scene with a ``body`` that is a block; sizes as for
+    :func:`solidgear.models.solid.body.solid`.
+    """
+    mesh = block_mesh(scene, wanted, element, size, refinement)
+    facts = {"refinement": refinement, "axis": False}
+    return solid_body(mesh, scene, element=element, wanted=wanted, facts=facts)
+
+
+def block_mesh(
+    scene: Any, wanted: Sequence, element: str, size: float | None, refinement: float
+) -> Mesh:
+    """Boxes with a line at every section.
+
+    Meshes whose refinements are one twice the other are nested, so that frequencies fall from one
+    to the next. SolidgearError for tetrahedra.
+    """
+    if not element.startswith("hex"):
+        raise SolidgearError(
+            f"solid: element = {element} is not for a block; use hex8, hex20 or hex27"
+        )
+    x, y, z = scene.body.edges
+    usual = size or min(x, y, z) / CELLS
+    across = (-x / 2, 0.0, x / 2), (-z / 2, 0.0, z / 2)
+    along = sorted({0.0, y / 2, y, *(s.y for s, _ in wanted)})
+    lines = [_divided(places, usual, refinement) for places in (across[0], along, across[1])]
+    assemblable(prod(len(own) - 1 for own in lines), 27)
+    boxes = MeshHex.init_tensor(*lines)
+    # scikit-fem's are left-handed, and x mirrors
+    return MeshHex(boxes.p * [[-1.0], [1.0], [1.0]], boxes.t)
+
+
+def _divided(places: Sequence[float], size: float, refinement: float) -> np.ndarray:
+    """Lines at some places and evenly between."""
+    out = [np.array([places[0]])]
+    for a, b in zip(places, places[1:]):
+        cells = max(1, round(refinement * ceil((b - a) / size - 1e-9)))
+        out.append(np.linspace(a, b, cells + 1)[1:])
+    return np.concatenate(out)

@@ -1,0 +1,113 @@
+"""Free rectangular blocks: frequencies against polynomials that share no code with the solid."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+import solidgear as sg
+from solidgear.judge.settle import settle
+from solidgear.ladder.registry import LADDER
+from solidgear.quantity import Quantity
+
+EDGES = (0.010, 0.009, 0.011)
+E, NU, DENSITY = 207e9, 0.29, 7850.0
+FILE = f"""material = {{ E = {E}, nu = {NU}, density = {DENSITY} }}
+body = {{ block = {list(EDGES)} }}
+"""
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory):
+    path = tmp_path_factory.mktemp("block") / "block.toml"
+    path.write_text(FILE)
+    return sg.load(path)
+
+
+def by_polynomials(order):
+    """Frequencies (Hz) of products of Legendre polynomials up to a degree (Visscher et al. 1991,
+    J. Acoust. Soc. Am. 90, 2154): upper bounds, good to some 1e-5.
+    """
+    places, weights = legendre.leggauss(order + 2)
+    size = np.sqrt(np.arange(order + 1) + 0.5)
+    unit = np.eye(order + 1)
+    value = np.array([legendre.legval(places, u) for u in unit]) * size[:, None]
+    slope = np.array([legendre.legval(places, legendre.legder(u)) for u in unit]) * size[:, None]
+    sides = (value, slope)
+    degrees = np.array([d for d in product(range(order + 1), repeat=3) if sum(d) <= order])
+
+    def gram(p, q):
+        out = 4 / EDGES[p] / EDGES[q]
+        for axis, own in enumerate(degrees.T):
+            table = (sides[p == axis] * weights) @ sides[q == axis].T
+            out = out * table[np.ix_(own, own)]
+        return out
+
+    lame, shear = E * NU / (1 + NU) / (1 - 2 * NU), E / 2 / (1 + NU)
+    sum_of = sum(gram(p, p) for p in range(3))
+    stiffness = np.block(
+        [
+            [lame * gram(i, j) + shear * gram(j, i) + shear * (i == j) * sum_of for j in range(3)]
+            for i in range(3)
+        ]
+    )
+    return np.sqrt(np.linalg.eigvalsh(stiffness)[6:] / DENSITY) / (2 * np.pi)
+
+
+def test_modes_of_a_block_lie_above_the_exact_ones_by_no_more_than_their_bars(block):
+    settled = settle(block, 5e-3, "modes")
+    found = sg.modes(settled.body, block, n=10).modes
+    elastic = [mode for mode in found if mode.frequency_hz > 0]
+    assert [str(mode.name) for mode in elastic] == [f"mode {k}" for k in range(1, 11)]
+    for mode, hertz in zip(elastic, by_polynomials(12)):
+        # polynomials are upper bounds too, that fall by some 3e-5 from degree 10 to 12
+        bar = settled.bars[Quantity(mode.name)]
+        assert -3e-5 < mode.frequency_hz / hertz - 1 < bar < 5e-3
+    assert settled.reached
+
+
+def test_the_mass_of_a_block_is_its_edges_times_its_density(block):
+    body = sg.build(block, "solid", refinement=0.5)
+    assert body.mass_matrix()[0, 0] == pytest.approx(DENSITY * np.prod(EDGES), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "model", [name for name in LADDER.bodies if not LADDER[name].for_features][:-1]
+)
+def test_models_of_shafts_refuse_a_block(block, model):
+    with pytest.raises(sg.SolidgearError, match="a block has no axis"):
+        sg.build(block, model)
+
+
+def test_a_block_is_not_compared_and_has_no_stiffness(block):
+    with pytest.raises(sg.SolidgearError, match="modes alone"):
+        sg.answer(block, ask="f1")
+    with pytest.raises(sg.SolidgearError, match="one model"):
+        sg.compare(block)
+    with pytest.raises(sg.SolidgearError, match="no seat"):
+        settle(block, 0.01, "stiffness")
+
+
+@pytest.mark.parametrize(
+    "line, field, sentence",
+    [
+        ("block = [0.01, 0.02]", "body.block", "three edges"),
+        ('block = [0.01, 0.02, "-3 mm"]', r"body.block\[3\]", "greater than zero"),
+        ('block = [0.01, 0.02, "0.3 mm"]', r"body.block\[3\]", "outside 1 mm to 20 m"),
+        ('block = [0.01, 0.02, 0.03], unit = "mm"', "body.unit", "a block has none"),
+        ('block = [0.01, 0.02, 0.03], step = "a.step"', "body.block", "not both"),
+    ],
+)
+def test_a_bad_block_is_refused_in_one_sentence(tmp_path, line, field, sentence):
+    path = tmp_path / "bad.toml"
+    path.write_text(FILE.splitlines()[0] + f"\nbody = {{ {line} }}\n")
+    with pytest.raises(sg.SceneError, match=f"{field}.*{sentence}"):
+        sg.load(path)
+
+
+def test_nothing_is_attached_to_a_block(tmp_path):
+    path = tmp_path / "held.toml"
+    path.write_text(FILE + 'mass = [{ name = "m", position = 0, mass = "1 g" }]\n')
+    with pytest.raises(sg.SceneError, match="a block is free"):
+        sg.load(path)
