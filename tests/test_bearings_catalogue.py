@@ -17,7 +17,9 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
+from solidgear.scene.between import preload_problems
 from solidgear.scene.catalogue import Catalogue, Kind
+from solidgear.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
 KNOWN_BALLS = (
@@ -228,3 +230,19 @@ def test_bad_data_end_in_one_sentence(data, sentence):
         made = catalogued(Catalogue(**data))
         state(Catalogue(**data), made)
     assert len(refused.value.problems) == 1
+
+
+@pytest.mark.parametrize("ways, turn", [("+y +y", "rear"), ("-y -y", "front"), ("+y -y", None)])
+def test_a_preload_needs_a_row_that_faces_the_other_way(ways, turn):
+    rows = [
+        Bearing(
+            name=name, y=y, seat_width=0.018, catalogue=ONE_WAY | {"holds": way, "preload": "400 N"}
+        )
+        for name, y, way in zip(("front", "rear"), (0.1, 0.3), ways.split())
+    ]
+    found = [str(problem) for problem in preload_problems(rows)]
+    assert len(found) == (turn is not None)
+    # the lower one of an O arrangement holds towards +y: the guide's table
+    assert all(f"for an O arrangement {turn!r}" in sentence for sentence in found)
+    alone = [rows[0], rows[1].with_changes(catalogue=ONE_WAY)]
+    assert not list(preload_problems(alone))  # a caution of check, not a refusal
