@@ -19,6 +19,7 @@ from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
 from solidgear.scene.between import preload_problems
 from solidgear.scene.catalogue import Catalogue, Kind
+from solidgear.scene.designation import boundary
 from solidgear.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
@@ -212,6 +213,10 @@ BAD = (
     ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
     ({"designation": "6208", "conformity": 0.49}, "above 0.5"),
     ({"designation": "hurz"}, "not understood"),
+    ({"designation": "6208-XYZ"}, 'did you mean "6208"'),
+    ({"designation": "6280"}, 'did you mean "6208"'),
+    ({"designation": "6302-C3 C4"}, "two classes of clearance, C3 and C4"),
+    ({"designation": "7208 B C3"}, "not understood"),
     (BACK_TO_BACK | {"preload": "90 kN", "static_rating": "20 kN"}, "beyond the static rating"),
     (ONE_WAY | {"load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
     ({"designation": "6206", "load_rating": "195 kN"}, "has a rating of"),
@@ -246,3 +251,24 @@ def test_a_preload_needs_a_row_that_faces_the_other_way(ways, turn):
     assert all(f"for an O arrangement {turn!r}" in sentence for sentence in found)
     alone = [rows[0], rows[1].with_changes(catalogue=ONE_WAY)]
     assert not list(preload_problems(alone))  # a caution of check, not a refusal
+
+
+@pytest.mark.parametrize(
+    "written, plain, clearance, ignored",
+    [
+        ("6208-2RS1/C3", "6208", "C3", "2RS1"),
+        ("6302 2Z C2 P6 TN9", "6302", "C2", "2Z P6 TN9"),
+        ("NU 2207 ECP/C4", "NU 2207", "C4", "P"),
+        ("7014 C/P4A", "7014 C", None, "P4A"),
+        ("7208 BECBM", "7208 B", None, "CB M"),
+        ("32018 X/Q", "32018", None, "Q"),
+    ],
+)
+def test_suffixes_tell_the_clearance_and_nothing_else_of_a_stiffness(
+    written, plain, clearance, ignored
+):
+    found = boundary(written)
+    assert found == boundary(plain)._replace(clearance=clearance, ignored=ignored)
+    if clearance:
+        assert Catalogue(designation=written).clearance == clearance
+        assert Catalogue(designation=written, clearance="5 um").clearance == 5e-6  # the file's

@@ -162,7 +162,8 @@ class Catalogue(Model):
     kind : str
         deep_groove, angular_contact, cylindrical, tapered or needle.
     designation : str
-        Such as ``6208``: gives kind, bore, outer_diameter and width where these are left out.
+        Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
+        where these are left out; seals, cages and tolerances are read and ignored.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
@@ -306,6 +307,7 @@ def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
     except SceneError as error:
         raise SceneError(error.reason, path=("designation",), value=error.value) from None
     told = {key: value for key, value in known._asdict().items() if value is not None}
+    del told["ignored"]
     if "kind" in data and data["kind"] != known.kind:
         raise SceneError(
             f"does not fit the designation {show(data['designation'])}, which is {known.kind}",
