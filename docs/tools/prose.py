@@ -11,7 +11,12 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 #: made by a program from something else that is checked
-GENERATED = {"docs/gallery.md", "docs/validation/scoreboard.md", "docs/validation/stability.md"}
+GENERATED = {
+    "docs/guide/bearing_keys.md",
+    "docs/gallery.md",
+    "docs/validation/scoreboard.md",
+    "docs/validation/stability.md",
+}
 #: not yet brought below the limits
 EXEMPT = ("docs/theory/", "docs/validation/")
 PARAGRAPH, SENTENCE, RUN = 120, 35, 12

@@ -175,9 +175,9 @@ class Catalogue(Model):
     elements : int or None
         Rolling elements of one row.
     element_diameter, element_length, pitch_diameter : float or None
-        m; of tapered rollers the mean diameter.
+        Of the rolling elements and their circle, m; of tapered rollers the mean diameter.
     contact_angle : float or None
-        rad.
+        From the radial plane, rad.
     conformity : (float, float) or None
         Groove radius over ball diameter, inner and outer.
     profile : {'logarithmic', 'straight'}
@@ -197,7 +197,7 @@ class Catalogue(Model):
     inner_ring_warmer : float
         K above the outer ring.
     preload : Preload or None
-        A text with a unit in a file: ``"500 N"`` or ``"10 um"``.
+        Along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
     preload_spring : float or None
         N/m, of the spring by which the upper row of a pair is preloaded.
     speed : float
