@@ -17,7 +17,10 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
+from solidgear.scene.between import preload_problems
 from solidgear.scene.catalogue import Catalogue, Kind
+from solidgear.scene.designation import boundary
+from solidgear.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
 KNOWN_BALLS = (
@@ -210,6 +213,10 @@ BAD = (
     ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
     ({"designation": "6208", "conformity": 0.49}, "above 0.5"),
     ({"designation": "hurz"}, "not understood"),
+    ({"designation": "6208-XYZ"}, 'did you mean "6208"'),
+    ({"designation": "6280"}, 'did you mean "6208"'),
+    ({"designation": "6302-C3 C4"}, "two classes of clearance, C3 and C4"),
+    ({"designation": "7208 B C3"}, "not understood"),
     (BACK_TO_BACK | {"preload": "90 kN", "static_rating": "20 kN"}, "beyond the static rating"),
     (ONE_WAY | {"load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
     ({"designation": "6206", "load_rating": "195 kN"}, "has a rating of"),
@@ -228,3 +235,40 @@ def test_bad_data_end_in_one_sentence(data, sentence):
         made = catalogued(Catalogue(**data))
         state(Catalogue(**data), made)
     assert len(refused.value.problems) == 1
+
+
+@pytest.mark.parametrize("ways, turn", [("+y +y", "rear"), ("-y -y", "front"), ("+y -y", None)])
+def test_a_preload_needs_a_row_that_faces_the_other_way(ways, turn):
+    rows = [
+        Bearing(
+            name=name, y=y, seat_width=0.018, catalogue=ONE_WAY | {"holds": way, "preload": "400 N"}
+        )
+        for name, y, way in zip(("front", "rear"), (0.1, 0.3), ways.split())
+    ]
+    found = [str(problem) for problem in preload_problems(rows)]
+    assert len(found) == (turn is not None)
+    # the lower one of an O arrangement holds towards +y: the guide's table
+    assert all(f"for an O arrangement {turn!r}" in sentence for sentence in found)
+    alone = [rows[0], rows[1].with_changes(catalogue=ONE_WAY)]
+    assert not list(preload_problems(alone))  # a caution of check, not a refusal
+
+
+@pytest.mark.parametrize(
+    "written, plain, clearance, ignored",
+    [
+        ("6208-2RS1/C3", "6208", "C3", "2RS1"),
+        ("6302 2Z C2 P6 TN9", "6302", "C2", "2Z P6 TN9"),
+        ("NU 2207 ECP/C4", "NU 2207", "C4", "P"),
+        ("7014 C/P4A", "7014 C", None, "P4A"),
+        ("7208 BECBM", "7208 B", None, "CB M"),
+        ("32018 X/Q", "32018", None, "Q"),
+    ],
+)
+def test_suffixes_tell_the_clearance_and_nothing_else_of_a_stiffness(
+    written, plain, clearance, ignored
+):
+    found = boundary(written)
+    assert found == boundary(plain)._replace(clearance=clearance, ignored=ignored)
+    if clearance:
+        assert Catalogue(designation=written).clearance == clearance
+        assert Catalogue(designation=written, clearance="5 um").clearance == 5e-6  # the file's

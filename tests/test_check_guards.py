@@ -40,14 +40,16 @@ def stiff(**entries) -> np.ndarray:
 
 
 def angular(*ways: str) -> Scene:
-    """The stout head on single rows with a contact angle, and the way in which each holds."""
+    """The stout head on single rows with a contact angle, the first preloaded, and the way in
+    which each holds.
+    """
     rows = [
         b.with_changes(
             catalogue=Catalogue(
-                designation="7320 B", load_rating="190 kN", holds=way, preload="2 kN"
+                designation="7320 B", load_rating="190 kN", holds=way, preload=preload
             ),
         )
-        for b, way in zip(scene().bearings, ways)
+        for b, way, preload in zip(scene().bearings, ways, ("2 kN", None))
     ]
     return scene().with_changes(bearings=tuple(rows))
 

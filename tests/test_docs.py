@@ -21,6 +21,7 @@ ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(DOCS / "tools"))
 
+import bearing_keys  # noqa: E402
 import console  # noqa: E402
 import gallery  # noqa: E402
 import prose  # noqa: E402
@@ -217,6 +218,12 @@ def test_every_command_and_exit_code_is_listed():
         assert f"`solidgear {name}" in page, name
     for code in (0, 1, 2, 3, 130):
         assert f"| {code} |" in page
+
+
+def test_the_page_of_bearing_keys_is_that_of_the_models():
+    assert bearing_keys.PAGE.read_text() == bearing_keys.page()
+    for model in bearing_keys.TABLES.values():
+        assert bearing_keys.meanings(model).keys() == model.model_fields.keys()
 
 
 def test_every_finding_of_the_stability_scripts_has_a_place():

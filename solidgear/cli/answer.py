@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.cli.app import NOT_REACHED, command, say
+from solidgear.cli.app import NOT_REACHED, caution, command, say
 from solidgear.cli.shared import SceneFile, Shown, share
 from solidgear.errors import SolidgearError
 
@@ -59,12 +60,15 @@ def answer(
     from solidgear.cli.reading import load
     from solidgear.judge.answer import answer as solve
     from solidgear.studies.budget import beside
+    from solidgear.studies.guards.data import facing_one_way
 
     if picture is not None:
         from solidgear.report.plot import check_ending
 
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
+    for sentence in facing_one_way(loaded):
+        print(caution(sentence), file=sys.stderr)
     places: Whereabouts | None = None
     unplaced = ""
     with run.progress() as progress:

@@ -150,9 +150,12 @@ def _print(fact: BearingFacts) -> None:
     from solidgear.frames import DOF_NAMES
     from solidgear.report.terminal import matrix_table
     from solidgear.report.words import engineering
+    from solidgear.scene.designation import boundary
 
     what = fact.designation or fact.kind.replace("_", " ")
-    say(f"Bearing {fact.name!r}: {what}, {fact.status}")
+    ignored = boundary(fact.designation).ignored if fact.designation else ""
+    unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
+    say(f"Bearing {fact.name!r}: {what}{unused}, {fact.status}")
     i = fact.inside
     size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
     if "element_length" in i:

@@ -162,7 +162,8 @@ class Catalogue(Model):
     kind : str
         deep_groove, angular_contact, cylindrical, tapered or needle.
     designation : str
-        Such as ``6208``: gives kind, bore, outer_diameter and width where these are left out.
+        Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
+        where these are left out; seals, cages and tolerances are read and ignored.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
@@ -174,9 +175,9 @@ class Catalogue(Model):
     elements : int or None
         Rolling elements of one row.
     element_diameter, element_length, pitch_diameter : float or None
-        m; of tapered rollers the mean diameter.
+        Of the rolling elements and their circle, m; of tapered rollers the mean diameter.
     contact_angle : float or None
-        rad.
+        From the radial plane, rad.
     conformity : (float, float) or None
         Groove radius over ball diameter, inner and outer.
     profile : {'logarithmic', 'straight'}
@@ -196,7 +197,7 @@ class Catalogue(Model):
     inner_ring_warmer : float
         K above the outer ring.
     preload : Preload or None
-        A text with a unit in a file: ``"500 N"`` or ``"10 um"``.
+        Along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
     preload_spring : float or None
         N/m, of the spring by which the upper row of a pair is preloaded.
     speed : float
@@ -306,6 +307,7 @@ def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
     except SceneError as error:
         raise SceneError(error.reason, path=("designation",), value=error.value) from None
     told = {key: value for key, value in known._asdict().items() if value is not None}
+    del told["ignored"]
     if "kind" in data and data["kind"] != known.kind:
         raise SceneError(
             f"does not fit the designation {show(data['designation'])}, which is {known.kind}",

@@ -10,7 +10,7 @@ import math
 import re
 from typing import NamedTuple
 
-from solidgear.errors import SceneError, show
+from solidgear.errors import SceneError, did_you_mean, near, show
 
 _BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
 
@@ -79,29 +79,37 @@ _SUFFIX = {"": None, "C": 15.0, "AC": 25.0, "A5": 25.0, "B": 40.0, "BE": 40.0}
 _CUPS = {4: 8, 5: 9, 6: 10, 7: 11, 8: 12, 9: 13, 10: 14, 12: 18, 13: 19, 14: 20, 15: 21, 16: 22}
 _CUPS |= {18: 24, 20: 26, 22: 28, 25: 32, 28: 35, 30: 37, 35: 42, 40: 47, 45: 52, 50: 58}
 
+#: seals, shields; cages; tapered bore, grooves; tolerance; universal matching: no part in a stiffness
+_READ = (
+    r"2?RS[12HLR]?|2?RZ|2Z|ZZ|Z|DDU|LLU|TN9?|TVP2?|TVH|MA|MB|M1?|J[12]?|K|W33|Q|D|P[02456]A?|P|"
+    "C[ABC]|G[ABC]"
+)
+_CLASS = "CN|C[234]"
+
 #: kind, pattern, sizes by series, and how a refusal tells them
 _WRITTEN = (
     (
         "deep_groove",
-        r"(?P<series>60|62|63)(?P<code>\d\d)",
+        rf"(?P<series>60|62|63)(?P<code>\d\d)(?P<rest>(?:{_READ}|{_CLASS}){{0,8}})",
         _BALLS,
         "deep groove 60, 62, 63",
     ),
     (
         "angular_contact",
-        r"(?P<series>70|72|73)(?P<code>\d\d)(?P<angle>C|AC|A5|BE?)?",
+        rf"(?P<series>70|72|73)(?P<code>\d\d)(?P<angle>C|AC|A5|BE?)?(?P<rest>(?:{_READ}){{0,8}})",
         _ANGULAR,
         "angular contact 70, 72, 73 (C, AC, B)",
     ),
     (
         "cylindrical",
-        r"(?:NU|NJ|NUP|N)(?P<series>10|22|2|3)(?P<code>\d\d)(?:EC?)?",
+        r"(?:NU|NJ|NUP|N)(?P<series>10|22|2|3)(?P<code>\d\d)(?:EC?)?"
+        rf"(?P<rest>(?:{_READ}|{_CLASS}){{0,8}})",
         _ROLLERS,
         "cylindrical N, NU, NJ, NUP 10, 2, 3, 22",
     ),
     (
         "tapered",
-        r"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?",
+        rf"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?(?P<rest>(?:{_READ}){{0,8}})",
         _TAPERED,
         "tapered 302, 303, 320, 322, 323",
     ),
@@ -117,6 +125,10 @@ class Boundary(NamedTuple):
         m; the bore of a drawn cup is the diameter under its rollers.
     contact_angle : float or None
         rad, where a suffix tells it.
+    clearance : str or None
+        Class of ISO 5753-1, where a suffix tells it.
+    ignored : str
+        Suffixes of seals, cages, tolerances and the like, which have no part in a stiffness.
     """
 
     kind: str
@@ -124,18 +136,21 @@ class Boundary(NamedTuple):
     outer_diameter: float
     width: float
     contact_angle: float | None = None
+    clearance: str | None = None
+    ignored: str = ""
 
 
 def boundary(designation: str) -> Boundary:
-    """Kind and boundary dimensions of a bearing by its designation, such as ``6208``, ``7210 B``,
-    ``NU 206``, ``32018 X`` or ``BK0810``.
+    """Kind and boundary dimensions of a bearing by its designation, such as ``6208-2RS1/C3``,
+    ``7210 BEP``, ``NU 206``, ``32018 X`` or ``BK0810``.
 
     Examples
     --------
-    >>> boundary("NU 206 E")
-    Boundary(kind='cylindrical', bore=0.03, outer_diameter=0.062, width=0.016, contact_angle=None)
+    >>> found = boundary("NU 206 ECP/C3")
+    >>> found.kind, found.bore, found.outer_diameter, found.clearance, found.ignored
+    ('cylindrical', 0.03, 0.062, 'C3', 'P')
     """
-    plain = re.sub(r"[\s-]", "", designation.upper())
+    plain = re.sub(r"[\s/-]", "", designation.upper())
     for kind, pattern, table, _ in _WRITTEN:
         match = re.fullmatch(pattern, plain)
         if not match:
@@ -147,7 +162,16 @@ def boundary(designation: str) -> Boundary:
         outer, width = sizes[bore]
         degrees = _SUFFIX[match["angle"] or ""] if kind == "angular_contact" else None
         angle = None if degrees is None else math.radians(degrees)
-        return Boundary(kind, bore / 1e3, outer / 1e3, width / 1e3, angle)
+        parts = re.findall(f"{_CLASS}|{_READ}", match["rest"])
+        classes = [part for part in parts if re.fullmatch(_CLASS, part)]
+        if len(classes) > 1:
+            raise SceneError(
+                f"has two classes of clearance, {' and '.join(classes)}: write one",
+                value=show(designation),
+            )
+        ignored = " ".join(part for part in parts if part not in classes)
+        clearance = classes[0] if classes else None
+        return Boundary(kind, bore / 1e3, outer / 1e3, width / 1e3, angle, clearance, ignored)
     cup = re.fullmatch(r"[BH]K(\d\d)(\d\d)", plain)
     if cup and int(cup[1]) in _CUPS and int(cup[2]) > 0:
         under, width = int(cup[1]), int(cup[2])
@@ -173,10 +197,26 @@ def _bore(code: str) -> int:
     return _BORES[number] if number < 4 else 5 * number
 
 
+def _all() -> list[str]:
+    """Every designation that is known, without suffixes; not those of drawn cups."""
+    first = {"cylindrical": ("NU", "NJ", "NUP", "N")}
+    return [
+        f"{before}{series}{_BORES.index(bore) if bore < 20 else bore // 5:02d}"
+        for kind, _, table, _ in _WRITTEN
+        for before in first.get(kind, ("",))
+        for series, sizes in table.items()
+        for bore in sizes
+    ]
+
+
 def _unknown(designation: str) -> SceneError:
     known = ", ".join(told for *_, told in _WRITTEN)
+    plain = re.sub(r"[\s/-]", "", designation.upper()).replace("O", "0")
+    swapped = [one for one in _all() if sorted(one) == sorted(plain)]
+    hint = did_you_mean(next(iter(swapped), near(plain, _all())))
     return SceneError(
-        f"this designation is not understood; known are {known} and drawn cups HK, BK, bores 10 to "
-        "120 mm; or write kind, bore, outer_diameter, width",
+        f"this designation is not understood{hint}; known are {known} and drawn cups HK, BK, bores "
+        "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove "
+        "and cylindrical ones; or write kind, bore, outer_diameter, width",
         value=show(designation),
     )

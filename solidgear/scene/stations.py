@@ -82,10 +82,11 @@ class Bearing(Placed):
     Attributes
     ----------
     name : str
+        By which results, loads and sweeps call it.
     y : float
         Middle of the seat, m; `position`, as in a file, is the same.
     seat_width : float
-        m.
+        Along the shaft, m.
     matrix : tuple of tuple of float, or None
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
         as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
@@ -101,6 +102,7 @@ class Bearing(Placed):
         Where its numbers come from: published, identified, assumed, measured, or of catalogue data
         calculated (inner geometry given) or estimated.
     note : str
+        Free text.
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: nothing moves, or nothing moves but turns.
     face : {'start', 'end'} or None

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from solidgear.errors import listed
 from solidgear.frames import DOF_NAMES
+from solidgear.scene import Scene
 from solidgear.studies.guards.notice import Notice, Notices, slip_in_units
 from solidgear.studies.guards.probe import Probe
 
@@ -133,13 +136,18 @@ def oblique_softness(probe: Probe) -> Notices:
 
 def one_way(probe: Probe) -> Notices:
     """Bearings with a contact angle that all hold the shaft in the same direction along y."""
-    rows = [b for b in probe.scene.bearings if b.catalogue and b.catalogue.one_sided]
+    yield from (Notice("caution", (), sentence) for sentence in facing_one_way(probe.scene))
+
+
+def facing_one_way(scene: Scene) -> Iterator[str]:
+    """The sentence on rows that all hold the shaft in the same direction along y, if there is one."""
+    rows = [b for b in scene.bearings if b.catalogue and b.catalogue.one_sided]
     ways = {b.catalogue.holds for b in rows if b.catalogue}
     held_otherwise = any(
         b.catalogue.opposed or b.catalogue.kind == "deep_groove"
         if b.catalogue
         else b.stiffness[1, 1]
-        for b in probe.scene.bearings
+        for b in scene.bearings
     )
     if len(rows) > 1 and len(ways) == 1:
         way = ways.pop()
@@ -148,11 +156,9 @@ def one_way(probe: Probe) -> Notices:
             if held_otherwise
             else "nothing holds it the other way"
         )
-        yield Notice(
-            "caution",
-            (),
+        yield (
             f"the bearings {listed([repr(b.name) for b in rows])} all hold the shaft towards {way}: "
-            f'{alone}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"',
+            f'{alone}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"'
         )
 
 
