@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solidgear.errors import SceneError
+import solidgear as sg
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.studies.measured.computed import computed_up_to
+from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
 from solidgear.studies.measured.universal import read_responses
 
@@ -88,3 +91,61 @@ def test_bad_files_end_in_one_sentence(tmp_path):
     whole.write_bytes(whole.read_bytes()[:-200])
     with pytest.raises(SceneError, match="is cut short"):
         load_measured(whole)
+
+
+#: a rod as long that bending 4 and torsion 1 lie 1 % from each other, m
+LENGTH, RADIUS = 0.497, 0.01
+#: points on it, of which no three of one angle lie on nodes
+ROUND = np.array([[c, s] for c, s in ((1, 0), (0, 1), (-0.6, 0.8))])
+ON = np.array([[RADIUS * c, y, RADIUS * s] for y in np.linspace(0.0, LENGTH, 11) for c, s in ROUND])
+
+
+def bent(n):
+    """Bending of a free slender rod in a plane at 40 degrees (Blevins, Formulas, table 8-1)."""
+    k = {1: 4.73004, 2: 7.85320, 3: 10.99561, 4: 14.13717}[n]
+    sigma = (np.cosh(k) - np.cos(k)) / (np.sinh(k) - np.sin(k))
+    x = k * ON[:, 1] / LENGTH
+    across = np.cosh(x) + np.cos(x) - sigma * (np.sinh(x) + np.sin(x))
+    plane = np.array([np.cos(0.7), 0.0, np.sin(0.7)])
+    return across[:, None] * plane
+
+
+def twisted():
+    """Torsion of a free rod, tangential."""
+    angle = np.cos(np.pi * ON[:, 1] / LENGTH)
+    return angle[:, None] * np.column_stack([ON[:, 2], 0 * angle, -ON[:, 0]]) / RADIUS
+
+
+def rod_scene():
+    return sg.Scene.from_parts([sg.Segment.cylinder("rod", length=LENGTH, diameter=2 * RADIUS)])
+
+
+def test_two_near_modes_that_changed_places_are_told_by_their_shapes(tmp_path):
+    scene = rod_scene()
+    computed = computed_up_to(scene, 3300.0, 0.02)
+    at = {str(one.name): one.frequency_hz for one in computed.modes}
+    assert at["torsion 1"] == pytest.approx(at["bending 4"], rel=0.03)
+    # each has the frequency of the other
+    shapes = [
+        (at["bending 1"], bent(1), "bending 1"),
+        (at["bending 2"], bent(2), "bending 2"),
+        (at["bending 3"], bent(3), "bending 3"),
+        (at["torsion 1"], bent(4), "bending 4"),
+        (at["bending 4"], twisted(), "torsion 1"),
+    ]
+    sets = [mode(k, hertz, shape) for k, (hertz, shape, _) in enumerate(shapes, start=1)]
+    path = written(tmp_path / "rod.unv", units(), nodes(1e3 * ON), *sets)
+    found = correlate(scene, load_measured(path), tol=0.02)
+    shapes.sort(key=lambda one: one[0])
+    assert [pair.computed.name for pair in found.pairs] == [name for *_, name in shapes]
+    # a slender rod's closed forms; shear and the rod's own turning change bending 4 by a little
+    assert all(pair.mac > 0.97 for pair in found.pairs)
+    assert all(pair.probability > 0.95 for pair in found.pairs)
+
+
+def test_a_point_off_the_surface_is_named(tmp_path):
+    places = ON.copy()
+    places[4, 2] += 0.2 * RADIUS
+    path = written(tmp_path / "off.unv", units(), nodes(1e3 * places), mode(1, 345.0, bent(1)))
+    with pytest.raises(SolidgearError, match="measuring point 5 .* off the surface"):
+        correlate(rod_scene(), load_measured(path), tol=0.02)
