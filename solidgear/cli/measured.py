@@ -16,7 +16,8 @@ SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML).")]
 MeasuredFile = Annotated[
     Path,
     typer.Argument(
-        help="Measured resonances: .csv with a head such as frequency [Hz], or .toml with a list mode."
+        help="Measured resonances: .csv with a head such as frequency [Hz], or .toml with a list mode, "
+        "or .unv, .uff with mode shapes."
     ),
 ]
 Tolerance = Annotated[

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.judge.record import MacTable
+from solidgear.report.mode_charts import mac_panel
 from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, readout
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
@@ -32,10 +34,14 @@ def pairs(found: Any) -> Table:
         Column("sure", lambda p: p.probability, "{:.0%}".format, kind=NUMBER),
         text("", lambda p: p.verdict),
     ]
+    if found.mac is not None:
+        columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format, kind=NUMBER))
     note = (
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
         "frequency and the bar of the computed one. Sure: probability of the pair."
     )
+    if found.mac is not None:
+        note += " MAC: share of the measured shape that is the mode's, on the measuring points."
     return Table("Measured and computed", columns, found.pairs, note, style="ruled")
 
 
@@ -110,10 +116,20 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
     return Chart([[panel]], width, title)
 
 
+def mac_map(found: Any, width: float = WIDE) -> Chart:
+    """MAC of every measured shape and every mode."""
+    rows = [f"{hertz(pair.measured.frequency)} Hz" for pair in found.pairs]
+    table = MacTable(rows=rows, columns=list(found.names), values=found.mac.tolist())
+    return Chart([[mac_panel(table, "measured", "computed")]], width)
+
+
 def write_correlation(folder: Path, found: Any) -> list[Path]:
     """Page, data, table and chart of a correlation."""
     title = f"{found.scene}: measured and computed"
     lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."
+    charts = {"off": partial(off_chart, found, title)}
+    if found.mac is not None:
+        charts["mac"] = partial(mac_map, found)
     return write_files(
         folder,
         "correlation",
@@ -122,7 +138,7 @@ def write_correlation(folder: Path, found: Any) -> list[Path]:
         [pairs(found)],
         found.results,
         lines={"pairs": pairs(found)},
-        charts={"off": partial(off_chart, found, title)},
+        charts=charts,
         notes=found.sentences,
     )
 

@@ -132,14 +132,14 @@ def mac_chart(record: Record, width: float = WIDE) -> Chart | None:
         return None
     reference = model_name(record, record.mac.reference)
     panels = [
-        _matrix(found, model_name(record, key), reference)
+        mac_panel(found, model_name(record, key), reference)
         for key, found in record.mac.models.items()
         if found.values and found.values[0]
     ]
     return Chart(in_columns(panels, 3), width) if panels else None
 
 
-def _matrix(found: MacTable, name: str, reference: str) -> Panel:
+def mac_panel(found: MacTable, name: str, reference: str) -> Panel:
     """One matrix, a mode of the model a row."""
     rows = found.rows or [""] * len(found.values)
     columns = found.columns or [""] * len(found.values[0])

@@ -1,5 +1,5 @@
-"""Which measured resonance is which computed mode, where frequencies and multiplicities are all that
-is known, and how sure that is.
+"""Which measured resonance is which computed mode, by frequencies, multiplicities and, where they
+were measured, shapes, and how sure that is.
 
 Both lists ascend. They are laid beside each other by a hidden Markov model: a step takes one of
 each (the same mode), two measured and one computed (a pair that was measured split), one measured
@@ -29,6 +29,9 @@ CROSSED = SAME**2
 HALF, DOUBLE = 0.2, 0.02
 #: of a mode called by another family than the computed one
 RENAMED = 1e-3
+#: what a MAC less than one by the first costs, as a likelihood, and the least it is brought to: noise
+#: and a plane a little off leave 0.9 of a shape, another mode less than a half
+UNLIKE, OTHER = 0.05, 1e-4
 #: shifts of logarithms that are begun with, and the scatter: a modulus is 20 % off at most
 SHIFTS, SCATTER = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 0.02
 #: least scatter; rounding of printed frequencies
@@ -87,8 +90,11 @@ class Alignment:
 _Step = tuple[int, int, float, tuple[tuple[int, int], ...]]
 
 
-def align(measured: Sequence[Peak], computed: Sequence[Peak]) -> Alignment:
-    """Lay measured resonances beside computed modes, both by ascending frequency.
+def align(
+    measured: Sequence[Peak], computed: Sequence[Peak], mac: np.ndarray | None = None
+) -> Alignment:
+    """Lay measured resonances beside computed modes, both by ascending frequency, with the MAC of
+    every measured shape (rows) and every mode where there is one.
 
     Examples
     --------
@@ -98,17 +104,21 @@ def align(measured: Sequence[Peak], computed: Sequence[Peak]) -> Alignment:
     >>> [int(row.argmax()) for row in one.pairs], bool(one.missed[2] > 0.99)
     ([0, 1, 3], True)
     """
-    starts = sorted(SHIFTS, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER).total)
-    ends = [_settled(measured, computed, shift) for shift in starts[:TRIED]]
+    starts = sorted(
+        SHIFTS, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, mac).total
+    )
+    ends = [_settled(measured, computed, shift, mac) for shift in starts[:TRIED]]
     return max(ends, key=lambda lattice: lattice.total).alignment()
 
 
-def _settled(measured: Sequence[Peak], computed: Sequence[Peak], shift: float) -> _Lattice:
+def _settled(
+    measured: Sequence[Peak], computed: Sequence[Peak], shift: float, mac: np.ndarray | None
+) -> _Lattice:
     """Sums once shift and scatter have settled from a start."""
     apart = np.subtract.outer(
         [one.log_frequency for one in measured], [one.log_frequency for one in computed]
     )
-    lattice = _Lattice(measured, computed, shift, SCATTER)
+    lattice = _Lattice(measured, computed, shift, SCATTER, mac)
     for _ in range(ROUNDS):
         pairs = lattice.alignment().pairs
         weight = float(pairs.sum())
@@ -119,7 +129,7 @@ def _settled(measured: Sequence[Peak], computed: Sequence[Peak], shift: float) -
         square = float((pairs * (apart - shift) ** 2).sum()) + SCATTER**2 / 10
         scatter = max(math.sqrt(square / (weight + 0.1)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
-        lattice = _Lattice(measured, computed, shift, scatter)
+        lattice = _Lattice(measured, computed, shift, scatter, mac)
         if moved < 1e-3 * scatter:
             break
     return lattice
@@ -129,14 +139,24 @@ class _Lattice:
     """Forward and backward sums over all ways to lay two lists beside each other, as logarithms."""
 
     def __init__(
-        self, measured: Sequence[Peak], computed: Sequence[Peak], shift: float, scatter: float
+        self,
+        measured: Sequence[Peak],
+        computed: Sequence[Peak],
+        shift: float,
+        scatter: float,
+        mac: np.ndarray | None,
     ):
         self.measured, self.computed, self.shift, self.scatter = measured, computed, shift, scatter
         n, m = len(measured), len(computed)
         logs = [one.log_frequency for one in (*measured, *computed)]
         # a peak that is nothing is anywhere in the range
         self.alone = math.log(SPURIOUS / max(max(logs) - min(logs), scatter))
-        self.like = [[self._like(one, mode) for mode in computed] for one in measured]
+        shaped = np.zeros((n, m)) if mac is None else (mac - 1) / UNLIKE
+        shaped = np.maximum(shaped, math.log(OTHER)).tolist()
+        self.like = [
+            [self._like(one, mode) + like for mode, like in zip(computed, row)]
+            for one, row in zip(measured, shaped)
+        ]
         self.steps = {at: self._steps(*at) for at in product(range(n + 1), range(m + 1))}
         self.forward = np.full((n + 1, m + 1), -np.inf).tolist()
         self.backward = np.full((n + 1, m + 1), -np.inf).tolist()

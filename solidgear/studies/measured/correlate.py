@@ -18,6 +18,7 @@ from solidgear.studies.change import BarredMode
 from solidgear.studies.measured.alignment import Alignment, Peak, align
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
+from solidgear.studies.measured.shapes import mac_of
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
 SURE, POSSIBLE = 0.95, 0.05
@@ -41,6 +42,8 @@ class Pair:
         Of that.
     others : tuple of (BarredMode, float)
         Further modes that it may be, or be as well, with their probabilities.
+    mac : float or None
+        Of the measured shape and the mode; None where no shape was measured.
     """
 
     number: int
@@ -48,6 +51,7 @@ class Pair:
     computed: BarredMode | None
     probability: float
     others: tuple[tuple[BarredMode, float], ...] = ()
+    mac: float | None = None
 
     @property
     def sure(self) -> bool:
@@ -98,6 +102,10 @@ class Correlation(Displayed):
         Of frequencies, relative: common to all, measured less computed, and what is left.
     mesh : str
         Model and mesh.
+    mac : (n, m) ndarray or None
+        Of every measured shape and every mode; None where no shapes were measured.
+    names : tuple of str
+        Of the modes.
     """
 
     shown: ClassVar[str] = "correlation"
@@ -110,6 +118,8 @@ class Correlation(Displayed):
     scatter: float
     mesh: str
     tolerance: float
+    mac: np.ndarray | None = None
+    names: tuple[str, ...] = ()
 
     @property
     def rms(self) -> float:
@@ -149,11 +159,14 @@ class Correlation(Displayed):
                     "bar_hz": pair.computed and pair.computed.width,
                     "relative": pair.relative,
                     "probability": pair.probability,
+                    "mac": pair.mac,
                     "others": [[mode.name, share] for mode, share in pair.others],
                     "verdict": pair.verdict,
                 }
                 for pair in self.pairs
             ],
+            "mac": None if self.mac is None else self.mac.tolist(),
+            "modes": list(self.names),
             "not_measured": [
                 {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
                 for mode, share in self.missed
@@ -199,8 +212,9 @@ def correlate(
     peaks = measured.modes
     tol = scene.ask.tolerance / 10 if tol is None else tol
     computed = computed_up_to(scene, peaks[-1].frequency, tol, progress)
-    found = align(*peaks_of(measured, computed))
-    return _correlation(scene, measured, computed, found)
+    mac = None if measured.shapes is None else mac_of(measured.shapes, computed)
+    found = align(*peaks_of(measured, computed), mac)
+    return _correlation(scene, measured, computed, found, mac)
 
 
 def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[Peak]]:
@@ -222,18 +236,19 @@ def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[P
 
 
 def _correlation(
-    scene: Scene, measured: Measured, computed: Computed, found: Alignment
+    scene: Scene, measured: Measured, computed: Computed, found: Alignment, mac: np.ndarray | None
 ) -> Correlation:
     barred = computed.barred
     pairs = []
     for k, one in enumerate(measured.modes):
         likely = [int(j) for j in np.argsort(-found.pairs[k]) if found.pairs[k, j] > POSSIBLE]
-        mode, share = None, float(found.spurious[k])
+        mode, share, like = None, float(found.spurious[k]), None
         if likely and found.pairs[k, likely[0]] >= found.spurious[k]:
             first, *likely = likely
             mode, share = barred[first], float(found.pairs[k, first])
+            like = None if mac is None else float(mac[k, first])
         others = tuple((barred[j], float(found.pairs[k, j])) for j in likely)
-        pairs.append(Pair(k + 1, one, mode, share, others))
+        pairs.append(Pair(k + 1, one, mode, share, others, like))
     highest = measured.modes[-1].frequency * math.exp(-found.shift)
     missed = tuple(
         (mode, float(share))
@@ -249,6 +264,8 @@ def _correlation(
         found.scatter,
         computed.mesh,
         computed.tolerance,
+        mac,
+        tuple(mode.name for mode in barred),
     )
 
 

@@ -1,6 +1,7 @@
 """Measured resonances from a file: frequencies, how sure they are, and what is known of each.
 
-A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``.
+A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
+a universal file has shapes as well.
 
     title = "Tap test, hung on two cords"
     uncertainty = "0.1 %"           # of all modes that say nothing else
@@ -19,12 +20,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
+from solidgear.studies.measured.universal import ENDINGS, Shapes, read_shapes
 
 #: resonances of a file
 MOST = 2000
@@ -102,6 +104,12 @@ class Measured(Model):
     source: str = ""
     uncertainty: Uncertainty | None = None
     mode: tuple[MeasuredMode, ...]
+    _shapes: Shapes | None = PrivateAttr(None)
+
+    @property
+    def shapes(self) -> Shapes | None:
+        """Shapes of all on measuring points; None for a list of frequencies."""
+        return self._shapes
 
     @model_validator(mode="after")
     def _ascending(self) -> Measured:
@@ -133,7 +141,7 @@ def load_measured(path: str | os.PathLike) -> Measured:
     Parameters
     ----------
     path : str or path
-        ``.toml`` or ``.csv``.
+        ``.toml``, ``.csv``, or a universal file ``.unv``, ``.uff`` of mode shapes.
 
     Raises
     ------
@@ -149,11 +157,24 @@ def load_measured(path: str | os.PathLike) -> Measured:
     [(1250.0, 2), (3100.0, 1)]
     """
     where = os.fspath(path)
+    if where.lower().endswith(ENDINGS):
+        return _of_universal(where)
     tables: Mapping[str, Any] = _of_csv(Path(path)) if where.endswith(".csv") else parse(where)
     try:
         return Measured(**tables)
     except SceneError as error:
         raise error.located(tables, where=where) from None
+
+
+def _of_universal(where: str) -> Measured:
+    frequencies, shapes = read_shapes(where)
+    tables = {"mode": [{"frequency": one} for one in frequencies]}
+    try:
+        out = Measured(title=Path(where).stem, **tables)
+    except SceneError as error:
+        raise error.located(tables, where=where) from None
+    out._shapes = shapes
+    return out
 
 
 def _of_csv(path: Path) -> dict[str, Any]:

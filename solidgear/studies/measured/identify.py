@@ -23,6 +23,7 @@ from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
 from solidgear.studies.measured.derivatives import log_derivatives
 from solidgear.studies.measured.identified import Fitted, Identification, Identified, Predicted
+from solidgear.studies.measured.shapes import mac_of
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.entries import in_si
 
@@ -252,7 +253,9 @@ class _Fit:
 
     def __init__(self, study: _Study, computed: Computed, sure: float):
         self.study = study
-        found = align(*peaks_of(study.measured, computed))
+        shapes = study.measured.shapes
+        mac = None if shapes is None else mac_of(shapes, computed)
+        found = align(*peaks_of(study.measured, computed), mac)
         likely = found.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
         self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]

@@ -1,0 +1,151 @@
+"""Universal files: mode shapes and responses of test equipment, and shapes held against modes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.studies.measured.computed import computed_up_to
+from solidgear.studies.measured.correlate import correlate
+from solidgear.studies.measured.data import load_measured
+from solidgear.studies.measured.universal import read_responses
+
+pyuff = pytest.importorskip("pyuff")
+
+#: places of points on the rod of 0.6 m by 20 mm, x, y, z, mm
+PLACES = np.array(
+    [[10.0 * c, y, 10.0 * s] for y in np.linspace(0, 600, 9) for c, s in ((1, 0), (0, 1))]
+)
+
+
+def units(code=5):
+    factors = {"length": 1e3, "force": 1e3, "temp": 1.0, "temp_offset": 273.15}
+    return {"type": 164, "units_code": code, "units_description": "mm", "temp_mode": 1, **factors}
+
+
+def nodes(places=PLACES):
+    n = len(places)
+    x, y, z = places.T
+    flat = {"def_cs": [0] * n, "disp_cs": [0] * n, "color": [1] * n}
+    return {"type": 2411, "node_nums": list(range(1, n + 1)), "x": x, "y": y, "z": z, **flat}
+
+
+def mode(k, hertz, shape):
+    r1, r2, r3 = shape.T
+    kind = {"analysis_type": 2, "data_ch": 2, "spec_data_type": 8, "load_case": 1}
+    return {
+        "type": 55, "mode_n": k, "freq": hertz, "node_nums": list(range(1, len(shape) + 1)),
+        "r1": r1, "r2": r2, "r3": r3, **kind,
+    }  # fmt: skip
+
+
+def response(node, hertz, values):
+    return {
+        "type": 58, "binary": 1, "func_type": 4, "rsp_node": node, "rsp_dir": 1, "ref_node": 1,
+        "ref_dir": 1, "x": hertz, "data": values, "abscissa_spec_data_type": 18,
+        "ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13,
+    }  # fmt: skip
+
+
+def written(path, *sets):
+    pyuff.UFF(str(path)).write_sets(list(sets), "overwrite")
+    return path
+
+
+def test_shapes_come_back_as_written_in_si_by_ascending_frequency(tmp_path):
+    shapes = np.random.default_rng(1).standard_normal((2, len(PLACES), 3))
+    path = written(
+        tmp_path / "a.unv", units(), nodes(), mode(1, 700.0, shapes[0]), mode(2, 250.0, shapes[1])
+    )
+    found = load_measured(path)
+    assert [one.frequency for one in found.modes] == [250.0, 700.0]
+    assert found.shapes.points == pytest.approx(PLACES / 1e3)
+    # the format keeps six digits
+    assert found.shapes.values == pytest.approx(shapes[::-1], rel=1e-5)
+
+
+def test_responses_come_back_in_si_over_one_axis(tmp_path):
+    hertz = np.linspace(10.0, 1000.0, 100)
+    values = np.random.default_rng(2).standard_normal((3, 100, 2)) @ [1, 1j]
+    sets = [response(k + 1, hertz, one) for k, one in enumerate(values)]
+    found = read_responses(written(tmp_path / "a.uff", units(), *sets))
+    assert found.frequencies == pytest.approx(hertz) and found.points[2] == (3, 1)
+    # mm/s^2 over mN are m/s^2 over N
+    assert found.values == pytest.approx(values)
+
+
+def test_bad_files_end_in_one_sentence(tmp_path):
+    shape = np.ones((len(PLACES), 3))
+    cases = {
+        "does not tell its units": (nodes(), mode(1, 250.0, shape)),
+        "gives no places": (units(), mode(1, 250.0, shape)),
+        "gives no place of point 18": (units(), nodes(PLACES[:-1]), mode(1, 250.0, shape)),
+        "holds no mode shapes": (units(), nodes()),
+    }
+    for told, sets in cases.items():
+        with pytest.raises(SceneError, match=told):
+            load_measured(written(tmp_path / "bad.unv", *sets))
+    whole = written(tmp_path / "cut.unv", units(), nodes(), mode(1, 250.0, shape))
+    whole.write_bytes(whole.read_bytes()[:-200])
+    with pytest.raises(SceneError, match="is cut short"):
+        load_measured(whole)
+
+
+#: a rod as long that bending 4 and torsion 1 lie 1 % from each other, m
+LENGTH, RADIUS = 0.497, 0.01
+#: points on it, of which no three of one angle lie on nodes
+ROUND = np.array([[c, s] for c, s in ((1, 0), (0, 1), (-0.6, 0.8))])
+ON = np.array([[RADIUS * c, y, RADIUS * s] for y in np.linspace(0.0, LENGTH, 11) for c, s in ROUND])
+
+
+def bent(n):
+    """Bending of a free slender rod in a plane at 40 degrees (Blevins, Formulas, table 8-1)."""
+    k = {1: 4.73004, 2: 7.85320, 3: 10.99561, 4: 14.13717}[n]
+    sigma = (np.cosh(k) - np.cos(k)) / (np.sinh(k) - np.sin(k))
+    x = k * ON[:, 1] / LENGTH
+    across = np.cosh(x) + np.cos(x) - sigma * (np.sinh(x) + np.sin(x))
+    plane = np.array([np.cos(0.7), 0.0, np.sin(0.7)])
+    return across[:, None] * plane
+
+
+def twisted():
+    """Torsion of a free rod, tangential."""
+    angle = np.cos(np.pi * ON[:, 1] / LENGTH)
+    return angle[:, None] * np.column_stack([ON[:, 2], 0 * angle, -ON[:, 0]]) / RADIUS
+
+
+def rod_scene():
+    return sg.Scene.from_parts([sg.Segment.cylinder("rod", length=LENGTH, diameter=2 * RADIUS)])
+
+
+def test_two_near_modes_that_changed_places_are_told_by_their_shapes(tmp_path):
+    scene = rod_scene()
+    computed = computed_up_to(scene, 3300.0, 0.02)
+    at = {str(one.name): one.frequency_hz for one in computed.modes}
+    assert at["torsion 1"] == pytest.approx(at["bending 4"], rel=0.03)
+    # each has the frequency of the other
+    shapes = [
+        (at["bending 1"], bent(1), "bending 1"),
+        (at["bending 2"], bent(2), "bending 2"),
+        (at["bending 3"], bent(3), "bending 3"),
+        (at["torsion 1"], bent(4), "bending 4"),
+        (at["bending 4"], twisted(), "torsion 1"),
+    ]
+    sets = [mode(k, hertz, shape) for k, (hertz, shape, _) in enumerate(shapes, start=1)]
+    path = written(tmp_path / "rod.unv", units(), nodes(1e3 * ON), *sets)
+    found = correlate(scene, load_measured(path), tol=0.02)
+    shapes.sort(key=lambda one: one[0])
+    assert [pair.computed.name for pair in found.pairs] == [name for *_, name in shapes]
+    # a slender rod's closed forms; shear and the rod's own turning change bending 4 by a little
+    assert all(pair.mac > 0.97 for pair in found.pairs)
+    assert all(pair.probability > 0.95 for pair in found.pairs)
+
+
+def test_a_point_off_the_surface_is_named(tmp_path):
+    places = ON.copy()
+    places[4, 2] += 0.2 * RADIUS
+    path = written(tmp_path / "off.unv", units(), nodes(1e3 * places), mode(1, 345.0, bent(1)))
+    with pytest.raises(SolidgearError, match="measuring point 5 .* off the surface"):
+        correlate(rod_scene(), load_measured(path), tol=0.02)
