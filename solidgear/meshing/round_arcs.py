@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -14,8 +15,16 @@ TO_A_QUARTER = 6
 LEAST_POINTS = 12
 
 
-def arcs(y, r, triangles, near) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Pieces of a surface on one arc of the meridian: triangles, and y and r of ends of cones.
+class Arc(NamedTuple):
+    """Cones along an arc: ends (n,), m, and how far they lie beside it, m."""
+
+    y: np.ndarray
+    r: np.ndarray
+    off: float
+
+
+def arcs(y, r, triangles, near) -> Iterator[tuple[np.ndarray, Arc]]:
+    """Pieces of a surface on one arc of the meridian: their triangles, and the cones.
 
     `y` and `r` are of points, (n,), m; `triangles` are (3, t), and a point nearer than `near` is on
     the arc. The volume of the cones is that of the arc.
@@ -29,11 +38,11 @@ def arcs(y, r, triangles, near) -> Iterator[tuple[np.ndarray, np.ndarray, np.nda
         used = np.unique(triangles[:, members])
         found = _cones(y[used], r[used], near) if len(used) >= LEAST_POINTS else None
         if found is not None:
-            yield members, *found
+            yield members, found
 
 
-def _cones(y, r, near) -> tuple[np.ndarray, np.ndarray] | None:
-    """Ends of cones along the arc of some points; None where they are on none."""
+def _cones(y, r, near) -> Arc | None:
+    """Cones along the arc of some points; None where they are on none."""
     middle, height = y.mean(), r.mean()
     u, v = y - middle, r - height
     matrix = np.column_stack([2 * u, 2 * v, np.ones_like(u)])
@@ -64,7 +73,10 @@ def _cones(y, r, near) -> tuple[np.ndarray, np.ndarray] | None:
             break
         low, high = high, high - off[1] * (high - low) / (off[1] - off[0])
     along, across = ends(high)
-    return (along, across) if (np.diff(along) > 0).all() else None
+    if not (np.diff(along) > 0).all():
+        return None
+    chords = np.hypot((along[1:] + along[:-1]) / 2 - yc, (across[1:] + across[:-1]) / 2 - rc)
+    return Arc(along, across, float(np.abs(chords - radius).max()))
 
 
 def _under(angle, rc, radius, side) -> float:

@@ -70,12 +70,15 @@ class RoundPart:
         Volume that a mesh may lack beside the round surfaces, m^3: that outside flat triangles
         with corners on them, or a small part of it where they are so wide that the part itself may
         be many-sided, and no facet but a curved one speaks for something round.
+    beside_arcs : float
+        Largest distance of walls from the arc of a torus, m.
     """
 
     walls: tuple[Frustum, ...]
     surfaces: tuple[Lathe, ...]
     share: float
     facets: float = 0.0
+    beside_arcs: float = 0.0
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
@@ -122,18 +125,22 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
                 on[own] = True
                 facets += _between(points, triangles[:, own], [found])
     rest = np.flatnonzero(~on & ~flat)
-    for members, along, across in arcs(y, r, triangles[:, rest], ON_LINE * largest):
+    beside_arcs = 0.0
+    for members, (along, across, off) in arcs(y, r, triangles[:, rest], ON_LINE * largest):
         own = rest[members]
         sides = np.pi * (across[1:] + across[:-1]) * np.hypot(np.diff(along), np.diff(across))
         turn = float(area[own].sum() / sides.sum())
         if turn > MOST_OF_A_TURN:
             # where an arc is steep, radii by chords and by the arc differ by a part of its size
             beside = float(np.hypot(np.ptp(along), np.ptp(across))) / 4
-            corners = zip(along, along[1:], across, across[1:])
-            cones = [Lathe(*map(float, ends), turn, beside) for ends in corners]
+            cones = [
+                Lathe(float(y0), float(y1), float(r0), float(r1), turn, beside)
+                for y0, y1, r0, r1 in zip(along, along[1:], across, across[1:])
+            ]
             surfaces += cones
             on[own] = True
             facets += _between(points, triangles[:, own], cones)
+            beside_arcs = max(beside_arcs, off)
     if not surfaces:
         return RoundPart((), (), 0.0)
     walls, by_rays = _walls(points, triangles, surfaces, y.min(), y.max())
@@ -142,7 +149,7 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
         facets = 0.0
     elif not _fine_around(points, triangles[:, on], ON_LINE * largest):
         facets *= CURVED
-    return RoundPart(tuple(walls), tuple(surfaces), share, facets)
+    return RoundPart(tuple(walls), tuple(surfaces), share, facets, beside_arcs)
 
 
 def _between(points, triangles, surfaces: list[Lathe]) -> float:
