@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.revolved import draw_revolved
 from solidgear.meshing.solids import axis_angle
 from solidgear.scene import Keyway, Segment
+from solidgear.scene.blends import Corner
 from solidgear.scene.body_file import UNITS
 from solidgear.scene.outline import Frustum, Outline
 from validation.shipped import GEOMETRY
@@ -37,6 +39,7 @@ def write_step(
     segments: Sequence[Segment],
     features: Sequence[Any] = (),
     *,
+    corners: Sequence[Corner] = (),
     unit: str = "mm",
     turn: np.ndarray | None = None,
     shift: Sequence[float] = (0.0, 0.0, 0.0),
@@ -48,6 +51,8 @@ def write_step(
     path : path
     segments : sequence of Segment
     features : sequence of Keyway, Flat or CrossHole
+    corners : sequence of Corner
+        Of fillets and chamfers.
     unit : {'mm', 'inch', 'm'}
         Of the numbers in the file.
     turn : (3, 3) ndarray, optional
@@ -60,15 +65,18 @@ def write_step(
     float
         Its volume as the kernel has it, m^3.
     """
-    return isolated(_write, path, tuple(segments), tuple(features), unit, turn, shift, seconds=120)
+    parts = tuple(segments), tuple(features), tuple(corners)
+    return isolated(_write, path, *parts, unit, turn, shift, seconds=120)
 
 
-def _write(path, segments, features, unit, turn, shift) -> float:
+def _write(path, segments, features, corners, unit, turn, shift) -> float:
     gmsh, scale = import_gmsh(), 1 / UNITS[unit]
     shapes = [Frustum(*(scale * v for v in Frustum.of(s))) for s in segments]
     with Session(gmsh):
         occ = gmsh.model.occ
-        draw_revolved(gmsh, Outline(shapes), [], [])
+        lengths = ("y", "r", "axial", "radial")
+        edges = [replace(c, **{k: scale * getattr(c, k) for k in lengths}) for c in corners]
+        draw_revolved(gmsh, Outline(shapes, edges), [], [])
         solids = occ.getEntities(3)
         if len(solids) > 1:
             solids, _ = occ.fuse(solids[:1], solids[1:])

@@ -84,6 +84,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         round_volume=volume_of(Outline(walls)) / found_in.volume,
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else found.facets / found_in.volume,
+        beside_arcs=found.beside_arcs,
         groups=found_in.groups,
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),

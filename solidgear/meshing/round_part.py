@@ -2,8 +2,8 @@
 
 Known of the part are points on its surface, in triangles. A triangle whose corners lie on one line
 of the meridian (radius against y) lies on a cone or a cylinder; triangles of one line are one
-surface where they go around for more than half of the way. Between such surfaces, and where there
-are none, rays from the axis give mean radii, that of a circle with the area of the section.
+surface where they go around for more than half of the way. A torus is as round, and is told as
+short cones of its volume. Between such surfaces, and where there are none, rays from the axis give mean radii, that of a circle with the area of the section.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solidgear.meshing.round_arcs import arcs, cone_volume
 from solidgear.scene.outline import Frustum
 
 #: distance from a line of the meridian, over the largest radius, at which a point is on it: mesh
@@ -37,13 +38,16 @@ CURVED = 0.02
 
 
 class Lathe(NamedTuple):
-    """A round surface: from (y0, r0) to (y1, r1), m, and the share of a turn it covers."""
+    """A round surface: from (y0, r0) to (y1, r1), m, and the share of a turn it covers; a cone of a
+    torus lies beside triangles on it by up to ``beside``, m.
+    """
 
     y0: float
     y1: float
     r0: float
     r1: float
     share: float
+    beside: float = 0.0
 
     def radius(self, y):
         """Radius at y, m."""
@@ -66,12 +70,15 @@ class RoundPart:
         Volume that a mesh may lack beside the round surfaces, m^3: that outside flat triangles
         with corners on them, or a small part of it where they are so wide that the part itself may
         be many-sided, and no facet but a curved one speaks for something round.
+    beside_arcs : float
+        Largest distance of walls from the arc of a torus, m.
     """
 
     walls: tuple[Frustum, ...]
     surfaces: tuple[Lathe, ...]
     share: float
     facets: float = 0.0
+    beside_arcs: float = 0.0
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
@@ -116,7 +123,24 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
             if found is not None and found.share > MOST_OF_A_TURN:
                 surfaces.append(found)
                 on[own] = True
-                facets += _between(points, triangles[:, own], found)
+                facets += _between(points, triangles[:, own], [found])
+    rest = np.flatnonzero(~on & ~flat)
+    beside_arcs = 0.0
+    for members, (along, across, off) in arcs(y, r, triangles[:, rest], ON_LINE * largest):
+        own = rest[members]
+        sides = np.pi * (across[1:] + across[:-1]) * np.hypot(np.diff(along), np.diff(across))
+        turn = float(area[own].sum() / sides.sum())
+        if turn > MOST_OF_A_TURN:
+            # where an arc is steep, radii by chords and by the arc differ by a part of its size
+            beside = float(np.hypot(np.ptp(along), np.ptp(across))) / 4
+            cones = [
+                Lathe(float(y0), float(y1), float(r0), float(r1), turn, beside)
+                for y0, y1, r0, r1 in zip(along, along[1:], across, across[1:])
+            ]
+            surfaces += cones
+            on[own] = True
+            facets += _between(points, triangles[:, own], cones)
+            beside_arcs = max(beside_arcs, off)
     if not surfaces:
         return RoundPart((), (), 0.0)
     walls, by_rays = _walls(points, triangles, surfaces, y.min(), y.max())
@@ -125,17 +149,17 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
         facets = 0.0
     elif not _fine_around(points, triangles[:, on], ON_LINE * largest):
         facets *= CURVED
-    return RoundPart(tuple(walls), tuple(surfaces), share, facets)
+    return RoundPart(tuple(walls), tuple(surfaces), share, facets, beside_arcs)
 
 
-def _between(points, triangles, surface: Lathe) -> float:
-    """Volume between a round surface and its triangles, m^3, by the flux of (x, z) / 2."""
+def _between(points, triangles, surfaces: list[Lathe]) -> float:
+    """Volume between round surfaces end to end and their triangles, m^3, by the flux of (x, z) / 2."""
     a, b, c = (points[:, t] for t in triangles)
     normal = np.cross((b - a).T, (c - a).T).T / 2
     middle = (a + b + c) / 3
     flat = np.abs((middle[[0, 2]] * normal[[0, 2]]).sum(axis=0) / 2).sum()
-    r0, r1 = surface.r0, surface.r1
-    return abs(float(np.pi * (surface.y1 - surface.y0) * (r0 * r0 + r0 * r1 + r1 * r1) / 3 - flat))
+    whole = sum(cone_volume(np.array([s.y0, s.y1]), np.array([s.r0, s.r1])) for s in surfaces)
+    return abs(float(whole - flat))
 
 
 def _fine_around(points, triangles, near) -> bool:
@@ -251,7 +275,14 @@ def _inside(y0, y1) -> float:
 def _at_radius(surfaces, middle, radius) -> list[Lathe]:
     """Surfaces at the radius that rays tell, which is that of chords."""
     return (
-        [s for s in surfaces if -1e-3 <= s.radius(middle) / radius - 1 <= CHORD] if radius else []
+        [
+            s
+            for s in surfaces
+            if -1e-3 * radius <= s.radius(middle) - radius + s.beside
+            and s.radius(middle) - radius - s.beside <= CHORD * radius
+        ]
+        if radius
+        else []
     )
 
 

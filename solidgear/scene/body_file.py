@@ -161,6 +161,8 @@ class BodyFile(Model):
     facets : float
         Volume between round surfaces and the facets that a mesh file has of them, over that of the
         part: so far its volume may be off of a part that is round.
+    beside_arcs : float
+        Largest distance of segments from the arcs that they stand for, m.
     element : str
         Of a mesh file.
     counts : tuple of int or None
@@ -200,6 +202,7 @@ class BodyFile(Model):
     round_share: float
     round_volume: float
     facets: float = 0.0
+    beside_arcs: float = 0.0
     element: str = ""
     counts: tuple[int, int, int, int] | None = None
     groups: tuple[PartGroup, ...] = ()

@@ -40,6 +40,11 @@ def described(scene: Scene) -> Iterator[Notice]:
                 f"{'lower' if off > 0 else 'higher'} by about twice that; how it bends rests on its "
                 "elements too"
             )
+    if body.beside_arcs:
+        same += (
+            "; arcs such as fillets are cones of the same volume, which lie up to "
+            f"{1e3 * body.beside_arcs:.2g} mm beside them"
+        )
     several = len(scene.segments) > 1
     segments = f"{len(scene.segments)} segments are" if several else "1 segment is"
     yield Notice(
