@@ -3,7 +3,8 @@
 Known of the part are points on its surface, in triangles. A triangle whose corners lie on one line
 of the meridian (radius against y) lies on a cone or a cylinder; triangles of one line are one
 surface where they go around for more than half of the way. A torus is as round, and is told as
-short cones of its volume. Between such surfaces, and where there are none, rays from the axis give mean radii, that of a circle with the area of the section.
+short cones of its volume. Between such surfaces, and where there are none, rays from the axis give
+mean radii, that of a circle with the area of the section.
 """
 
 from __future__ import annotations

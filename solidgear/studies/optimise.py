@@ -21,7 +21,7 @@ from solidgear.errors import SolidgearError, nearest
 from solidgear.scene.toml_file import parse
 from solidgear.studies.optimum import Design, Optimum
 from solidgear.studies.sweep.entries import Entry, Kept, entries_of, in_si, kept_of
-from solidgear.studies.sweep.file_variants import OWN
+from solidgear.studies.sweep.file_variants import OWN, in_own_file
 from solidgear.studies.sweep.scene_variants import STATICS, SceneTask, SceneVariants
 from solidgear.studies.wishes import Wish, limit_of, plain_number, wish_of
 
@@ -106,14 +106,13 @@ class _Search:
         self.keep = tuple(map(limit_of, keep))
         self.progress = progress
         files = {OWN: parse(path)}
-        owner = lambda entry: (OWN, entry)  # noqa: E731
         texts = [_ends(text) for text in vary]
-        self.entries: tuple[Entry, ...] = entries_of(texts, files, owner)
+        self.entries: tuple[Entry, ...] = entries_of(texts, files, in_own_file)
         if not self.entries:
             raise SolidgearError(
                 'nothing is varied; give for example --vary "bearing.B.position=180 mm:240 mm"'
             )
-        kept: tuple[Kept, ...] = kept_of(keep_sum, files, owner, self.entries)
+        kept: tuple[Kept, ...] = kept_of(keep_sum, files, in_own_file, self.entries)
         # the variant that is read next is the last one
         self.variants = SceneVariants(
             Path(path), files, self.entries, np.full((1, len(self.entries)), math.nan), kept

@@ -172,7 +172,7 @@ class _Study:
             map(Identified, self.labels, self.before.tolist(), values.tolist(), fit.deviations())
         )
         left = fit.residual - fit.rows @ step
-        leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.inverse, fit.rows) * fit.weight**2
+        leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.covariance, fit.rows) * fit.weight**2
         out = left / np.maximum(1 - leverage, 1e-12)
         measured = np.array([self.measured.modes[i].frequency for i, _ in fit.pairs])
         fitted = tuple(
@@ -283,12 +283,8 @@ class _Fit:
         left, sizes, right = np.linalg.svd(self.rows * self.weight[:, None], full_matrices=False)
         self.left, self.sizes, self.right = left, sizes, right
         kept = np.maximum(sizes, 1e-30)
-        self.inverse = (right.T / kept**2) @ right
-
-    @property
-    def covariance(self) -> np.ndarray:
-        """Of the logarithms of entries."""
-        return self.inverse
+        #: of the logarithms of entries
+        self.covariance = (right.T / kept**2) @ right
 
     def step(self) -> np.ndarray:
         """Change of the logarithms of entries; none along what the data do not tell."""

@@ -21,6 +21,11 @@ POINT = "point"
 LOOKED = 2000
 
 
+def in_own_file(path: str) -> tuple[str, str]:
+    """Place of a path where there is one file."""
+    return OWN, path
+
+
 @dataclass(frozen=True)
 class FileVariants:
     """Points of a sweep over entries of files.

@@ -23,7 +23,7 @@ from solidgear.studies.one_shaft import mass_of, one_shaft
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry
-from solidgear.studies.sweep.file_variants import OWN, FileVariants
+from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
@@ -58,7 +58,7 @@ def scene_variants(path: Path, design: Design) -> SceneVariants:
         For a file and texts that cannot be read, and too many variants.
     """
     files = {OWN: parse(str(path))}
-    return SceneVariants(path, files, *design.points(files, lambda entry: (OWN, entry)))
+    return SceneVariants(path, files, *design.points(files, in_own_file))
 
 
 @dataclass(frozen=True)
