@@ -22,12 +22,11 @@ DOCS = ROOT / "docs"
 sys.path.insert(0, str(DOCS / "tools"))
 
 import bearing_keys  # noqa: E402
+import build  # noqa: E402
 import console  # noqa: E402
 import gallery  # noqa: E402
 import prose  # noqa: E402
 import stability  # noqa: E402
-
-import build  # noqa: E402
 
 MADE = ("written",)
 PAGES = sorted(
