@@ -1,6 +1,7 @@
-"""The gallery, from the scripts in `examples/`: what each says of itself, its source, and a place for
-its output.
+"""The gallery, from the scripts in `examples/`: a picture that leads to each, what it says of itself,
+its source, and a place for its output.
 
+    python docs/tools/gallery_pictures.py EXAMPLE             # draws it
     python docs/tools/gallery.py
     python docs/tools/console.py --write docs/gallery.md      # runs them
 """
@@ -13,6 +14,9 @@ from pathlib import Path
 DOCS = Path(__file__).parent.parent
 EXAMPLES = DOCS.parent / "examples"
 PAGE = DOCS / "gallery.md"
+PICTURES = DOCS / "pictures" / "gallery"
+#: of the table of pictures
+COLUMNS = 3
 
 #: from the first answer to whole trains; a new example is added where it belongs
 ORDER = (
@@ -33,7 +37,7 @@ ORDER = (
 )
 HEAD = """# Gallery
 
-Short scripts, each with what it prints. They are in `examples/` and run from the folder of the project; the tests run them too. This page is made from them by `docs/tools/gallery.py`.
+Short scripts, each with what it prints: a picture opens its script. They are in `examples/` and run from the folder of the project; the tests run them too. This page is made from them by `docs/tools/gallery.py`.
 
 Three notebooks in `examples/notebooks/` hold their outputs: `tutorial` (a shaft of one's own), `compare` (which model to trust, and why), `bearings_and_systems` (a hundred bearings, and two parts in one system). The tests run them without Jupyter.
 """
@@ -45,6 +49,28 @@ def examples() -> list[str]:
     return [n for n in ORDER if n in there] + sorted(there - set(ORDER))
 
 
+def cards() -> str:
+    """A table of pictures, each a link to its example."""
+    cells = [
+        f"[![{title(n)}](pictures/gallery/{n}.png)](#{n.replace('_', '-')})<br>{title(n)}"
+        for n in examples()
+    ]
+    cells += [""] * (-len(cells) % COLUMNS)
+    rows = [cells[k : k + COLUMNS] for k in range(0, len(cells), COLUMNS)]
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join([*lines[:1], "|" + " --- |" * COLUMNS, *lines[1:], ""])
+
+
+def title(name: str) -> str:
+    """Words of an example's name."""
+    return name.replace("_", " ").capitalize()
+
+
+def page() -> str:
+    """The whole page, without outputs."""
+    return "\n".join([HEAD, cards(), *map(section, examples())]).rstrip() + "\n"
+
+
 def section(name: str) -> str:
     """An example on the page."""
     source = (EXAMPLES / f"{name}.py").read_text()
@@ -53,7 +79,7 @@ def section(name: str) -> str:
     first = next(n for n in ast.parse(source).body if not isinstance(n, ast.Expr)).lineno
     return "\n".join(
         [
-            f"## {name.replace('_', ' ').capitalize()}\n",
+            f"## {title(name)}\n",
             f"{head.strip()}\n",
             f"{rest.strip()}\n",
             f"```{{literalinclude}} ../examples/{name}.py",
@@ -65,7 +91,7 @@ def section(name: str) -> str:
 
 def main() -> None:
     """Write the page, without outputs."""
-    PAGE.write_text("\n".join([HEAD, *map(section, examples())]).rstrip() + "\n")
+    PAGE.write_text(page())
 
 
 if __name__ == "__main__":
