@@ -55,7 +55,7 @@ def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["small hole", pytest.param("three that share no plane", marks=pytest.mark.long)]
+    "name", ["small hole", pytest.param("three that share no plane", marks=pytest.mark.slow)]
 )
 def test_check_tells_of_the_part_with_its_features(name):
     scene = PARTS[name]
