@@ -272,12 +272,13 @@ LONG_SENTENCE = "A shaft " + "is long and " * 12 + "ends."
         ("It is short. " * 41, "paragraph"),
         (LONG_SENTENCE, "more than 35"),
         (f"| a | {LONG_SENTENCE} |", "more than 35"),
+        (f"$$x = 1,$$\n{LONG_SENTENCE}", "more than 35"),
         ("Its eigenfrequency is high.", "natural frequency"),
         ("\n\n".join(["No run of twelve words may stand on any page more than once."] * 2), "too"),
         ("\n\n".join(f"Word {k} of many." for k in range(prose.PAGE // 4 + 1)), "page"),
         ("\n\n".join(f"Word {k} of many." for k in range(prose.TOTAL // 4 + 1)), "all pages"),
     ],
-    ids=["paragraph", "sentence", "cell", "glossary", "twice", "page", "total"],
+    ids=["paragraph", "sentence", "cell", "formula", "glossary", "twice", "page", "total"],
 )
 def test_prose_beyond_a_limit_is_told_with_its_place(text, rule):
     told = prose.faults({"page.md": f"# Page\n\n{text}\n"})
