@@ -17,15 +17,9 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.catalogue import WAYS, Catalogue
 
 End = Literal["middle", "softer", "stiffer"]
-
-#: which way the rows hold the shaft, from lower to upper y
-_SIDES = {
-    "back_to_back": (1, -1),
-    "face_to_face": (-1, 1),
-}
 
 
 @dataclass(frozen=True)
@@ -62,6 +56,7 @@ def catalogued(
     *,
     clearance_share: float = 0.5,
     preload_factor: float = 1.0,
+    floats: bool = False,
     geometry: Geometry | None = None,
 ) -> Catalogued:
     """The bearing that catalogue data describe.
@@ -74,6 +69,8 @@ def catalogued(
         Place in the range of a clearance class, 0 to 1.
     preload_factor : float
         Times the preload, force or displacement.
+    floats : bool
+        One of its rings slides along y.
     geometry : Geometry, optional
         As :func:`solidgear.bearings.geometry.inner_geometry` found it before.
 
@@ -91,7 +88,7 @@ def catalogued(
         preloaded = _preloaded(data, rows, preload_factor)
     except SolidgearError as error:
         raise SceneError(str(error), path=("preload",)) from None
-    return Catalogued(RollingBearing(preloaded), inside, geometry.estimated, clearance)
+    return Catalogued(RollingBearing(preloaded, floats), inside, geometry.estimated, clearance)
 
 
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
@@ -100,7 +97,8 @@ def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow |
     if data.arrangement == "single":
         return [_row(data, inside, clearance, first, 0.0, 0.0)]
     distance = data.row_distance or data.width * (0.5 if data.arrangement == "double_row" else 1.0)
-    sides = _SIDES.get(data.arrangement, (first, first))
+    ways = WAYS.get(data.arrangement)
+    sides = [1 if way == "+y" else -1 for way in ways] if ways else [first, first]
     turn = math.pi / inside.elements
     return [
         _row(data, inside, clearance, side, height, start)

@@ -155,7 +155,8 @@ def _print(fact: BearingFacts) -> None:
     what = fact.designation or fact.kind.replace("_", " ")
     ignored = boundary(fact.designation).ignored if fact.designation else ""
     unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
-    say(f"Bearing {fact.name!r}: {what}{unused}, {fact.status}")
+    support = f", {fact.support}" if fact.support else ""
+    say(f"Bearing {fact.name!r}: {what}{unused}{support}, {fact.status}")
     i = fact.inside
     size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
     if "element_length" in i:
@@ -221,6 +222,7 @@ def _plain(fact: BearingFacts) -> dict[str, Any]:
         "kind": fact.kind,
         "designation": fact.designation,
         "status": fact.status,
+        "support": fact.support or None,
         "inside": fact.inside,
         "estimated": fact.estimated,
         "clearance": fact.clearance,

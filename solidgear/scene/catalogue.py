@@ -5,6 +5,7 @@ The 6x6 at a load is worked out from these data by :mod:`solidgear.bearings`.
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -36,7 +37,13 @@ CLASSES = ("C2", "CN", "C3", "C4")
 BALLS = ("deep_groove", "angular_contact")
 #: kinds whose rows hold the shaft in one direction along y
 ONE_SIDED = ("angular_contact", "tapered")
+#: kinds whose rows carry nothing along y
+FLOATING = ("cylindrical", "needle")
 PAIRED = ("tandem", "back_to_back", "face_to_face")
+#: direction along y in which the lower and the upper row of two hold the shaft
+WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
+#: other words of the field for these
+_CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -129,6 +136,20 @@ def _preload(value: Any) -> Any:
     )
 
 
+def arrangement_word(value: Any) -> Any:
+    """The word of a catalogue for an arrangement as people write it.
+
+    Examples
+    --------
+    >>> arrangement_word("O"), arrangement_word("face to face"), arrangement_word("tandem")
+    ('back_to_back', 'face_to_face', 'tandem')
+    """
+    if not isinstance(value, str):
+        return value
+    plain = re.sub(r"[\s-]+", "_", value.strip().lower())
+    return _CALLED.get(plain, plain if plain in WAYS else value)
+
+
 def _clearance(value: Any) -> Any:
     if value in CLASSES:
         return value
@@ -184,12 +205,12 @@ class Catalogue(Model):
         Of rollers, by ISO/TS 16281.
     arrangement : str
         single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
-        back_to_back or face_to_face.
+        back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
     row_distance : float or None
         Of the rows' middles, m; the width where not given.
     holds : {'+y', '-y'} or None
         Direction in which single rows and tandems with a contact angle keep the shaft from moving;
-        these have to tell it, as their mounting decides it.
+        these have to tell it, as their mounting decides it, or `arrangement` of the scene does.
     clearance : float or str
         Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
     shaft_interference, housing_interference : float
@@ -235,7 +256,7 @@ class Catalogue(Model):
     contact_angle: Angle | None = None
     conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
     profile: Literal["logarithmic", "straight"] = "logarithmic"
-    arrangement: Arrangement = "single"
+    arrangement: Annotated[Arrangement, BeforeValidator(arrangement_word)] = "single"
     row_distance: PositiveLength | None = None
     holds: Literal["+y", "-y"] | None = None
     clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
@@ -264,6 +285,11 @@ class Catalogue(Model):
         return self.kind in ONE_SIDED
 
     @property
+    def floats(self) -> bool:
+        """True where its kind carries nothing along y."""
+        return self.kind in FLOATING
+
+    @property
     def balls(self) -> bool:
         """True where its elements are balls."""
         return self.kind in BALLS
@@ -277,6 +303,11 @@ class Catalogue(Model):
     def opposed(self) -> bool:
         """True where two rows hold the shaft against each other."""
         return self.paired and self.arrangement != "tandem"
+
+    @property
+    def both_ways(self) -> bool:
+        """True where it holds the shaft along y in both directions."""
+        return not (self.floats or self.one_sided)
 
     @property
     def rated_rows(self) -> int:

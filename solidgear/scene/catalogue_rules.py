@@ -53,7 +53,8 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
     if data.one_sided and data.holds is None:
         yield SceneError(
             f"{data.arrangement} {what} bearings hold the shaft in one direction only: "
-            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y"',
+            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
+            'for a pair arrangement = "O" or "X" above all tables',
             path=("holds",),
         )
     for key, wanted in (("conformity", True), ("element_length", False), ("speed", True)):

@@ -25,6 +25,8 @@ class BearingFacts:
     ----------
     inside : dict
         Inner geometry it was solved with, SI.
+    support : str
+        Its word for y; empty for none.
     estimated : tuple of str
         What of it was not given.
     clearance : float
@@ -42,6 +44,7 @@ class BearingFacts:
     kind: str
     designation: str
     status: str
+    support: str
     inside: dict[str, float]
     estimated: tuple[str, ...]
     clearance: float
@@ -114,6 +117,7 @@ def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
         data.kind,
         data.designation,
         bearing.status,
+        bearing.support or "",
         inside,
         made.estimated,
         made.clearance,
