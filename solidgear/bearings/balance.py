@@ -330,5 +330,5 @@ def not_held(sums: np.ndarray, direction: np.ndarray) -> str:
 
 def pushed_out(component: str) -> str:
     """End of a sentence on what no bearing holds in a component, and what to do."""
-    how = "turn one round, let one that floats locate" if component == "y" else "turn one round"
+    how = "turn one round, let one locate" if component == "y" else "turn one round"
     return f"pushed out of its bearings; {how}, or preload them"

@@ -8,13 +8,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.bearings.ball import BallRow
+from solidgear.bearings.ball import BallRow, ThrustBallRow
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
 from solidgear.bearings.geometry import Geometry, Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
+from solidgear.bearings.spherical import SphericalRow
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.catalogue import WAYS, Catalogue
@@ -94,12 +95,17 @@ def catalogued(
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
     """Rows at their places along y, each turned by half a pitch against the one before."""
     first = -1 if data.holds == "-y" else 1
+    turn = math.pi / inside.elements
+    if data.kind == "spherical":  # the rows face each other: their normals meet in the middle
+        return [
+            _row(data, inside, clearance, side, 0.0, start)
+            for side, start in ((-1, 0.0), (1, turn))
+        ]
     if data.arrangement == "single":
         return [_row(data, inside, clearance, first, 0.0, 0.0)]
     distance = data.row_distance or data.width * (0.5 if data.arrangement == "double_row" else 1.0)
     ways = WAYS.get(data.arrangement)
     sides = [1 if way == "+y" else -1 for way in ways] if ways else [first, first]
-    turn = math.pi / inside.elements
     return [
         _row(data, inside, clearance, side, height, start)
         for side, height, start in zip(sides, (-distance / 2, distance / 2), (0.0, turn))
@@ -121,7 +127,11 @@ def _row(
     }
     if data.balls:
         inner, outer = inside.conformity
-        return BallRow(inner=inner, outer=outer, **common)
+        kind = ThrustBallRow if data.kind == "thrust_ball" else BallRow
+        return kind(inner=inner, outer=outer, **common)
+    if data.kind == "spherical":
+        inner, outer = inside.conformity
+        return SphericalRow(length=inside.length, inner=inner, outer=outer, **common)
     return RollerRow(length=inside.length, profile=data.profile, **common)
 
 

@@ -164,7 +164,8 @@ def _print(fact: BearingFacts) -> None:
     inside = f"{size} mm a row on {1e3 * i['pitch_diameter']:.5g} mm"
     if i["contact_angle"]:
         inside += f", contact angle {np.degrees(i['contact_angle']):.4g} deg"
-    say(f"{inside}; radial clearance at work {1e6 * fact.clearance:.3g} um")
+    room = f"; radial clearance at work {1e6 * fact.clearance:.3g} um"
+    say(inside + room * (fact.kind != "thrust_ball"))
     if fact.estimated:
         words = ", ".join(fact.estimated).replace("_", " ")
         say(f"Estimated from boundary dimensions and ratings: {words}.")

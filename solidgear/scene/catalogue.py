@@ -29,14 +29,24 @@ from solidgear.scene.units import (
     quantity,
 )
 
-Kind = Literal["deep_groove", "angular_contact", "cylindrical", "tapered", "needle"]
+Kind = Literal[
+    "deep_groove",
+    "angular_contact",
+    "cylindrical",
+    "tapered",
+    "needle",
+    "spherical",
+    "thrust_ball",
+]
 Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to_face"]
 #: clearance classes of ISO 5753-1
 ClearanceClass = Literal["C2", "CN", "C3", "C4"]
 CLASSES = ("C2", "CN", "C3", "C4")
-BALLS = ("deep_groove", "angular_contact")
+BALLS = ("deep_groove", "angular_contact", "thrust_ball")
+#: kinds with a contact angle of their own
+ANGLED = ("angular_contact", "tapered", "spherical")
 #: kinds whose rows hold the shaft in one direction along y
-ONE_SIDED = ("angular_contact", "tapered")
+ONE_SIDED = ("angular_contact", "tapered", "thrust_ball")
 #: kinds whose rows carry nothing along y
 FLOATING = ("cylindrical", "needle")
 PAIRED = ("tandem", "back_to_back", "face_to_face")
@@ -181,14 +191,16 @@ class Catalogue(Model):
     Attributes
     ----------
     kind : str
-        deep_groove, angular_contact, cylindrical, tapered or needle.
+        deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
+        thrust_ball.
     designation : str
         Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
         where these are left out; seals, cages and tolerances are read and ignored.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
-        Basic dynamic and static radial load rating, N; of a pair those of one bearing.
+        Basic dynamic and static radial load rating, N; of a pair those of one bearing, of a thrust
+        bearing its axial ones.
     fatigue_limit : float or None
         Fatigue load limit C_u, N, of the same.
     rating_factor : float or None
@@ -200,9 +212,10 @@ class Catalogue(Model):
     contact_angle : float or None
         From the radial plane, rad.
     conformity : (float, float) or None
-        Groove radius over ball diameter, inner and outer.
+        Groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
+        of their contour.
     profile : {'logarithmic', 'straight'}
-        Of rollers, by ISO/TS 16281.
+        Of rollers that are no barrels, by ISO/TS 16281.
     arrangement : str
         single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
         back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
@@ -277,12 +290,22 @@ class Catalogue(Model):
     @property
     def one_sided(self) -> bool:
         """True where it holds the shaft in one direction along y only."""
-        return self.angled and self.arrangement in ("single", "tandem")
+        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
 
     @property
     def angled(self) -> bool:
         """True where its kind has a contact angle."""
-        return self.kind in ONE_SIDED
+        return self.kind in ANGLED
+
+    @property
+    def own_rows(self) -> int:
+        """Rows that a bearing of its kind has by nature."""
+        return 2 if self.kind == "spherical" else 1
+
+    @property
+    def grooved(self) -> bool:
+        """True where the conformity of grooves has a part in its contacts."""
+        return self.balls or self.kind == "spherical"
 
     @property
     def floats(self) -> bool:
@@ -302,7 +325,7 @@ class Catalogue(Model):
     @property
     def opposed(self) -> bool:
         """True where two rows hold the shaft against each other."""
-        return self.paired and self.arrangement != "tandem"
+        return self.own_rows > 1 or (self.paired and self.arrangement != "tandem")
 
     @property
     def both_ways(self) -> bool:
@@ -312,13 +335,13 @@ class Catalogue(Model):
     @property
     def rated_rows(self) -> int:
         """Rows that its load ratings are told for."""
-        return 2 if self.arrangement == "double_row" else 1
+        return 2 if self.arrangement == "double_row" else self.own_rows
 
     @property
     def estimated(self) -> tuple[str, ...]:
         """Inner dimensions that are not given, by their names here."""
         inner = ["elements", "element_diameter", "pitch_diameter"]
-        inner.append("conformity" if self.balls else "element_length")
+        inner += ["conformity"] * self.grooved + ["element_length"] * (not self.balls)
         if self.angled:
             inner.append("contact_angle")
         return tuple(name for name in inner if getattr(self, name) is None)

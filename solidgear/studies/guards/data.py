@@ -171,7 +171,7 @@ def axial_support(probe: Probe) -> Notices:
             "caution",
             (),
             f"no bearing locates the shaft along y: {listed(floating)} float{'s' * one}{others}; "
-            'give a bearing that can hold it support = "locating"',
+            'let one hold it, by support = "locating" or by its kind',
         )
         return
     both = [b for b in bearings if b.catalogue and b.catalogue.both_ways and not b.floats]
