@@ -136,7 +136,7 @@ def test_a_pair_within_one_bearing_takes_the_same_words():
 NO_PAIR = (
     ('"Q"', "", r'must be "O" \(back to back\) or "X"'),
     ('"back_to_bcak"', "", 'did you mean "back_to_back"'),
-    ('{ O = ["A", "C"] }', "", r'no bearing has this name; there are A, B'),
+    ('{ O = ["A", "C"] }', "", r'no bearing is called "C"; there are A, B'),
     ('{ O = ["A"] }', "", "write the names of two bearings"),
     ('{ O = ["A", "B"], X = ["A", "B"] }', "", "is in two pairs"),
     ('{ O = ["A", "B"] }', ', holds = "+y"', "leave one of both out"),
@@ -154,6 +154,7 @@ def test_words_that_name_no_pair_end_in_one_sentence(tmp_path, said, first, sent
 SEAT = {"name": "A", "y": 0.1, "seat_width": 0.02}
 NO_SUPPORT = (
     ({"support": "floatign", "stiffness": {"kxx": 1e8}}, 'did you mean "floating"'),
+    ({"catalogue": {"designation": "6208", "support": "floating"}}, "beside the catalogue data"),
     ({"support": "locating", "catalogue": {"designation": "NU 207"}}, "ribs being left out"),
     ({"support": "locating", "stiffness": {"kxx": 1e8}}, "holds nothing along y: write kyy"),
     ({"support": "floating", "hold": "pinned"}, "holds y as well"),

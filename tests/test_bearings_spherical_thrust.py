@@ -196,7 +196,7 @@ BAD = (
     ({"designation": "22210 EK"}, 'did you mean "22210"'),
     ({"designation": "22201"}, 'did you mean "22210"'),
     (SPHERICAL | {"arrangement": "O"}, "has two rows of its own"),
-    (SPHERICAL | {"preload": "100 N"}, "write a negative clearance"),
+    (SPHERICAL | {"preload": "100 N"}, "by a negative clearance and not along y"),
     (SPHERICAL | {"profile": "straight"}, "has barrels"),
     (SPHERICAL | {"speed": "100 rpm"}, "belongs to balls"),
     (WASHER | {"arrangement": "X"}, "write holds at each"),

@@ -102,16 +102,18 @@ def _check(
     """Refuse a name that is no single bearing which waits for its direction."""
     reason = ""
     if name not in names:
-        reason = f"no bearing has this name{nearest(name, names)}; there are {listed(names)}"
+        reason = (
+            f"no bearing is called {show(name)}{nearest(name, names)}; there are {listed(names)}"
+        )
     elif any(names.index(name) in pair.bearings for pair in found):
-        reason = "is in two pairs"
+        reason = f"{show(name)} is in two pairs"
     elif not _needs_holds(table := tables[names.index(name)]):
         data = table.get("catalogue")
-        given = isinstance(data, Mapping) and "holds" in data
-        reason = "is no single bearing with a contact angle, which a pair is made of"
-        reason = "has holds as well: leave one of both out" if given else reason
+        reason = f"{show(name)} is no single bearing with a contact angle, which a pair is made of"
+        if isinstance(data, Mapping) and "holds" in data:
+            reason = f"{show(name)} has holds as well: leave one of both out"
     if reason:
-        raise SceneError(reason, path=("arrangement",), value=show(name))
+        raise SceneError(reason, path=("arrangement",))
 
 
 def _needs_holds(table: Mapping[str, Any]) -> bool:

@@ -283,6 +283,9 @@ class Catalogue(Model):
     displacement: BearingDisplacement | None = None
 
     def __init__(self, /, **data: Any):
+        if "support" in data:
+            reason = "stands beside the catalogue data, as a key of the bearing, and not among them"
+            raise SceneError(reason, path=("support",), value=show(data["support"]))
         if isinstance(data.get("designation"), str) and data["designation"]:
             data = _with_boundary(data)
         super().__init__(**data)

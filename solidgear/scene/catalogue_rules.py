@@ -88,24 +88,25 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
 def _by_nature(data: Catalogue, what: str) -> Iterator[SceneError]:
     """Keys that bearings of two rows of their own, and those for thrust alone, have no use for."""
     if data.kind == "spherical":
+        what = "spherical roller"
         refused = {
             "arrangement": "has two rows of its own",
-            "preload": "is not preloaded along y: write a negative clearance",
+            "preload": "is preloaded by a negative clearance and not along y",
             "profile": "has barrels, whose profile is their conformity",
         }
     else:
         refused = {
-            "arrangement": "has one row and holds one way; of two, write holds at each",
+            "arrangement": "has one row and holds one way (of two, write holds at each)",
             "contact_angle": "stands at 90 degrees",
             "clearance": "has no clearance across the shaft",
             "shaft_interference": "is not made tighter by its fit",
             "housing_interference": "is not made tighter by its fit",
-            "inner_ring_warmer": "is not made tighter by a warm shaft; write preload",
+            "inner_ring_warmer": "is not made tighter by a warm shaft",
             "speed": "is computed at rest only, without what speed does to its balls",
         }
     for key, reason in refused.items():
         if getattr(data, key) != type(data).model_fields[key].get_default():
-            yield SceneError(f"a {what} bearing {reason}; leave this key out", path=(key,))
+            yield SceneError(f"a {what} bearing {reason}: leave it out", path=(key,))
 
 
 def _fits(data: Catalogue) -> Iterator[SceneError]:

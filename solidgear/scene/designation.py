@@ -259,7 +259,7 @@ def _unknown(designation: str) -> SceneError:
     hint = did_you_mean(next(iter(swapped), near(plain, _all())))
     return SceneError(
         f"this designation is not understood{hint}; known are {known} and drawn cups HK, BK, bores "
-        "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove "
-        "and cylindrical ones; or write kind, bore, outer_diameter, width",
+        "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove, "
+        "cylindrical and spherical ones; or write kind, bore, outer_diameter, width",
         value=show(designation),
     )
