@@ -224,3 +224,10 @@ def test_insides_that_are_estimated_have_a_range():
         stiff = [np.trace(made.bearing.tangent(state(data, made))[:3, :3]) for made in ends]
         assert stiff[0] < stiff[1] < stiff[2] < 2 * stiff[0]
         assert "elements" in data.estimated and "conformity" in data.estimated
+    # an angle that a series alone tells is open by 15 %, and stiffness along y goes with its square
+    pushed = Catalogue(**SPHERICAL, load={"y": "1 kN", "z": "1 kN"})
+    low, high = (catalogued(pushed, end) for end in ("softer", "stiffer"))
+    along = [made.bearing.tangent(state(pushed, made))[1, 1] for made in (low, high)]
+    assert along[1] > (1.15 / 0.85) ** 2 * along[0]
+    known = inner_geometry(pushed.with_changes(contact_angle="9 deg"))
+    assert known.softer.angle == known.stiffer.angle == pytest.approx(math.radians(9))

@@ -106,15 +106,12 @@ def _at(share: Share, end: str, sign: int = 1) -> float:
     return share.middle + sign * _SIGN[end] * share.spread
 
 
-def _angle(data: Catalogue) -> float:
-    if data.kind == "thrust_ball":
-        return SHARES[data.kind].angle
-    if not data.angled:
-        return 0.0
-    if data.contact_angle is not None:
-        return data.contact_angle
+def _angle(data: Catalogue, end: str) -> float:
+    shares = SHARES[data.kind]
+    if not data.angled or data.contact_angle is not None:
+        return data.contact_angle or shares.angle
     known = usual_angle(data.designation)
-    return SHARES[data.kind].angle if known is None else known
+    return (known or shares.angle) * (1 + _SIGN[end] * shares.angle_spread)
 
 
 def _start(data: Catalogue, end: str) -> Inside:
@@ -137,7 +134,7 @@ def _start(data: Catalogue, end: str) -> Inside:
         elements = round(_at(shares.filling, end) * touching)
     elements = max(3, min(elements, int(touching + 1e-9)))
     conformity = data.conformity or shares.conformity[1 + _SIGN[end]]
-    return Inside(elements, diameter, length, pitch, _angle(data), conformity)
+    return Inside(elements, diameter, length, pitch, _angle(data, end), conformity)
 
 
 def _balls(data: Catalogue, end: str) -> Inside:

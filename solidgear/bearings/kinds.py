@@ -27,8 +27,10 @@ class Shares(NamedTuple):
     rating_factor : float
         b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today.
     angle : float
-        Contact angle where nothing tells it, rad.  It has no spread here: a steeper one is stiffer
-        along y and softer across it.
+        Contact angle where nothing tells it, rad.
+    angle_spread : float
+        Of it, relative.  Ball and tapered rows have none here: a steeper one is stiffer along y and
+        softer across it.  Barrels stand so flat that only the former counts.
     conformity : tuple of (float, float)
         Groove radius over ball diameter, inner and outer: softer, middle (that of ISO 281's rating
         where it has one) and stiffer end; of spherical rollers over twice the radius of their
@@ -40,6 +42,7 @@ class Shares(NamedTuple):
     filling: Share
     rating_factor: float
     angle: float = 0.0
+    angle_spread: float = 0.0
     conformity: tuple[tuple[float, float], ...] = ((0.53, 0.53), (0.52, 0.53), (0.515, 0.515))
 
 
@@ -60,6 +63,7 @@ SHARES = {
         Share(0.85, 0.05),
         1.15,
         angle=math.radians(10),
+        angle_spread=0.15,
         conformity=((0.515, 0.515), (0.51, 0.51), (0.5075, 0.5075)),
     ),
     "thrust_ball": Shares(

@@ -95,9 +95,18 @@ _THRUST = {
     ),
 }
 #: degrees, the middle of what makers give for a series: of ISO 355 the angle, of spherical rollers
-#: ``e = 1.5 tan a`` of ISO 281, whose 222 are steeper below a bore of 40 mm (e up to 0.35)
+#: ``e = 1.5 tan a`` of ISO 281
 _ANGLES = {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95}
-_E = {"213": 0.24, "222": 0.24, "223": 0.36, "230": 0.23, "231": 0.30, "232": 0.33, "240": 0.31}
+_E = {
+    "213": 0.24,
+    "2220[4-7]": 0.32,
+    "222": 0.24,
+    "223": 0.36,
+    "230": 0.23,
+    "231": 0.30,
+    "232": 0.33,
+    "240": 0.31,
+}
 _ANGLES |= {series: math.degrees(math.atan(e / 1.5)) for series, e in _E.items()}
 _BALLS = {"60": _LIGHT, "62": _MEDIUM, "63": _HEAVY}
 _ANGULAR = {"70": _LIGHT, "72": _MEDIUM, "73": _HEAVY}
@@ -231,8 +240,10 @@ def usual_angle(designation: str) -> float | None:
     >>> round(math.degrees(usual_angle("30310")), 2)
     12.95
     """
-    match = re.match(rf"({'|'.join(_ANGLES)})\d\d", re.sub(r"[\s-]", "", designation))
-    return math.radians(_ANGLES[match[1]]) if match else None
+    plain = re.sub(r"[\s-]", "", designation)
+    known = (degrees for series, degrees in _ANGLES.items() if re.match(series, plain))
+    degrees = next(known, None)
+    return None if degrees is None else math.radians(degrees)
 
 
 def _bore(code: str) -> int:
