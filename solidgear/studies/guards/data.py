@@ -174,12 +174,16 @@ def axial_support(probe: Probe) -> Notices:
             'let one hold it, by support = "locating" or by its kind',
         )
         return
-    both = [b for b in bearings if b.catalogue and b.catalogue.both_ways and not b.floats]
+    known = [(b, b.catalogue) for b in bearings if b.catalogue and not b.floats]
+    both = [repr(b.name) for b, data in known if data.both_ways]
+    singles = [(repr(b.name), data.holds) for b, data in known if data.one_sided]
+    if len({way for _, way in singles}) > 1:
+        both.append(" with ".join(name for name, _ in singles))
     if len(both) > 1:
         yield Notice(
             "fact",
             (),
-            f"the bearings {listed([repr(b.name) for b in both])} each locate the shaft along y, "
+            f"the bearings {listed(both)} each locate the shaft along y, "
             "which is statically indeterminate: they share its load by clearance and stiffness, and "
             "what warmth and distances of seats press between them is in no number; write "
             'support = "floating" at all but one',
