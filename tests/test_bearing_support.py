@@ -149,6 +149,7 @@ def test_words_that_name_no_pair_end_in_one_sentence(tmp_path, said, first, sent
     with pytest.raises(SceneError, match=sentence) as refused:
         read(shaft(tmp_path, f"arrangement = {said}", first))
     assert "shaft.toml: arrangement" in str(refused.value)
+    assert len(refused.value.problems) == 1  # and no bearing lacks holds as well
 
 
 SEAT = {"name": "A", "y": 0.1, "seat_width": 0.02}

@@ -126,11 +126,17 @@ def _needs_holds(table: Mapping[str, Any]) -> bool:
     return False
 
 
-def facing(tables: Sequence[Mapping[str, Any]], paired: Sequence[Pair]) -> list[dict[str, Any]]:
+def facing(
+    tables: Sequence[Mapping[str, Any]], paired: Sequence[Pair] | None
+) -> list[dict[str, Any]]:
     """Tables of bearings that can be read, those of pairs with a direction until their places are
-    known.
+    known; where the words are wrong, all that wait for one: they are not also missing.
     """
-    turned = {k for pair in paired for k in pair.bearings}
+    turned = (
+        [k for k, table in enumerate(tables) if _needs_holds(table)]
+        if paired is None
+        else [k for pair in paired for k in pair.bearings]
+    )
     return [
         {**table, "catalogue": {**table["catalogue"], "holds": "+y"}} if k in turned else {**table}
         for k, table in enumerate(tables)

@@ -200,7 +200,11 @@ class _Reading:
     def scene(self) -> Scene:
         """The scene, once nothing is wrong with it."""
         file, place = self.file, self.places
-        paired = self.problems.read(lambda: pairs(file.arrangement, file.bearing)) or []
+        paired = None
+        if "arrangement" not in self.spoilt:
+            paired = self.problems.read(lambda: pairs(file.arrangement, file.bearing))
+        if paired is None:
+            self.spoilt.add("arrangement")
         bearings = [self._bearing(k, table) for k, table in enumerate(facing(file.bearing, paired))]
         housing = None
         if (given := file.housing) is not None:
@@ -211,7 +215,7 @@ class _Reading:
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
         features = [row for k, one in enumerate(file.feature) for row in self._feature(k, one)]
         rows = {
-            "bearings": self._turned(bearings, paired),
+            "bearings": self._turned(bearings, paired or []),
             "ports": self._main_first(ports),
             "masses": masses,
             "features": [row for row in features if row.kind in FEATURES.values()],
@@ -355,7 +359,7 @@ class _Reading:
     def _judge(self, rows: dict[str, list[_Row]]) -> None:
         """Gather what is wrong between things that are sound by themselves."""
         # names are judged where all are known
-        whole = not {"bearing", "port"} & self.spoilt
+        whole = not {"bearing", "port", "arrangement"} & self.spoilt
         whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
         things = {key: [row.thing for row in of] for key, of in sound.items()}
