@@ -135,6 +135,7 @@ def test_a_pair_within_one_bearing_takes_the_same_words():
 
 NO_PAIR = (
     ('"Q"', "", r'must be "O" \(back to back\) or "X"'),
+    ("[[3]]", "", r'must be "O" \(back to back\) or "X"'),
     ('"back_to_bcak"', "", 'did you mean "back_to_back"'),
     ('{ O = ["A", "C"] }', "", r'no bearing is called "C"; there are A, B'),
     ('{ O = ["A"] }', "", "write the names of two bearings"),
@@ -150,6 +151,12 @@ def test_words_that_name_no_pair_end_in_one_sentence(tmp_path, said, first, sent
         read(shaft(tmp_path, f"arrangement = {said}", first))
     assert "shaft.toml: arrangement" in str(refused.value)
     assert len(refused.value.problems) == 1  # and no bearing lacks holds as well
+
+
+def test_a_bearing_that_is_wrong_by_itself_is_told_alone(tmp_path):
+    with pytest.raises(SceneError, match="must be one of the classes") as refused:
+        read(shaft(tmp_path, 'arrangement = "O"', ', clearance = "C9"'))
+    assert [one.path[:2] for one in refused.value.problems] == [("bearing", 0)]
 
 
 SEAT = {"name": "A", "y": 0.1, "seat_width": 0.02}

@@ -42,10 +42,11 @@ def _words(value: Any) -> Any:
     if isinstance(value, tuple):
         return value
     found: list[tuple[str, tuple[str, ...] | None]] = []
-    for word, names in value.items() if isinstance(value, Mapping) else ((value, None),):
+    written = value.items() if isinstance(value, Mapping) and value else ((value, None),)
+    for word, names in written:
         own = arrangement_word(word)
-        if own not in WAYS:
-            near = nearest(word, ["O", "X", *WAYS])
+        if not isinstance(own, str) or own not in WAYS:
+            near = nearest(word, ["O", "X", *WAYS]) if isinstance(word, str) else ""
             reason = f'must be "O" (back to back) or "X" (face to face){near}'
             raise SceneError(reason, value=show(word))
         if names is None:
@@ -66,7 +67,7 @@ def _words(value: Any) -> Any:
 Arrangement = Annotated[Words, BeforeValidator(_words)]
 
 
-def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair]:
+def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
     """Pairs that the words of a file tell.
 
     Parameters
@@ -74,11 +75,18 @@ def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair]:
     tables : sequence of mapping
         Of its bearings.
 
+    Returns
+    -------
+    list of Pair or None
+        None where catalogue data are wrong by themselves, so that words cannot be judged.
+
     Raises
     ------
     SceneError
         Names of bearings that are no such pair, or a word alone where there is no only pair.
     """
+    if given and any(_wrong(table) - {("holds",)} for table in tables):
+        return None
     names = [str(table.get("name")) for table in tables]
     free = [k for k, table in enumerate(tables) if _needs_holds(table)]
     found: list[Pair] = []
@@ -116,14 +124,21 @@ def _check(
         raise SceneError(reason, path=("arrangement",))
 
 
-def _needs_holds(table: Mapping[str, Any]) -> bool:
-    """True for catalogue data that lack nothing but the direction in which they hold the shaft."""
-    data = table.get("catalogue")
+def _wrong(table: Mapping[str, Any]) -> set[tuple]:
+    """Keys of the problems of a bearing's catalogue data; none without such data."""
+    if "catalogue" not in table:
+        return set()
+    data = table["catalogue"]
     try:
         Catalogue(**data if isinstance(data, Mapping) else {})
     except SceneError as error:
-        return ("holds",) in [one.path for one in error.problems]
-    return False
+        return {one.path for one in error.problems}
+    return set()
+
+
+def _needs_holds(table: Mapping[str, Any]) -> bool:
+    """True for catalogue data that lack nothing but the direction in which they hold the shaft."""
+    return _wrong(table) == {("holds",)}
 
 
 def facing(
