@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from numbers import Integral
 from typing import Any
@@ -305,10 +306,7 @@ def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
     where : str
         File or scene name put in front.
     """
-    return SceneError.of(
-        _plain_error(one, data, where)
-        for one in error.errors(include_url=False, include_input=False)
-    )
+    return SceneError.of(_plain_error(one, data, where) for one in error.errors(include_url=False))
 
 
 def _plain_error(one: Mapping, data: Any, where: str) -> SceneError:
@@ -330,6 +328,9 @@ WRITE = {
 
 def _plain_words(one: Mapping, data: Any) -> str:
     kind, ctx = one["type"], one.get("ctx", {})
+    expected = str(ctx.get("expected", ""))
+    word = one.get("input")
+    near = nearest(word, re.findall(r"'([^']*)'", expected)) if isinstance(word, str) else ""
     written = WRITE.get(str(one["loc"][0]), "") if len(one["loc"]) == 1 else ""
     words = {
         "missing": f"this key is missing{'; ' * bool(written)}{written}",
@@ -348,7 +349,7 @@ def _plain_words(one: Mapping, data: Any) -> str:
             else 'it says which shape the segment has, such as kind = "cylinder"'
         ),
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
-        "literal_error": f"must be {ctx.get('expected')}",
+        "literal_error": f"must be {expected}{near}",
     }
     if kind in ("model_type", "model_attributes_type", "dict_type") and isinstance(
         _name_and_value(one["loc"], data)[1], list

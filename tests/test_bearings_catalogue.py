@@ -196,15 +196,17 @@ def test_needle_of_the_reducer():
 @pytest.mark.parametrize("kind", get_args(Kind))
 def test_every_kind_carries_load_and_is_rated_by_its_boundary_dimensions_alone(kind):
     size = {"kind": kind, "bore": 0.04, "outer_diameter": 0.08, "width": 0.018, "holds": "+y"}
-    along = 2e3 if Catalogue(**size).angled else 0.0
-    data = Catalogue(**size, load={"y": along, "z": 2e3})
+    plain = Catalogue(**size)
+    thrust = kind == "thrust_ball"
+    along = 2e3 if plain.angled or thrust else 0.0
+    data = plain.with_changes(load={"y": along, "z": 0.0 if thrust else 2e3})
     made = catalogued(data)
     stiffness = made.bearing.tangent(state(data, made))
     # rolling bearings of this size: published ones lie between 1e8 and 2e9 N/m
-    assert 5e7 < stiffness[2, 2] < 5e9
+    assert 5e7 < stiffness[1 if thrust else 2, 1 if thrust else 2] < 5e9
     found = ratings(data, made.inside)
     # catalogues of this size give C from 30 kN (balls) to 75 kN (rollers) with C0 near it
-    assert 15e3 < found.dynamic < 150e3 and 0.5 < found.static / found.dynamic < 2.0
+    assert 15e3 < found.dynamic < 150e3 and 0.5 < found.static / found.dynamic < 3.0
 
 
 ONE_WAY = {"designation": "7208 B", "holds": "+y"}

@@ -54,6 +54,18 @@ def angular(*ways: str) -> Scene:
     return scene().with_changes(bearings=tuple(rows))
 
 
+def supported(*words: str | None) -> Scene:
+    """The stout head on bearings that locate it along y or float."""
+    rows = [b.with_changes(support=word) for b, word in zip(scene().bearings, words)]
+    return scene().with_changes(bearings=tuple(rows))
+
+
+def grooved(*words: str | None) -> Scene:
+    """The same with deep grooves in place of springs."""
+    rows = [b.with_changes(catalogue={"designation": "6210"}) for b in supported(*words).bearings]
+    return scene().with_changes(bearings=tuple(rows))
+
+
 def coupled(share: float) -> np.ndarray:
     """A bearing with z and thx coupled up to ``share`` of the bound."""
     k = stiff()
@@ -251,6 +263,26 @@ CASES = {
         "all hold the shaft towards +y",
         angular("+y", "+y"),
         angular("+y", "-y"),
+    ),
+    "no bearing that locates": Case(
+        "axial_support",
+        "no bearing locates the shaft along y: 'b0', 'b1' float",
+        supported("floating", "floating"),
+        supported("floating", "locating"),
+    ),
+    "two grooves that locate": Case(
+        "axial_support",
+        "statically indeterminate",
+        grooved(None, None),
+        grooved(None, "floating"),
+        level="fact",
+    ),
+    "one that floats": Case(
+        "axial_support",
+        "along y 'b0' locates the shaft, 'b1' floats",
+        supported("locating", "floating"),
+        supported(None, None),
+        level="fact",
     ),
     "pair split": Case(
         "split_pair",

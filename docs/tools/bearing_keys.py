@@ -34,7 +34,8 @@ TABLES: dict[str, type[Model]] = {"`[[bearing]]`": Bearing, "`[bearing.catalogue
 HEAD = """# All keys of a bearing
 
 Plain numbers are SI; a text may have any unit. A dash is a key without default: needed, or \
-[worked out](bearings.md). Made by `docs/tools/bearing_keys.py` from the typed models.
+[worked out](bearings.md). `arrangement` of two bearings stands [above all tables](arrangements.md). \
+Made by `docs/tools/bearing_keys.py` from the typed models.
 """
 
 

@@ -324,5 +324,11 @@ def not_held(sums: np.ndarray, direction: np.ndarray) -> str:
     )
     return (
         f"no bearing holds the shaft in {component} under {pushes or 'its preloads'}: "
-        "it is pushed out of its bearings; turn one round, or preload them"
+        f"it is {pushed_out(component)}"
     )
+
+
+def pushed_out(component: str) -> str:
+    """End of a sentence on what no bearing holds in a component, and what to do."""
+    how = "turn one round, let one locate" if component == "y" else "turn one round"
+    return f"pushed out of its bearings; {how}, or preload them"

@@ -185,3 +185,26 @@ class BallRow:
         inner, outer = (ring.pressure(load) for ring in self.rings)
         slices = load[..., None]
         return Contacts(self.azimuth, load, angle, inner, outer, slices, slices)
+
+
+@dataclass(frozen=True)
+class ThrustBallRow(BallRow):
+    """Balls between two washers, at a contact angle of 90 degrees.
+
+    The washers are free across the shaft: a motion there presses no ball, and moves no angle.
+
+    Examples
+    --------
+    >>> row = ThrustBallRow(24, 7.144e-3, 60e-3, inner=0.54, outer=0.54, angle=np.pi / 2)
+    >>> push = np.array([50e-6, 5e-6, 0, 0, 0, 0])
+    >>> bool(np.isclose(row.load(push)[1], 24 * row.constant * 5e-6**1.5)), float(row.load(push)[0])
+    (True, 0.0)
+    """
+
+    def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """As of any row, without what is across the shaft."""
+        own = np.asarray(motion, float)[..., FELT]
+        axial = self.side * np.maximum(self.side * (self.start[1] + own @ self._felt[1].T), 0.0)
+        length = np.abs(axial)
+        safe = np.where(length > 0, length, 1.0)
+        return np.zeros_like(axial), axial / safe, safe, np.maximum(length - self.free, 0.0)

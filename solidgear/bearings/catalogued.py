@@ -8,24 +8,19 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.bearings.ball import BallRow
+from solidgear.bearings.ball import BallRow, ThrustBallRow
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
 from solidgear.bearings.geometry import Geometry, Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
+from solidgear.bearings.spherical import SphericalRow
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.catalogue import WAYS, Catalogue
 
 End = Literal["middle", "softer", "stiffer"]
-
-#: which way the rows hold the shaft, from lower to upper y
-_SIDES = {
-    "back_to_back": (1, -1),
-    "face_to_face": (-1, 1),
-}
 
 
 @dataclass(frozen=True)
@@ -62,6 +57,7 @@ def catalogued(
     *,
     clearance_share: float = 0.5,
     preload_factor: float = 1.0,
+    floats: bool = False,
     geometry: Geometry | None = None,
 ) -> Catalogued:
     """The bearing that catalogue data describe.
@@ -74,6 +70,8 @@ def catalogued(
         Place in the range of a clearance class, 0 to 1.
     preload_factor : float
         Times the preload, force or displacement.
+    floats : bool
+        One of its rings slides along y.
     geometry : Geometry, optional
         As :func:`solidgear.bearings.geometry.inner_geometry` found it before.
 
@@ -91,17 +89,23 @@ def catalogued(
         preloaded = _preloaded(data, rows, preload_factor)
     except SolidgearError as error:
         raise SceneError(str(error), path=("preload",)) from None
-    return Catalogued(RollingBearing(preloaded), inside, geometry.estimated, clearance)
+    return Catalogued(RollingBearing(preloaded, floats), inside, geometry.estimated, clearance)
 
 
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
     """Rows at their places along y, each turned by half a pitch against the one before."""
     first = -1 if data.holds == "-y" else 1
+    turn = math.pi / inside.elements
+    if data.kind == "spherical":  # the rows face each other: their normals meet in the middle
+        return [
+            _row(data, inside, clearance, side, 0.0, start)
+            for side, start in ((-1, 0.0), (1, turn))
+        ]
     if data.arrangement == "single":
         return [_row(data, inside, clearance, first, 0.0, 0.0)]
     distance = data.row_distance or data.width * (0.5 if data.arrangement == "double_row" else 1.0)
-    sides = _SIDES.get(data.arrangement, (first, first))
-    turn = math.pi / inside.elements
+    ways = WAYS.get(data.arrangement)
+    sides = [1 if way == "+y" else -1 for way in ways] if ways else [first, first]
     return [
         _row(data, inside, clearance, side, height, start)
         for side, height, start in zip(sides, (-distance / 2, distance / 2), (0.0, turn))
@@ -123,7 +127,11 @@ def _row(
     }
     if data.balls:
         inner, outer = inside.conformity
-        return BallRow(inner=inner, outer=outer, **common)
+        kind = ThrustBallRow if data.kind == "thrust_ball" else BallRow
+        return kind(inner=inner, outer=outer, **common)
+    if data.kind == "spherical":
+        inner, outer = inside.conformity
+        return SphericalRow(length=inside.length, inner=inner, outer=outer, **common)
     return RollerRow(length=inside.length, profile=data.profile, **common)
 
 

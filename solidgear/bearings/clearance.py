@@ -17,7 +17,7 @@ import math
 
 from solidgear.bearings.geometry import Inside
 from solidgear.errors import SceneError
-from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.catalogue import ONE_SIDED, Catalogue
 
 #: 1/K, bearing steel
 EXPANSION = 11.5e-6
@@ -36,6 +36,12 @@ _ROLLERS = {
     "CN": "20-45 20-45 20-45 25-50 30-60 40-70 40-75 50-85 50-90",
     "C3": "35-60 35-60 35-60 45-70 50-80 60-90 65-100 75-110 85-125",
     "C4": "50-75 50-75 50-75 60-85 70-100 80-110 90-125 105-140 125-165",
+}
+_SPHERICAL = {
+    "C2": "10-20 10-20 15-25 15-30 20-35 20-40 30-50 35-60 40-75",
+    "CN": "20-35 20-35 25-40 30-45 35-55 40-65 50-80 60-100 75-120",
+    "C3": "35-45 35-45 40-55 45-60 55-75 65-90 80-110 100-135 120-160",
+    "C4": "45-60 45-60 55-75 60-80 75-100 90-120 110-145 135-180 160-210",
 }
 
 
@@ -60,8 +66,9 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
-    table = _BALLS if data.balls else _ROLLERS
-    if data.angled:
+    table = {True: _BALLS, False: _ROLLERS}[data.balls]
+    table = _SPHERICAL if data.kind == "spherical" else table
+    if data.kind in ONE_SIDED:
         raise SceneError(
             f"{data.kind.replace('_', ' ')} bearings have no clearance class; write a length, or a "
             "preload",

@@ -130,7 +130,7 @@ def equivalent_load(
 
 def _depth(data: Catalogue, inside: Inside, share: float) -> float:
     """Axial load over the squares of the balls that carry it, N/mm^2, from its share of C_0."""
-    if not data.balls:
+    if not data.balls or inside.thrust:
         return 0.0
     # of two rows against each other one carries all of it
     rows = 2 if data.opposed else 1
@@ -148,7 +148,8 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
     Returns
     -------
     Factors
-        Of rows without a contact angle that are rollers, the radial load alone.
+        Of rows without a contact angle that are rollers, the radial load alone, of thrust balls the
+        axial one.
 
     Examples
     --------
@@ -157,6 +158,8 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
     >>> [round(v, 2) for v in factors(pair, inner_geometry(pair).middle, 0.0).high]
     [0.57, 0.93]
     """
+    if inside.thrust:
+        return Factors(0.0, (0.0, 1.0), (0.0, 1.0))
     if not (data.balls or data.angled):
         return Factors(math.inf, (1.0, 0.0), (1.0, 0.0))
     x, e, y = _ball_factors(data, inside, depth) if data.balls else _cone_factors(inside)
@@ -219,6 +222,8 @@ def static_load(data: Catalogue, inside: Inside, load: np.ndarray) -> float:
 
 def static_factors(data: Catalogue, inside: Inside) -> tuple[float, float]:
     """X_0 and Y_0 of ISO 76 of a single row."""
+    if inside.thrust:
+        return 0.0, 1.0
     if not data.angled:
         return (0.6, 0.5) if data.balls else (1.0, 0.0)
     if data.balls:

@@ -5,7 +5,7 @@ elements are the maker's.  Three things tie them down: room (an element takes a 
 ``D - d``), filling (how many are usually put in), and the rating, of which ISO 281:2007 and
 ISO 76:2006 say how it is computed from them (:mod:`solidgear.bearings.rating`).  The shares were
 read off bearings whose inside is published (6203 to 6311, 7208, 218, NU205 to NU312, 30206 to
-32310): :mod:`solidgear.bearings.kinds` holds their middle and their spread.  What is estimated is
+32310; of spherical rollers one, Harris's 22317; of thrust balls 51110 and 51210): :mod:`solidgear.bearings.kinds` holds their middle and their spread.  What is estimated is
 marked, and comes with a softer and a stiffer inside at the ends of the spread.
 """
 
@@ -17,13 +17,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from solidgear.bearings.kinds import SHARES, Share
-from solidgear.bearings.rating import RATED_CONFORMITY, rated, static_roller_rating
+from solidgear.bearings.rating import rated, static_ball_rating, static_roller_rating
 from solidgear.errors import SceneError
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.designation import usual_angle
 
-#: groove radius over ball diameter: ISO 281's own, and the range in use
-CONFORMITY = {"middle": RATED_CONFORMITY, "softer": (0.53, 0.53), "stiffer": (0.515, 0.515)}
 #: of a filling slot-free deep groove the balls span this much of the circle, rad
 CONRAD = math.radians(186)
 #: relative; of ratings that makers give on their own experience
@@ -47,6 +45,11 @@ class Inside:
     pitch: float
     angle: float
     conformity: tuple[float, float]
+
+    @property
+    def thrust(self) -> bool:
+        """True where its elements run on washers, at 90 degrees."""
+        return self.angle > math.radians(89)
 
     @property
     def gamma(self) -> float:
@@ -103,13 +106,12 @@ def _at(share: Share, end: str, sign: int = 1) -> float:
     return share.middle + sign * _SIGN[end] * share.spread
 
 
-def _angle(data: Catalogue) -> float:
-    if not data.angled:
-        return 0.0
-    if data.contact_angle is not None:
-        return data.contact_angle
+def _angle(data: Catalogue, end: str) -> float:
+    shares = SHARES[data.kind]
+    if not data.angled or data.contact_angle is not None:
+        return data.contact_angle or shares.angle
     known = usual_angle(data.designation)
-    return SHARES[data.kind].angle if known is None else known
+    return (known or shares.angle) * (1 + _SIGN[end] * shares.angle_spread)
 
 
 def _start(data: Catalogue, end: str) -> Inside:
@@ -131,8 +133,8 @@ def _start(data: Catalogue, end: str) -> Inside:
     elif elements is None:
         elements = round(_at(shares.filling, end) * touching)
     elements = max(3, min(elements, int(touching + 1e-9)))
-    conformity = data.conformity or CONFORMITY[end]
-    return Inside(elements, diameter, length, pitch, _angle(data), conformity)
+    conformity = data.conformity or shares.conformity[1 + _SIGN[end]]
+    return Inside(elements, diameter, length, pitch, _angle(data, end), conformity)
 
 
 def _balls(data: Catalogue, end: str) -> Inside:
@@ -161,8 +163,13 @@ def _misfit(inside: Inside, rating: float, usual: float, data: Catalogue) -> flo
     own = rated(data, inside)
     filling = inside.elements * math.asin(inside.diameter / inside.pitch) / math.pi
     share = SHARES[data.kind].filling
+    static = 0.0
+    if inside.thrust and data.static_rating and data.load_rating:  # Z Dw^2 and nothing else
+        wanted = data.static_rating * rating / data.load_rating
+        static = abs(math.log(static_ball_rating(inside) / wanted))
     return (
         abs(math.log(own / rating))
+        + static
         + abs(math.log(inside.diameter / usual))
         + 0.5 * max(0.0, abs(filling - share.middle) - share.spread)
     )
@@ -194,9 +201,10 @@ def _rollers(data: Catalogue, end: str) -> Inside:
         power = 9 / 7
     wanted = rating * (1 + _SIGN[end] * RATING_SPREAD)
     length = guess.length * (wanted / own) ** power
-    if not 0.3 * data.width < length < 1.3 * data.width:
+    width = data.width / data.own_rows
+    if not 0.3 * width < length < 1.3 * width:
         raise _no_inside(data)
-    return replace(guess, length=min(length, 0.95 * data.width))
+    return replace(guess, length=min(length, 0.95 * width))
 
 
 def _no_inside(data: Catalogue) -> SceneError:

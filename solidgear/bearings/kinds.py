@@ -27,8 +27,14 @@ class Shares(NamedTuple):
     rating_factor : float
         b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today.
     angle : float
-        Contact angle where nothing tells it, rad.  It has no spread here: a steeper one is stiffer
-        along y and softer across it.
+        Contact angle where nothing tells it, rad.
+    angle_spread : float
+        Of it, relative.  Ball and tapered rows have none here: a steeper one is stiffer along y and
+        softer across it.  Barrels stand so flat that only the former counts.
+    conformity : tuple of (float, float)
+        Groove radius over ball diameter, inner and outer: softer, middle (that of ISO 281's rating
+        where it has one) and stiffer end; of spherical rollers over twice the radius of their
+        contour.
     """
 
     diameter: Share
@@ -36,6 +42,8 @@ class Shares(NamedTuple):
     filling: Share
     rating_factor: float
     angle: float = 0.0
+    angle_spread: float = 0.0
+    conformity: tuple[tuple[float, float], ...] = ((0.53, 0.53), (0.52, 0.53), (0.515, 0.515))
 
 
 NONE = Share(0.0, 0.0)
@@ -48,6 +56,23 @@ SHARES = {
     "cylindrical": Shares(Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06), 1.1),
     "tapered": Shares(
         Share(0.245, 0.015), Share(0.70, 0.08), Share(0.92, 0.04), 1.1, angle=math.radians(15)
+    ),
+    "spherical": Shares(
+        Share(0.255, 0.02),
+        Share(0.36, 0.04),
+        Share(0.85, 0.05),
+        1.15,
+        angle=math.radians(10),
+        angle_spread=0.15,
+        conformity=((0.515, 0.515), (0.51, 0.51), (0.5075, 0.5075)),
+    ),
+    "thrust_ball": Shares(
+        Share(0.36, 0.02),
+        NONE,
+        Share(0.89, 0.04),
+        1.3,
+        angle=math.radians(90),
+        conformity=((0.545, 0.545), (0.54, 0.54), (0.525, 0.525)),
     ),
     "needle": Shares(Share(0.40, 0.05), Share(0.72, 0.08), Share(0.65, 0.10), 1.0),
 }

@@ -10,12 +10,8 @@ from scipy.optimize import brentq
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.row import Contacts
+from solidgear.bearings.sliding import FURTHEST, balanced, condensed
 from solidgear.errors import SolidgearError
-
-#: m; no bearing is pushed further
-FURTHEST = 5e-3
-#: relative; of the sum of forces on a sprung ring
-BALANCED = 1e-13
 
 
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
@@ -93,30 +89,19 @@ class SprungRow:
         """Motion of the inner ring as the sliding outer ring sees it, and that ring's own."""
         motion = np.asarray(motion, float)
         rest = float(self.row.load(np.zeros(6))[1])
-        # the spring takes what the row presses beyond its preload: k w = F(q - w) - F(0).  The
-        # right side falls with w and the left side grows: one root, between none and all of q
+        # the spring takes what the row presses beyond its preload: k w = F(q - w) - F(0)
         y = motion[..., 1]
-        low, high = np.minimum(y, 0.0) - abs(rest) / self.spring, np.maximum(y, 0.0)
-        high = high + abs(rest) / self.spring
-        ring = np.zeros_like(y)
-        for _ in range(200):
-            seen = motion.copy()
-            seen[..., 1] = y - ring
-            load = self.row.load(seen)[..., 1] - rest
-            miss = self.spring * ring - load
-            low, high = np.where(miss < 0, ring, low), np.where(miss > 0, ring, high)
-            if np.all(np.abs(miss) <= BALANCED * (np.abs(load) + abs(rest))):
-                break
-            slope = self.spring + self.row.tangent(seen)[..., 1, 1]
-            step = ring - miss / slope
-            inside = (step > low) & (step < high)
-            following = np.where(inside, step, (low + high) / 2)
-            if np.array_equal(following, ring):
-                break
-            ring = following
-        seen = motion.copy()
-        seen[..., 1] = y - ring
-        return seen, ring
+        most = abs(rest) / self.spring
+        seen = balanced(
+            self.row.load,
+            self.row.tangent,
+            motion,
+            np.minimum(y, 0.0) - most,
+            np.maximum(y, 0.0) + most,
+            lambda t: rest + self.spring * (y - t),
+            self.spring,
+        )
+        return seen, y - seen[..., 1]
 
     def energy(self, motion: np.ndarray) -> np.ndarray:
         """Elastic energy of contacts and spring, J, from the state at rest."""
@@ -130,11 +115,7 @@ class SprungRow:
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """Its derivative, (..., 6, 6)."""
-        stiffness = self.row.tangent(self._seen(motion)[0])
-        column = stiffness[..., :, 1]
-        soft = stiffness[..., 1, 1] + self.spring
-        outer = column[..., :, None] * column[..., None, :]
-        return stiffness - outer / soft[..., None, None]
+        return condensed(self.row.tangent(self._seen(motion)[0]), self.spring)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
         """Loads of all elements."""

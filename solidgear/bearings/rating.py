@@ -3,9 +3,12 @@
     balls     C = 1.3 f_c (i cos(a))^0.7 Z^(2/3) Dw^1.8,            C_0 = i Z Q_0 cos(a) / 5
     rollers   C = b_m f_c (i l cos(a))^(7/9) Z^(3/4) Dw^(29/27),    C_0 = 44 (1 - g) i Z l Dw cos(a)
 
+    thrust    C = 1.3 f_c Z^(2/3) Dw^1.8,                           C_0 = Z Q_0
+
 (N, mm; g = Dw cos(a) / Dpw; i rows).  Q_0 is the load under which a ball presses a ring with 4200
 MPa: the f_0 of ISO 76 is ``Q_0 / (5 Dw^2)``, and is computed here by Hertz's contact and not read
-from its table.
+from its table.  Thrust balls stand at 90 degrees, and their ratings are axial; ISO 281's Table 4 of
+their f_c is ``36.7 (100 Dw / Dpw)^0.3`` to three digits.
 """
 
 from __future__ import annotations
@@ -23,8 +26,6 @@ if TYPE_CHECKING:
 
 #: Pa, ISO 76: beyond it the dent is above 1e-4 of the element's diameter; of balls and of rollers
 STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
-#: groove radius over ball diameter, inner and outer, for which ISO 281 and ISO 76 rate balls
-RATED_CONFORMITY = (0.52, 0.53)
 #: Pa, of ISO 76
 _STATIC_E = 207e9
 #: of several rows in one rating
@@ -42,6 +43,12 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
     >>> round(ball_rating(Inside(9, 9.525e-3, 0.0, 46e-3, 0.0, (0.52, 0.53))) / 1e3, 1)
     19.9
     """
+    size = inside.diameter * 1e3
+    # above 25.4 mm the rating grows less
+    size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
+    if inside.thrust:
+        material = 36.7 * (100 * inside.diameter / inside.pitch) ** 0.3
+        return factor * material * inside.elements ** (2 / 3) * size
     g = inside.gamma
     inner, outer = inside.conformity
     grooves = (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
@@ -49,9 +56,6 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
     both = (1 + ratio ** (10 / 3)) ** -0.3
     material = 39.9 * both * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
     material *= (2 * inner / (2 * inner - 1)) ** 0.41
-    size = inside.diameter * 1e3
-    # above 25.4 mm the rating grows less
-    size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
     angle = math.cos(inside.angle)
     return factor * material * (rows * angle) ** 0.7 * inside.elements ** (2 / 3) * size
 
@@ -87,17 +91,23 @@ def static_ball_rating(inside: Inside) -> float:
     >>> round(static_ball_rating(Inside(9, 9.525e-3, 0.0, 46e-3, 0.0, (0.52, 0.53))) / 1e3, 1)
     11.3
     """
+    inner, outer = _rated_conformity(inside)
     row = BallRow(
         count=inside.elements,
         diameter=inside.diameter,
         pitch=inside.pitch,
         angle=inside.angle,
-        inner=RATED_CONFORMITY[0],
-        outer=RATED_CONFORMITY[1],
+        inner=inner,
+        outer=outer,
         E=_STATIC_E,
     )
     ball = min(ring.load(STATIC_PRESSURE[True]) for ring in row.rings)
-    return 0.2 * inside.elements * ball * math.cos(inside.angle)
+    return inside.elements * ball * (1.0 if inside.thrust else 0.2 * math.cos(inside.angle))
+
+
+def _rated_conformity(inside: Inside) -> tuple[float, float]:
+    """Groove radii over ball diameter, inner and outer, for which ISO 281 and ISO 76 rate balls."""
+    return SHARES["thrust_ball" if inside.thrust else "deep_groove"].conformity[1]
 
 
 def static_factor(inside: Inside) -> float:
@@ -128,7 +138,7 @@ def rated(data: Catalogue, inside: Inside) -> float:
     if not data.balls:
         return roller_rating(inside, _factor(data), data.rated_rows)
     # ISO 281 grants tighter grooves than its own nothing
-    own = replace(inside, conformity=RATED_CONFORMITY)
+    own = replace(inside, conformity=_rated_conformity(inside))
     return ball_rating(own, _factor(data), data.rated_rows)
 
 

@@ -11,7 +11,8 @@ capacities of the inner and the outer raceway follow from the basic dynamic load
               Q_ce = C / (0.83 0.364 Z cos(a)) (1 + v^(-9/2))^(2/9),
               v = 1.038 ((1 - g) / (1 + g))^(143/108)
 
-with g = Dw cos(a) / Dpw.  The four constants are Stribeck's integrals of half a loaded row.  A slice
+with g = Dw cos(a) / Dpw.  The four constants are Stribeck's integrals of half a loaded row; of thrust balls, whose C is axial,
+they are 1, and so is what stands for cos(a) (sin 90).  A slice
 (lamina) of a roller has ``Q_c / n^(7/9)``.
 
 The ring that turns against the load feels all elements in turn, ``Q = (mean Q_j^p)^(1/p)``; the one
@@ -67,6 +68,8 @@ class Fatigue(NamedTuple):
 
 
 POINT = Fatigue(3.0, 10 / 3, 0.0, 0.407, 0.389, 1.0)
+#: of washers that are loaded evenly
+THRUST = POINT._replace(inner=1.0, outer=1.0)
 LINE = Fatigue(4.0, 9 / 2, 7 / 9, 0.378, 0.364, 0.83)
 
 
@@ -108,7 +111,10 @@ def raceways(inside: Inside, rating: float) -> Raceways:
         inner, outer = inside.conformity
         grooves = (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
         law, ratio = POINT, 1.044 * ((1 - g) / (1 + g)) ** 1.72 * grooves
-    each = rating / law.edge / (inside.elements * math.cos(inside.angle))
+    share = math.cos(inside.angle)
+    if inside.thrust:
+        law, share = THRUST, 1.0
+    each = rating / law.edge / (inside.elements * share)
     s = law.standing
     return Raceways(
         each / law.inner * (1 + ratio**s) ** (1 / s),

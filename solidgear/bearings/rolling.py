@@ -11,6 +11,7 @@ import numpy as np
 
 from solidgear.bearings.newton import NothingHolds, settle
 from solidgear.bearings.row import Contacts
+from solidgear.bearings.sliding import FURTHEST, balanced, condensed
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 
@@ -43,6 +44,13 @@ class RollingBearing:
     act on the inner ring from outside, and that the bearing carries.  Both at one reference point
     on the axis, order (x, y, z, thx, thy, thz), SI.
 
+    Attributes
+    ----------
+    rows : tuple of Row
+    floats : bool
+        One of its rings slides along y in its seat, without friction: at every motion the rows
+        stand where nothing presses them along y, and the stiffness is what is left then.
+
     Examples
     --------
     >>> import numpy as np
@@ -57,6 +65,7 @@ class RollingBearing:
     """
 
     rows: tuple[Row, ...]
+    floats: bool = False
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -64,17 +73,39 @@ class RollingBearing:
         turn = 2 / max(row.pitch for row in self.rows)
         return np.array([1.0, 1.0, 1.0, turn, turn, turn])
 
+    def seen(self, motion: np.ndarray) -> np.ndarray:
+        """Motions (..., 6) of the inner ring against the outer one, wherever a seat slides."""
+        motion = np.asarray(motion, float)
+        if not self.floats:
+            return motion
+        far = np.full(motion.shape[:-1], FURTHEST)
+        return balanced(self._load, self._tangent, motion, -far, far)
+
+    def _load(self, motion: np.ndarray) -> np.ndarray:
+        return sum((row.load(motion) for row in self.rows), np.zeros(()))
+
+    def _tangent(self, motion: np.ndarray) -> np.ndarray:
+        return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
+
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load (..., 6) at motions (..., 6)."""
-        return sum((row.load(motion) for row in self.rows), np.zeros(()))
+        load = self._load(self.seen(motion))
+        if self.floats:
+            load[..., 1] = 0.0
+        return load
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """Tangent stiffness (..., 6, 6) at motions (..., 6): symmetric, with a zero row of thy."""
-        return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
+        stiffness = self._tangent(self.seen(motion))
+        if self.floats:
+            stiffness = condensed(stiffness)
+            stiffness[..., 1, :] = stiffness[..., :, 1] = 0.0
+        return stiffness
 
     def contacts(self, motion: np.ndarray) -> tuple[Contacts, ...]:
         """Loads of all elements of all rows at one motion."""
-        return tuple(row.contacts(motion) for row in self.rows)
+        seen = self.seen(motion)
+        return tuple(row.contacts(seen) for row in self.rows)
 
     def at_work(self, motion: np.ndarray) -> float:
         """Sum of all contact forces at one motion, N, whether or not they balance each other."""
@@ -110,8 +141,13 @@ class RollingBearing:
             raise SolidgearError(
                 f"a bearing carries no torque about its axis, but {wanted[4]:g} N m are asked of it"
             )
+        if self.floats and wanted[1] != 0.0:
+            raise SolidgearError(
+                f"a floating bearing carries nothing along y, but {wanted[1]:g} N are asked of it"
+            )
         begin = np.zeros(6) if start is None else np.array(start, float)
-        move = [k for k in range(6) if k != 4 and k not in held]
+        still = {4, *held} | ({1} if self.floats else set())
+        move = [k for k in range(6) if k not in still]
 
         def whole(x: np.ndarray) -> np.ndarray:
             full = begin.copy()
@@ -133,7 +169,7 @@ class RollingBearing:
             raise SolidgearError(
                 f"no equilibrium under {_load_in_words(wanted)}: {found.unbalanced:.1e} of it is left over"
             )
-        return whole(found.motion)
+        return self.seen(whole(found.motion))
 
 
 def _not_carried(load: np.ndarray, move: Sequence[int], direction: np.ndarray) -> str:

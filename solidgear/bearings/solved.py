@@ -124,7 +124,7 @@ def solved(
             )
         except SceneError as error:
             raise located(error, k) from None
-        motion[name] = at
+        motion[name] = made[name].bearing.seen(at)
         tangent[name] = made[name].bearing.tangent(at)
         if not tangent[name].any() and not waits:
             raise located(_unloaded(), k)
@@ -151,6 +151,7 @@ def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
                 own.end,
                 clearance_share=own.clearance,
                 preload_factor=own.preload,
+                floats=bearing.support == "floating",
             )
         except SceneError as error:
             raise located(error, k) from None

@@ -155,7 +155,8 @@ def _print(fact: BearingFacts) -> None:
     what = fact.designation or fact.kind.replace("_", " ")
     ignored = boundary(fact.designation).ignored if fact.designation else ""
     unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
-    say(f"Bearing {fact.name!r}: {what}{unused}, {fact.status}")
+    support = f", {fact.support}" if fact.support else ""
+    say(f"Bearing {fact.name!r}: {what}{unused}{support}, {fact.status}")
     i = fact.inside
     size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
     if "element_length" in i:
@@ -163,7 +164,8 @@ def _print(fact: BearingFacts) -> None:
     inside = f"{size} mm a row on {1e3 * i['pitch_diameter']:.5g} mm"
     if i["contact_angle"]:
         inside += f", contact angle {np.degrees(i['contact_angle']):.4g} deg"
-    say(f"{inside}; radial clearance at work {1e6 * fact.clearance:.3g} um")
+    room = f"; radial clearance at work {1e6 * fact.clearance:.3g} um"
+    say(inside + room * (fact.kind != "thrust_ball"))
     if fact.estimated:
         words = ", ".join(fact.estimated).replace("_", " ")
         say(f"Estimated from boundary dimensions and ratings: {words}.")
@@ -221,6 +223,7 @@ def _plain(fact: BearingFacts) -> dict[str, Any]:
         "kind": fact.kind,
         "designation": fact.designation,
         "status": fact.status,
+        "support": fact.support or None,
         "inside": fact.inside,
         "estimated": fact.estimated,
         "clearance": fact.clearance,

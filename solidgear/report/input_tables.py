@@ -164,7 +164,9 @@ def _stiffness(name: Quantity, units: Units) -> Column:
 
 def _note(bearing: Mapping, units: Units) -> str:
     """Remark on a bearing in words, catalogue data and the housing at its seat included."""
-    words = [catalogue(bearing.get("catalogue"), units), str(bearing.get("note") or "")]
+    support = str(bearing.get("support") or "")
+    words = [f"{support.capitalize()}." if support else ""]
+    words += [catalogue(bearing.get("catalogue"), units), str(bearing.get("note") or "")]
     own = bearing.get("housing")
     if own:
         entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())

@@ -5,6 +5,7 @@ The 6x6 at a load is worked out from these data by :mod:`solidgear.bearings`.
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -28,15 +29,31 @@ from solidgear.scene.units import (
     quantity,
 )
 
-Kind = Literal["deep_groove", "angular_contact", "cylindrical", "tapered", "needle"]
+Kind = Literal[
+    "deep_groove",
+    "angular_contact",
+    "cylindrical",
+    "tapered",
+    "needle",
+    "spherical",
+    "thrust_ball",
+]
 Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to_face"]
 #: clearance classes of ISO 5753-1
 ClearanceClass = Literal["C2", "CN", "C3", "C4"]
 CLASSES = ("C2", "CN", "C3", "C4")
-BALLS = ("deep_groove", "angular_contact")
+BALLS = ("deep_groove", "angular_contact", "thrust_ball")
+#: kinds with a contact angle of their own
+ANGLED = ("angular_contact", "tapered", "spherical")
 #: kinds whose rows hold the shaft in one direction along y
-ONE_SIDED = ("angular_contact", "tapered")
+ONE_SIDED = ("angular_contact", "tapered", "thrust_ball")
+#: kinds whose rows carry nothing along y
+FLOATING = ("cylindrical", "needle")
 PAIRED = ("tandem", "back_to_back", "face_to_face")
+#: direction along y in which the lower and the upper row of two hold the shaft
+WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
+#: other words of the field for these
+_CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -129,6 +146,20 @@ def _preload(value: Any) -> Any:
     )
 
 
+def arrangement_word(value: Any) -> Any:
+    """The word of a catalogue for an arrangement as people write it.
+
+    Examples
+    --------
+    >>> arrangement_word("O"), arrangement_word("face to face"), arrangement_word("tandem")
+    ('back_to_back', 'face_to_face', 'tandem')
+    """
+    if not isinstance(value, str):
+        return value
+    plain = re.sub(r"[\s-]+", "_", value.strip().lower())
+    return _CALLED.get(plain, plain if plain in WAYS else value)
+
+
 def _clearance(value: Any) -> Any:
     if value in CLASSES:
         return value
@@ -160,14 +191,16 @@ class Catalogue(Model):
     Attributes
     ----------
     kind : str
-        deep_groove, angular_contact, cylindrical, tapered or needle.
+        deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
+        thrust_ball.
     designation : str
         Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
         where these are left out; seals, cages and tolerances are read and ignored.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
-        Basic dynamic and static radial load rating, N; of a pair those of one bearing.
+        Basic dynamic and static radial load rating, N; of a pair those of one bearing, of a thrust
+        bearing its axial ones.
     fatigue_limit : float or None
         Fatigue load limit C_u, N, of the same.
     rating_factor : float or None
@@ -179,17 +212,18 @@ class Catalogue(Model):
     contact_angle : float or None
         From the radial plane, rad.
     conformity : (float, float) or None
-        Groove radius over ball diameter, inner and outer.
+        Groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
+        of their contour.
     profile : {'logarithmic', 'straight'}
-        Of rollers, by ISO/TS 16281.
+        Of rollers that are no barrels, by ISO/TS 16281.
     arrangement : str
         single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
-        back_to_back or face_to_face.
+        back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
     row_distance : float or None
         Of the rows' middles, m; the width where not given.
     holds : {'+y', '-y'} or None
         Direction in which single rows and tandems with a contact angle keep the shaft from moving;
-        these have to tell it, as their mounting decides it.
+        these have to tell it, as their mounting decides it, or `arrangement` of the scene does.
     clearance : float or str
         Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
     shaft_interference, housing_interference : float
@@ -235,7 +269,7 @@ class Catalogue(Model):
     contact_angle: Angle | None = None
     conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
     profile: Literal["logarithmic", "straight"] = "logarithmic"
-    arrangement: Arrangement = "single"
+    arrangement: Annotated[Arrangement, BeforeValidator(arrangement_word)] = "single"
     row_distance: PositiveLength | None = None
     holds: Literal["+y", "-y"] | None = None
     clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
@@ -249,6 +283,9 @@ class Catalogue(Model):
     displacement: BearingDisplacement | None = None
 
     def __init__(self, /, **data: Any):
+        if "support" in data:
+            reason = "stands beside the catalogue data, as a key of the bearing, and not among them"
+            raise SceneError(reason, path=("support",), value=show(data["support"]))
         if isinstance(data.get("designation"), str) and data["designation"]:
             data = _with_boundary(data)
         super().__init__(**data)
@@ -256,12 +293,27 @@ class Catalogue(Model):
     @property
     def one_sided(self) -> bool:
         """True where it holds the shaft in one direction along y only."""
-        return self.angled and self.arrangement in ("single", "tandem")
+        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
 
     @property
     def angled(self) -> bool:
         """True where its kind has a contact angle."""
-        return self.kind in ONE_SIDED
+        return self.kind in ANGLED
+
+    @property
+    def own_rows(self) -> int:
+        """Rows that a bearing of its kind has by nature."""
+        return 2 if self.kind == "spherical" else 1
+
+    @property
+    def grooved(self) -> bool:
+        """True where the conformity of grooves has a part in its contacts."""
+        return self.balls or self.kind == "spherical"
+
+    @property
+    def floats(self) -> bool:
+        """True where its kind carries nothing along y."""
+        return self.kind in FLOATING
 
     @property
     def balls(self) -> bool:
@@ -276,18 +328,23 @@ class Catalogue(Model):
     @property
     def opposed(self) -> bool:
         """True where two rows hold the shaft against each other."""
-        return self.paired and self.arrangement != "tandem"
+        return self.own_rows > 1 or (self.paired and self.arrangement != "tandem")
+
+    @property
+    def both_ways(self) -> bool:
+        """True where it holds the shaft along y in both directions."""
+        return not (self.floats or self.one_sided)
 
     @property
     def rated_rows(self) -> int:
         """Rows that its load ratings are told for."""
-        return 2 if self.arrangement == "double_row" else 1
+        return 2 if self.arrangement == "double_row" else self.own_rows
 
     @property
     def estimated(self) -> tuple[str, ...]:
         """Inner dimensions that are not given, by their names here."""
         inner = ["elements", "element_diameter", "pitch_diameter"]
-        inner.append("conformity" if self.balls else "element_length")
+        inner += ["conformity"] * self.grooved + ["element_length"] * (not self.balls)
         if self.angled:
             inner.append("contact_angle")
         return tuple(name for name in inner if getattr(self, name) is None)

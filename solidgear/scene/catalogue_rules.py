@@ -28,7 +28,9 @@ def problems(data: Catalogue) -> Iterator[SceneError]:
 def _belongs(data: Catalogue) -> Iterator[SceneError]:
     """Keys that the kind or the arrangement has no use for."""
     what = data.kind.replace("_", " ")
-    if not data.angled:
+    if data.kind in ("spherical", "thrust_ball"):
+        yield from _by_nature(data, what)
+    elif not data.angled:
         if data.contact_angle is not None:
             yield SceneError(
                 f"a {what} bearing has no contact angle of its own: leave it out, or write "
@@ -53,12 +55,16 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
     if data.one_sided and data.holds is None:
         yield SceneError(
             f"{data.arrangement} {what} bearings hold the shaft in one direction only: "
-            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y"',
+            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
+            'for a pair arrangement = "O" or "X" above all tables',
             path=("holds",),
         )
-    for key, wanted in (("conformity", True), ("element_length", False), ("speed", True)):
-        if getattr(data, key) and data.balls is not wanted:
-            owner = "balls" if wanted else "rollers"
+    for key, allowed, owner in (
+        ("conformity", data.grooved, "balls and spherical rollers"),
+        ("element_length", not data.balls, "rollers"),
+        ("speed", data.balls, "balls"),
+    ):
+        if getattr(data, key) and not allowed:
             yield SceneError(
                 f"belongs to {owner}; a {what} bearing has none: leave it out", path=(key,)
             )
@@ -77,6 +83,30 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
             '"face_to_face" and a preload such as "500 N"',
             path=("preload_spring",),
         )
+
+
+def _by_nature(data: Catalogue, what: str) -> Iterator[SceneError]:
+    """Keys that bearings of two rows of their own, and those for thrust alone, have no use for."""
+    if data.kind == "spherical":
+        what = "spherical roller"
+        refused = {
+            "arrangement": "has two rows of its own",
+            "preload": "is preloaded by a negative clearance and not along y",
+            "profile": "has barrels, whose profile is their conformity",
+        }
+    else:
+        refused = {
+            "arrangement": "has one row and holds one way (of two, write holds at each)",
+            "contact_angle": "stands at 90 degrees",
+            "clearance": "has no clearance across the shaft",
+            "shaft_interference": "is not made tighter by its fit",
+            "housing_interference": "is not made tighter by its fit",
+            "inner_ring_warmer": "is not made tighter by a warm shaft",
+            "speed": "is computed at rest only, without what speed does to its balls",
+        }
+    for key, reason in refused.items():
+        if getattr(data, key) != type(data).model_fields[key].get_default():
+            yield SceneError(f"a {what} bearing {reason}: leave it out", path=(key,))
 
 
 def _fits(data: Catalogue) -> Iterator[SceneError]:

@@ -1,4 +1,4 @@
-"""Boundary dimensions behind a catalogue designation: ISO 15, ISO 355 and drawn cups, in mm.
+"""Boundary dimensions behind a catalogue designation: ISO 15, 104, 355 and drawn cups, in mm.
 
 Only what is standard: bore, outside diameter, width.  What is inside is the maker's, and estimated
 in :mod:`solidgear.bearings.geometry`.
@@ -16,10 +16,10 @@ _BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
 
 
 def _series(text: str, first: int = 10) -> dict[int, tuple[float, float]]:
-    """Bore to outside diameter and width, from ``D x B`` in the order of bores."""
-    pairs = [pair.split("x") for pair in text.split()]
-    bores = _BORES[_BORES.index(first) :]
-    return {d: (float(D), float(B)) for d, (D, B) in zip(bores, pairs)}
+    """Bore to outside diameter and width, from ``D x B`` in the order of bores, a dash for none."""
+    pairs = zip(_BORES[_BORES.index(first) :], text.split())
+    told = {bore: pair.split("x") for bore, pair in pairs if pair != "-"}
+    return {bore: (float(D), float(B)) for bore, (D, B) in told.items()}
 
 
 #: ISO 15:2017, diameter series 0, 2 and 3, usual width
@@ -35,10 +35,10 @@ _HEAVY = _series(
     "35x11 37x12 42x13 47x14 52x15 62x17 72x19 80x21 90x23 100x25 110x27 120x29 130x31 140x33 "
     "150x35 160x37 170x39 180x41 190x43 200x45 215x47 240x50 260x55"
 )
-#: ISO 15:2017, series 22 of cylindrical rollers
+#: ISO 15:2017, series 22 of cylindrical and spherical rollers
 _WIDE = _series(
     "47x18 52x18 62x20 72x23 80x23 85x23 90x23 100x25 110x28 120x31 125x31 130x31 140x33 150x36 "
-    "160x40 170x43 180x46",
+    "160x40 170x43 180x46 200x53 215x58",
     20,
 )
 #: ISO 355:2019, outside diameter x assembled width of the series 302, 303, 320, 322, 323
@@ -69,8 +69,45 @@ _TAPERED = {
         30,
     ),
 }
-#: degrees, the middle of what makers give for a series of ISO 355
+#: ISO 15:2017, series 03, 22, 23, 30, 31, 32, 40 as spherical rollers are made in
+_SPHERICAL = {
+    "213": {bore: size for bore, size in _HEAVY.items() if bore >= 20},
+    "222": _WIDE,
+    "223": _series(
+        "90x33 100x36 110x40 120x43 130x46 140x48 150x51 160x55 170x58 180x60 190x64 200x67 215x73 "
+        "240x80 260x86",
+        40,
+    ),
+    "230": _series("150x37 170x45 180x46", 100),
+    "231": _series("165x52 180x56 200x62", 100),
+    "232": _series("160x52.4 - 180x60.3 200x69.8 215x76", 90),
+    "240": _series("150x50 170x60 180x60", 100),
+}
+#: ISO 104:2015, diameter series 1 and 2 of single-direction thrust balls, outside diameter x height
+_THRUST = {
+    "511": _series(
+        "24x9 26x9 28x9 30x9 35x10 42x11 47x11 52x12 60x13 65x14 70x14 78x16 85x17 90x18 95x18 "
+        "100x19 105x19 110x19 120x22 - 135x25 145x25 155x25"
+    ),
+    "512": _series(
+        "26x11 28x11 32x12 35x12 40x14 47x15 52x16 62x18 68x19 73x20 78x22 90x25 95x26 100x27 "
+        "105x27 110x27 115x28 125x31 135x35 - 150x38 160x38 170x39"
+    ),
+}
+#: degrees, the middle of what makers give for a series: of ISO 355 the angle, of spherical rollers
+#: ``e = 1.5 tan a`` of ISO 281
 _ANGLES = {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95}
+_E = {
+    "213": 0.24,
+    "2220[4-7]": 0.32,
+    "222": 0.24,
+    "223": 0.36,
+    "230": 0.23,
+    "231": 0.30,
+    "232": 0.33,
+    "240": 0.31,
+}
+_ANGLES |= {series: math.degrees(math.atan(e / 1.5)) for series, e in _E.items()}
 _BALLS = {"60": _LIGHT, "62": _MEDIUM, "63": _HEAVY}
 _ANGULAR = {"70": _LIGHT, "72": _MEDIUM, "73": _HEAVY}
 _ROLLERS = {"10": _LIGHT, "2": _MEDIUM, "3": _HEAVY, "22": _WIDE}
@@ -112,6 +149,20 @@ _WRITTEN = (
         rf"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?(?P<rest>(?:{_READ}){{0,8}})",
         _TAPERED,
         "tapered 302, 303, 320, 322, 323",
+    ),
+    (
+        "spherical",
+        # not K: the clearance of a tapered bore comes of how far it is driven up
+        rf"(?P<series>{'|'.join(_SPHERICAL)})(?P<code>\d\d)(?:E1(?:XL)?|EA?)?"
+        rf"(?P<rest>(?:(?!K)(?:{_READ})|{_CLASS}){{0,8}})",
+        _SPHERICAL,
+        "spherical 213, 222, 223, 230, 231, 232, 240",
+    ),
+    (
+        "thrust_ball",
+        rf"(?P<series>511|512)(?P<code>\d\d)(?P<rest>(?:{_READ}){{0,8}})",
+        _THRUST,
+        "thrust ball 511, 512",
     ),
 )
 
@@ -181,15 +232,18 @@ def boundary(designation: str) -> Boundary:
 
 
 def usual_angle(designation: str) -> float | None:
-    """Contact angle that tapered bearings of a series usually have, rad; None where none is known.
+    """Contact angle that tapered and spherical roller bearings of a series usually have, rad; None
+    where none is known.
 
     Examples
     --------
     >>> round(math.degrees(usual_angle("30310")), 2)
     12.95
     """
-    match = re.match(r"(302|303|320|322|323)\d\d", re.sub(r"[\s-]", "", designation))
-    return math.radians(_ANGLES[match[1]]) if match else None
+    plain = re.sub(r"[\s-]", "", designation)
+    known = (degrees for series, degrees in _ANGLES.items() if re.match(series, plain))
+    degrees = next(known, None)
+    return None if degrees is None else math.radians(degrees)
 
 
 def _bore(code: str) -> int:
@@ -216,7 +270,7 @@ def _unknown(designation: str) -> SceneError:
     hint = did_you_mean(next(iter(swapped), near(plain, _all())))
     return SceneError(
         f"this designation is not understood{hint}; known are {known} and drawn cups HK, BK, bores "
-        "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove "
-        "and cylindrical ones; or write kind, bore, outer_diameter, width",
+        "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove, "
+        "cylindrical and spherical ones; or write kind, bore, outer_diameter, width",
         value=show(designation),
     )

@@ -8,13 +8,14 @@ that are sound by themselves.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, model_validator
 
 from solidgear.errors import SceneError
+from solidgear.scene.arrangement import Arrangement, Pair, facing, pairs
 from solidgear.scene.ask import Ask
 from solidgear.scene.between import problems_between
 from solidgear.scene.blends import BLENDS
@@ -40,7 +41,7 @@ from solidgear.scene.rules import (
 )
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.toml_file import describes_train, name_of, parse, place_of
+from solidgear.scene.toml_file import FileOrder, describes_train, name_of, parse, place_of
 from solidgear.scene.typed import Gathered, Holds, Model
 from solidgear.scene.uncertain import stated
 
@@ -67,6 +68,7 @@ class _File(Model):
     source: str = ""
     attachment: Attachment = "average"
     material: Annotated[Material, BeforeValidator(by_name)]
+    arrangement: Arrangement = ()
     body: BodyTable | None = None
     segment: list[Shape]
     # what they describe is read once the shaft is known
@@ -153,7 +155,7 @@ def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
         problems = {
             (one.path, one.reason): one for one in found
         }  # both ends of a cylinder are one diameter
-        order = _FileOrder(raw)
+        order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
 
@@ -198,7 +200,12 @@ class _Reading:
     def scene(self) -> Scene:
         """The scene, once nothing is wrong with it."""
         file, place = self.file, self.places
-        bearings = [self._bearing(k, table) for k, table in enumerate(file.bearing)]
+        paired = None
+        if "arrangement" not in self.spoilt:
+            paired = self.problems.read(lambda: pairs(file.arrangement, file.bearing))
+        if paired is None:
+            self.spoilt.add("arrangement")
+        bearings = [self._bearing(k, table) for k, table in enumerate(facing(file.bearing, paired))]
         housing = None
         if (given := file.housing) is not None:
             housing = self.problems.read(lambda: housing_of(given, place), ("housing",))
@@ -208,7 +215,7 @@ class _Reading:
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
         features = [row for k, one in enumerate(file.feature) for row in self._feature(k, one)]
         rows = {
-            "bearings": bearings,
+            "bearings": self._turned(bearings, paired or []),
             "ports": self._main_first(ports),
             "masses": masses,
             "features": [row for row in features if row.kind in FEATURES.values()],
@@ -315,6 +322,15 @@ class _Reading:
             self.places.add(f"bearing.{name}", row.thing.y if row.thing else None)
         return row
 
+    @staticmethod
+    def _turned(rows: list[_Row], paired: list[Pair]) -> list[_Row]:
+        """Bearings of pairs, turned as their arrangement says now that their places are known."""
+        for pair in paired:
+            if all(rows[k].thing for k in pair.bearings):
+                for k, way in pair.ways(rows[k].thing.y for k in pair.bearings):
+                    rows[k] = rows[k]._replace(thing=rows[k].thing.held_towards(way))
+        return rows
+
     def _feature(self, index: int, table: Table) -> list[_Row]:
         """A feature of a kind that there is; it may have no name."""
         path, kinds = ("feature", index), {**FEATURES, **BLENDS}
@@ -343,7 +359,7 @@ class _Reading:
     def _judge(self, rows: dict[str, list[_Row]]) -> None:
         """Gather what is wrong between things that are sound by themselves."""
         # names are judged where all are known
-        whole = not {"bearing", "port"} & self.spoilt
+        whole = not {"bearing", "port", "arrangement"} & self.spoilt
         whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
         things = {key: [row.thing for row in of] for key, of in sound.items()}
@@ -369,31 +385,3 @@ def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
         return (LISTS.get(path[0], "feature"),)
     row = rows[path[0]][path[1]]
     return (*row.path, *row.kind.key_path(path[2:], row.table))
-
-
-class _FileOrder:
-    """Order of the entries of a file."""
-
-    def __init__(self, raw: Mapping):
-        self.raw = raw
-        self.places: dict[int, dict] = {}
-
-    def of(self, path: tuple) -> list[int]:
-        """Places of the keys of a path in their tables, the last one for a key that is missing."""
-        out: list[int] = []
-        here = self.raw
-        for key in path:
-            if id(here) not in self.places:
-                self.places[id(here)] = {key: k for k, key in enumerate(_keys(here))}
-            places = self.places[id(here)]
-            if key not in places:
-                return [*out, len(places)]
-            out.append(places[key])
-            here = here[key]
-        return out
-
-
-def _keys(table: Any) -> Iterable:
-    if isinstance(table, Mapping):
-        return table
-    return range(len(table)) if isinstance(table, list) else ()

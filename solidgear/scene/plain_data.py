@@ -30,7 +30,7 @@ def plain_data(scene: Scene) -> dict[str, Any]:
             "stiffness": bearing.stiffness.tolist(),
             "entries": stiffness_entries(row.pop("matrix")),
         }
-        for key in ("catalogue", "hold", "face", "housing"):
+        for key in ("catalogue", "support", "hold", "face", "housing"):
             if row[key] is None:
                 del row[key]
         if bearing.housing is not None:

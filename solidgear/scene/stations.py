@@ -16,6 +16,14 @@ from solidgear.scene.housing import Elastic, elastic
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.recognised import Seat
 from solidgear.scene.rules import MOST_SPRINGS
+from solidgear.scene.support import (
+    HOLDS,
+    Hold,
+    Support,
+    held_matrix,
+    sliding,
+    support_problems,
+)
 from solidgear.scene.typed import Gathered
 from solidgear.scene.units import (
     POSITION_DECIMALS,
@@ -28,36 +36,7 @@ from solidgear.scene.units import (
 
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
-Hold = Literal["clamped", "pinned"]
 Face = Literal["start", "end"]
-
-#: what a station that is held rather than sprung has in place of a spring, N/m and N m/rad: E r
-#: and E r^3 of a steel shaft are 1e-11 of it at a radius of 0.1 m and 1e-9 at 1 m. With 1e24 in both
-#: statics are as good, but modes drown in rounding: measured 1e-3 to 0.5 of a frequency.
-HELD, HELD_TURN = 1e22, 1e20
-#: components that each way of holding stops
-HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0, 1, 2)}
-
-
-def held_matrix(hold: str) -> np.ndarray:
-    """(6, 6) stiffness that stands for a way of holding.
-
-    Parameters
-    ----------
-    hold : {'clamped', 'pinned'}
-
-    Returns
-    -------
-    (6, 6) ndarray
-        N/m and N m/rad.
-
-    Examples
-    --------
-    >>> [float(k) for k in np.diag(held_matrix("pinned"))]
-    [1e+22, 1e+22, 1e+22, 0.0, 0.0, 0.0]
-    """
-    size = 3 * [HELD] + 3 * [HELD_TURN]
-    return np.diag([size[c] if c in HOLDS[hold] else 0.0 for c in range(6)])
 
 
 def _few_springs(springs: Any) -> Any:
@@ -103,6 +82,9 @@ class Bearing(Placed):
         calculated (inner geometry given) or estimated.
     note : str
         Free text.
+    support : {'locating', 'floating'} or None
+        A floating one slides in its seat and carries nothing along y; without a word cylindrical
+        and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: nothing moves, or nothing moves but turns.
     face : {'start', 'end'} or None
@@ -146,6 +128,7 @@ class Bearing(Placed):
     attachment: Attachment = "average"
     status: Status = "assumed"
     note: str = ""
+    support: Support | None = None
     hold: Hold | None = None
     face: Face | None = None
 
@@ -216,6 +199,18 @@ class Bearing(Placed):
             )
         return self
 
+    @model_validator(mode="after")
+    def _supports(self) -> Bearing:
+        if found := list(support_problems(self)):
+            raise SceneError.of(found)
+        return self
+
+    @property
+    def floats(self) -> bool:
+        """True where it carries nothing along y, by its mounting or its kind."""
+        by_kind = self.catalogue is not None and self.catalogue.floats
+        return self.support == "floating" or by_kind
+
     @property
     def unsettled(self) -> Bearing:
         """The same bearing without the stiffness that catalogue data have under the load of its
@@ -224,6 +219,11 @@ class Bearing(Placed):
         data = self.catalogue
         waits = data is not None and data.load is None and data.displacement is None
         return self.with_changes(matrix=None) if waits else self
+
+    def held_towards(self, way: str) -> Bearing:
+        """The same bearing of catalogue data, turned to hold the shaft towards '+y' or '-y'."""
+        data = self.catalogue
+        return self.with_changes(catalogue=data and data.with_changes(holds=way))
 
     def attached(self, attachment: str) -> Bearing:
         """The same bearing with its seat attached in another way; one on a face as it is."""
@@ -257,6 +257,8 @@ class Bearing(Placed):
             # couplings included
             spring = 1 / sum(1 / k for k in self.axial_series)
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
+        if self.support == "floating":
+            K = sliding(K)
         if self.housing is not None:
             K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
         K.flags.writeable = False

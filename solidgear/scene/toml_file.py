@@ -7,7 +7,7 @@ import re
 import stat
 import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TextIO
@@ -212,3 +212,31 @@ def _plain_words(words: str, line: str) -> str:
         (plain for start, plain in _PARSER.items() if words.startswith(start)),
         words[:1].lower() + words[1:],
     )
+
+
+class FileOrder:
+    """Order of the entries of a file."""
+
+    def __init__(self, raw: Mapping):
+        self.raw = raw
+        self.places: dict[int, dict] = {}
+
+    def of(self, path: tuple) -> list[int]:
+        """Places of the keys of a path in their tables, the last one for a key that is missing."""
+        out: list[int] = []
+        here = self.raw
+        for key in path:
+            if id(here) not in self.places:
+                self.places[id(here)] = {key: k for k, key in enumerate(_keys(here))}
+            places = self.places[id(here)]
+            if key not in places:
+                return [*out, len(places)]
+            out.append(places[key])
+            here = here[key]
+        return out
+
+
+def _keys(table: Any) -> Iterable:
+    if isinstance(table, Mapping):
+        return table
+    return range(len(table)) if isinstance(table, list) else ()

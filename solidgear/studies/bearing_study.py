@@ -13,6 +13,8 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.scene import Scene
 
+#: why one row of a pair carries nothing
+LOST = "any more: the pair has lost its preload"
 #: times the load that the scene says
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
 
@@ -25,6 +27,8 @@ class BearingFacts:
     ----------
     inside : dict
         Inner geometry it was solved with, SI.
+    support : str
+        Its word for y; empty for none.
     estimated : tuple of str
         What of it was not given.
     clearance : float
@@ -42,6 +46,7 @@ class BearingFacts:
     kind: str
     designation: str
     status: str
+    support: str
     inside: dict[str, float]
     estimated: tuple[str, ...]
     clearance: float
@@ -105,15 +110,16 @@ def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
         "pitch_diameter": made.inside.pitch,
         "contact_angle": made.inside.angle,
     }
-    if data.balls:
+    if data.grooved:
         inside |= dict(zip(("conformity_inner", "conformity_outer"), made.inside.conformity))
-    else:
+    if not data.balls:
         inside["element_length"] = made.inside.length
     return BearingFacts(
         name,
         data.kind,
         data.designation,
         bearing.status,
+        bearing.support or "",
         inside,
         made.estimated,
         made.clearance,
@@ -122,7 +128,7 @@ def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
         np.array(bearing.matrix),
         spread,
         rows,
-        tuple(_notes(rows)),
+        tuple(_notes(rows, "under this thrust" if data.own_rows > 1 else LOST)),
     )
 
 
@@ -130,14 +136,14 @@ def _named(found: Solved, name: str):
     return next(b for b in found.scene.bearings if b.name == name)
 
 
-def _notes(rows: Sequence[Contacts]):
+def _notes(rows: Sequence[Contacts], why: str):
     if not any(row.load.any() for row in rows):
         yield "it carries nothing: it has lost its load, and has no stiffness"
         return
     for k, row in enumerate(rows):
         if not row.load.any():
             place = "lower" if k == 0 else "upper"
-            yield f"the row at the {place} end of y carries nothing: the pair has lost its preload"
+            yield f"the row at the {place} end of y carries nothing {why}"
 
 
 @dataclass(frozen=True)

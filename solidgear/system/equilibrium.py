@@ -22,7 +22,14 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.bearings.balance import FIVE, Balance, Mounted, between, common_feet
+from solidgear.bearings.balance import (
+    FIVE,
+    Balance,
+    Mounted,
+    between,
+    common_feet,
+    pushed_out,
+)
 from solidgear.bearings.newton import NothingHolds
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
@@ -220,10 +227,9 @@ class OnBearings:
     def _not_held(self, direction: np.ndarray) -> str:
         ends = [end for own in self.seats for end in own.ends]
         k = int(np.argmax(np.abs(direction)))
-        return (
-            f"no bearing holds {ends[k // 5].partition('.')[0]} in {DOF_NAMES[FIVE[k % 5]]}: it is "
-            "pushed out of its bearings; turn one round, or preload them"
-        )
+        component = DOF_NAMES[FIVE[k % 5]]
+        shaft = ends[k // 5].partition(".")[0]
+        return f"no bearing holds {shaft} in {component}: it is {pushed_out(component)}"
 
     def _told(
         self, load: np.ndarray, at: np.ndarray, unbalanced: float, iterations: int

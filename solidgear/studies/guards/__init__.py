@@ -24,6 +24,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         data.free_motions,
         data.oblique_softness,
         data.one_way,
+        data.axial_support,
         data.split_pair,
         models.beam_against_solid,
         models.slenderness,

@@ -144,9 +144,7 @@ def facing_one_way(scene: Scene) -> Iterator[str]:
     rows = [b for b in scene.bearings if b.catalogue and b.catalogue.one_sided]
     ways = {b.catalogue.holds for b in rows if b.catalogue}
     held_otherwise = any(
-        b.catalogue.opposed or b.catalogue.kind == "deep_groove"
-        if b.catalogue
-        else b.stiffness[1, 1]
+        not b.floats and (b.catalogue.both_ways if b.catalogue else b.stiffness[1, 1])
         for b in scene.bearings
     )
     if len(rows) > 1 and len(ways) == 1:
@@ -159,6 +157,44 @@ def facing_one_way(scene: Scene) -> Iterator[str]:
         yield (
             f"the bearings {listed([repr(b.name) for b in rows])} all hold the shaft towards {way}: "
             f'{alone}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"'
+        )
+
+
+def axial_support(probe: Probe) -> Notices:
+    """Bearings that hold the shaft along y: which by word, none, or several against each other."""
+    bearings = probe.scene.bearings
+    floating = [repr(b.name) for b in bearings if b.floats]
+    if floating and not any(b.stiffness[1, 1] for b in bearings):
+        one = len(floating) == 1
+        others = "" if len(floating) == len(bearings) else ", and no other bearing holds it there"
+        yield Notice(
+            "caution",
+            (),
+            f"no bearing locates the shaft along y: {listed(floating)} float{'s' * one}{others}; "
+            'let one hold it, by support = "locating" or by its kind',
+        )
+        return
+    known = [(b, b.catalogue) for b in bearings if b.catalogue and not b.floats]
+    both = [repr(b.name) for b, data in known if data.both_ways]
+    singles = [(repr(b.name), data.holds) for b, data in known if data.one_sided]
+    if len({way for _, way in singles}) > 1:
+        both.append(" with ".join(name for name, _ in singles))
+    if len(both) > 1:
+        yield Notice(
+            "fact",
+            (),
+            f"the bearings {listed(both)} each locate the shaft along y, "
+            "which is statically indeterminate: they share its load by clearance and stiffness, and "
+            "what warmth and distances of seats press between them is in no number; write "
+            'support = "floating" at all but one',
+        )
+    if any(b.support for b in bearings):
+        locating = [repr(b.name) for b in bearings if not b.floats and b.stiffness[1, 1]]
+        yield Notice(
+            "fact",
+            (),
+            f"along y {listed(locating)} locate{'s' * (len(locating) == 1)} the shaft"
+            + (f", {listed(floating)} float{'s' * (len(floating) == 1)}" if floating else ""),
         )
 
 

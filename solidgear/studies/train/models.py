@@ -183,6 +183,7 @@ class Workshop:
                     matrix=np.asarray(stiffness[f"{side}.{bearing.name}"]).tolist(),
                     axial_series=(),
                     catalogue=None,
+                    support=None,
                 )
                 if f"{side}.{bearing.name}" in stiffness
                 else bearing
