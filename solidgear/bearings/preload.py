@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.roller import RollerRow
@@ -14,6 +13,8 @@ from solidgear.errors import SolidgearError
 
 #: m; no bearing is pushed further
 FURTHEST = 5e-3
+#: of a push; six are common
+MOST_STEPS = 100
 #: relative; of the sum of forces on a sprung ring
 BALANCED = 1e-13
 
@@ -45,14 +46,20 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     >>> round(float(tight.load(np.zeros(6))[1]), 6)
     500.0
     """
-
-    def miss(push: float) -> float:
-        pressed = replace(row, preload=push)
-        return float(row.side * pressed.load(np.zeros(6))[1]) - force
-
-    if miss(FURTHEST) < 0:
+    still, low, high = np.zeros(6), 0.0, FURTHEST
+    tight, push = replace(row, preload=high), high
+    if row.side * tight.load(still)[1] < force:
         raise SolidgearError(f"no push along y preloads this row with {force:g} N")
-    return replace(row, preload=float(brentq(miss, 0.0, FURTHEST, xtol=1e-18, rtol=1e-14)))
+    for _ in range(MOST_STEPS):
+        missing, slope = force - row.side * tight.load(still)[1], tight.tangent(still)[1, 1]
+        low, high = (push, high) if missing > 0 else (low, push)
+        # Newton, or half of what is left where that leads out of it or nothing presses yet
+        further = push + missing / slope if slope > 0 else -1.0
+        before, push = push, further if low <= further <= high else (low + high) / 2
+        tight = replace(row, preload=float(push))
+        if abs(push - before) <= 1e-14 * push:
+            break
+    return tight
 
 
 @dataclass(frozen=True)

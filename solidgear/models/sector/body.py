@@ -32,7 +32,7 @@ from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
 from solidgear.models.size import Size, of_mesh
 from solidgear.models.solid.block import free_block
-from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
@@ -231,7 +231,8 @@ def sector_size(
     made = meshed_sector(scene, wanted, cyclic_features(scene), ends, count=count, **sizes)
     made = made if half else mirrored(made)
     mesh: Any = _solved_part(made)[0]
-    (_, entries), n, own = of_mesh(mesh.dofs).matrices[0], mesh.nodes.shape[1], mesh.sector
+    (_, entries), *_ = of_mesh(mesh.mesh, basis_of("tet10")).matrices
+    n, own = mesh.nodes.shape[1], mesh.sector
     axis, waves = len(own.axis), 1 + len(ovalising)
     if made.half:
         planes = len(own.middle) + len(own.cut)
