@@ -37,6 +37,9 @@ from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.features.around import mirror_angle, no_common_sector
+from solidgear.scene.features.base import SMALLEST
+from solidgear.scene.outline import Outline
+from solidgear.scene.parts import Segment
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
@@ -173,12 +176,41 @@ def no_sector(scene: Any) -> str:
     ''
     """
     features = cyclic_features(scene)
-    if features and scene.outline.corners:
-        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.outline.corners)
-        return (
-            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
-        )
-    return no_common_sector(features) if features else ""
+    if not features:
+        return ""
+    return _edge_in_teeth(scene.outline, features) or no_common_sector(features)
+
+
+def _edge_in_teeth(outline: Outline[Segment], features: Sequence[Any]) -> str:
+    """Reason why fillets and chamfers beside teeth cannot be drawn, or nothing: they stand on the face
+    below the roots, or leave one above the tips.
+    """
+    toothed = {f.segment: f for f in features if f.toothed}
+    for c in outline.corners:
+        called, owner = f'{c.kind} "{c.name}"', outline.segments[c.owner]
+        if owner.name in toothed:
+            return f'{called} runs along the teeth of "{owner.name}": a sector holds none there'
+        if not 0 < c.joint < len(outline.segments):
+            continue
+        s = outline.segments[c.joint if c.side < 0 else c.joint - 1]
+        if s.name not in toothed:
+            continue
+        if c.surface == "bore":
+            return f'{called} is in the bore, at the teeth of "{s.name}": a sector holds none there'
+        pitch, r = s.outer0 if c.side < 0 else s.outer1, c.on_face[0]
+        root, tip = toothed[s.name].land * pitch, toothed[s.name].tip * pitch
+        least = SMALLEST * pitch
+        if c.root and r > root - least:
+            return (
+                f'{called} reaches {r:.6g} m from the axis, where the roots of "{s.name}" lie at '
+                f"{root:.6g} m: a sector needs it to end below {root - least:.6g} m"
+            )
+        if not c.root and r < tip + least:
+            return (
+                f'{called} begins {r:.6g} m from the axis, where the tips of "{s.name}" lie at '
+                f"{tip:.6g} m: a sector needs it to begin above {tip + least:.6g} m"
+            )
+    return ""
 
 
 def meshed_sector(
@@ -191,7 +223,7 @@ def meshed_sector(
     assemblable(rough_sector(scene, wanted, count=count, **sizes), 10)
     plan = tetrahedra_plan(scene, wanted, around=16, **sizes)
     plan["planes"] = sorted({*plan["planes"], *ends})
-    return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
+    return sector_mesh(scene.outline, features, **plan, refinement=refinement, count=count)
 
 
 def sectors_around(scene, given: Mapping[str, Any]) -> int:
