@@ -16,6 +16,8 @@ from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.teeth import half_outline, outline, section_area, section_polar
 from solidgear.models.sector.body import meshed_sector, sector, whole
 from solidgear.models.sector.cyclic import Sector, basis, doubled
+from solidgear.models.solid.featured import featured_body, meshed
+from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.scene import BoltCircle, Fillet, Keyway, Spline, Teeth
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.features.around import no_common_sector
@@ -58,7 +60,7 @@ def filleted(radius=None, **teeth):
     cut = Teeth(name="teeth", segment="rim", count=14, model="sector").with_changes(**teeth)
     edges = (("before", 0.06), ("behind", 0.08)) if radius else ()
     return sg.Scene.from_parts(
-        [sg.Segment.cylinder(n, y0=y, length=l, diameter=d) for n, y, l, d in ends],
+        [sg.Segment.cylinder(n, y0=y, length=long, diameter=d) for n, y, long, d in ends],
         STEEL,
         [
             sg.Bearing(name=name, y=y, seat_width=0.015, stiffness=firm)
@@ -70,6 +72,9 @@ def filleted(radius=None, **teeth):
     )
 
 
+KEY = Keyway(
+    name="key", segment="right", y=0.09, length=0.03, width=0.012, depth=0.006, angle="20 deg"
+)
 SPIRAL = TEETH.with_changes(spiral_angle="30 deg", hand="right")
 PARTS = {
     "straight": shaft(TEETH),
@@ -280,7 +285,6 @@ def test_who_holds_what():
             'one sector that repeats itself around the axis, and the scene has keyway "key"',
         ),
         ("corrected", 'made of two meshes, with cuts and without, and the scene has teeth "teeth"'),
-        ("solid", 'teeth "teeth", keyway "key", which no mesh holds together'),
     ):
         with pytest.raises(sg.SolidgearError) as caught:
             sg.build(both, rung)
@@ -468,14 +472,21 @@ def test_smeared_teeth_stay_smeared_beside_bolts():
     assert np.array_equal(a.mass_matrix(), b.mass_matrix())
 
 
-@pytest.mark.parametrize("segment", ["rod", "disc"])
-def test_teeth_and_a_keyway_are_refused_with_the_words_that_let_models_hold_both(segment):
-    """On one shaft, and on the very segment of the teeth."""
-    from solidgear.ladder.registry import LADDER
-
+@pytest.mark.parametrize(
+    "segment, spiral, says",
+    [
+        ("rod", "20 deg", 'a mesh with spline "s" is twisted'),
+        ("disc", "0 deg", 'keyway "key" is cut into the segment of spline "s"'),
+    ],
+)
+def test_teeth_and_a_keyway_are_refused_with_the_words_that_let_models_hold_both(
+    segment, spiral, says
+):
+    """Spiral ones on one shaft, and any on their very segment."""
     at = {"rod": 0.1, "disc": 0.044}[segment]
     key = Keyway(name="key", segment=segment, y=at, length=0.012, width=0.006, depth=0.004)
-    spline = Spline(name="s", segment="disc", count=19, model="sector")
+    spline = Spline(name="s", segment="disc", count=19, model="sector", spiral_angle=spiral)
+    assert says in LADDER["solid"].unfit(shaft(spline, key))
     with pytest.raises(sg.SolidgearError) as caught:
         sg.answer(shaft(spline, key), 0.1, "C_zz")
     assert 'write model = "pitch_cone" for spline "s", which leaves out' in str(caught.value)
@@ -483,6 +494,45 @@ def test_teeth_and_a_keyway_are_refused_with_the_words_that_let_models_hold_both
     assert str(caught.value).count("no model") == 1
     taught = shaft(spline.with_changes(model="pitch_cone"), key)
     assert not any(LADDER[name].unfit(taught) for name in ("corrected", "solid"))
+
+
+def keyed_and_bare(**teeth):
+    """A gear on a keyed shaft, on one mesh with the keyway and without; it looks between two of an odd
+    number of teeth.
+    """
+    scene = filleted(count=9, dedendum=0.8, angle="7 deg", **teeth)
+    scene = scene.with_changes(features=(*scene.features, KEY))
+    wanted = [(s, s.attachment) for s in scene.stations]
+    options = {"size": None, "graded_size": None, "refinement": 0.3, "around": 12}
+    made = meshed(scene, tetrahedra_plan(scene, wanted, **options), 0.3, False, edges=True)
+    return scene, *(featured_body(scene, wanted, made, 0.3, plain=p) for p in (True, False))
+
+
+def test_teeth_and_a_keyway_in_one_solid():
+    """Volumes of both are closed, tips lie where teeth do, and what is gone where the keyway looks."""
+    scene, bare, cut = keyed_and_bare()
+    gone = bare.mass_matrix() - cut.mass_matrix()
+    assert gone[0, 0] == pytest.approx(7850 * KEY.volume(0.02, 0.0), rel=2e-3)
+    assert math.atan2(gone[1, 5], -gone[1, 3]) == pytest.approx(math.radians(20), abs=2e-3)
+    whole = volume_of_sector(scene.outline, scene.features[:1], 1)
+    assert bare.mesh["volume"] == pytest.approx(whole, rel=1e-3)
+    x, _, z = bare.geometry.mesh.p
+    tips = np.arctan2(x, z)[np.hypot(x, z) > 0.035 * scene.features[0].tip - 1e-6] * 9
+    middle = np.angle(np.exp(1j * tips).sum())
+    assert middle == pytest.approx(9 * scene.features[0].angle, abs=1e-6) and len(tips) >= 36
+    assert not LADDER["solid"].unfit(scene) and LADDER["corrected"].unfit(scene)
+
+
+@pytest.mark.long
+def test_a_keyway_does_beside_teeth_what_it_does_beside_their_cone():
+    """To the 3 % that meshes and what one leaves of the other change of it."""
+    effect = []
+    for model in ("sector", "pitch_cone"):
+        scene, *both = keyed_and_bare(model=model)
+        bare, cut = (sg.condense(body, scene, "gear").compliance for body in both)
+        effect.append((cut - bare)[np.ix_([0, 2, 3], [0, 2, 3])])
+    size = np.sqrt(np.diag(effect[1]))
+    assert np.abs((effect[0] - effect[1]) / np.outer(size, size)).max() < 0.06
 
 
 @pytest.mark.parametrize("teeth", [{}, {"spiral_angle": "20 deg"}], ids=["half", "whole"])

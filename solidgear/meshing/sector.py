@@ -176,6 +176,16 @@ def hole_sizes(
     return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
+def sizes_around(
+    segments: Sequence[Segment], features: Iterable[Any], refinement: float
+) -> list[str]:
+    """Formulas of element size at straight teeth and bolt circles of a whole shaft."""
+    holes = hole_sizes(segments, features, refinement)
+    return tooth_sizes(segments, features, refinement) + [
+        hole_size(hole, hole_places(f, here, [], 0.0, pi + 1)) for f, here, hole in holes
+    ]
+
+
 def volume_of_sector(outline: Outline[Segment], features: Iterable[Any], count: int) -> float:
     """Closed form of the volume of one of so many sectors, m^3."""
     toothed, segments = {f.segment: f for f in features if f.toothed}, outline.segments

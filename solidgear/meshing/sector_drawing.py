@@ -15,6 +15,7 @@ from solidgear.meshing.quality import MeshError
 from solidgear.meshing.revolved import draw_revolved
 from solidgear.meshing.teeth import half_outline
 from solidgear.meshing.teeth import outline as teeth_outline
+from solidgear.scene.features.around import middle
 from solidgear.scene.outline import Frustum, Outline
 
 
@@ -47,6 +48,21 @@ def draw_sector(gmsh, outline: Outline, toothed, planes, circles, count: int, ha
         draw_revolved(gmsh, drawn, inside[0], inside[1], start, turn)
     gmsh.model.occ.synchronize()
     return gmsh.model.getEntities(3)
+
+
+def draw_toothed(gmsh, outline: Outline, features, planes, circles) -> None:
+    """Volumes of a whole shaft with straight teeth and bolt circles: the half on one side of a mirror
+    plane of its teeth, its image, and holes. Volumes overlap as those of a sector do.
+    """
+    occ, toothed = gmsh.model.occ, {f.segment: f for f in features if f.toothed}
+    first = next((middle(teeth, 1) for teeth in toothed.values()), 0.0)
+    half = draw_sector(gmsh, outline, toothed, planes, circles, 1, True)
+    other = occ.copy(half)
+    occ.mirror(other, 1.0, 0.0, 0.0, 0.0)
+    holes = [f for f in features if not f.toothed]
+    own = drill(gmsh, [*half, *other], holes, outline.segments, [], 1, first)
+    occ.rotate(own, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, first)
+    occ.synchronize()
 
 
 def _under_teeth(outline: Outline, toothed: Mapping[str, Any], joint: int) -> list[Frustum]:

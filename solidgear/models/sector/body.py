@@ -4,6 +4,7 @@ the same mesh.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -36,10 +37,11 @@ from solidgear.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
-from solidgear.scene.features.around import mirror_angle, no_common_sector
+from solidgear.scene.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
 from solidgear.scene.features.base import SMALLEST
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import Segment
+from solidgear.scene.shaft import resolved
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
@@ -179,6 +181,28 @@ def no_sector(scene: Any) -> str:
     if not features:
         return ""
     return _edge_in_teeth(scene.outline, features) or no_common_sector(features)
+
+
+def not_together(scene: Any) -> str:
+    """Reason why teeth and bolt circles of a scene cannot be drawn beside what is cut out of it, or
+    nothing.
+    """
+    features = resolved(scene)
+    around = [f for f in features if f.sort == CYCLIC]
+    toothed = {f.segment: f for f in around if f.toothed}
+    for teeth in toothed.values():
+        called = f'{teeth.what} "{teeth.name}"'
+        if teeth.spiral_angle:
+            return f"a mesh with {called} is twisted, and what is cut beside it would be with it"
+        pitch, first = 2 * math.pi / teeth.count, next(iter(toothed.values()))
+        apart = (middle(teeth, 1) - middle(first, 1) + pitch / 2) % pitch - pitch / 2
+        if abs(apart) > SAME_ANGLE:
+            return f'{called} does not lie evenly about the middle of {first.what} "{first.name}"'
+    for cut in features:
+        if cut.sort != CYCLIC and cut.segment in toothed:
+            teeth = toothed[cut.segment]
+            return f'{cut.what} "{cut.name}" is cut into the segment of {teeth.what} "{teeth.name}"'
+    return _edge_in_teeth(scene.outline, around)
 
 
 def _edge_in_teeth(outline: Outline[Segment], features: Sequence[Any]) -> str:

@@ -48,7 +48,7 @@ def solid_size(
     if BLOCKS in sorts:
         mesh = block_mesh(scene, wanted, element, size, refinement)
         return of_mesh(mesh, basis_of(element))
-    if CYCLIC in sorts:
+    if sorts == {CYCLIC}:
         from solidgear.models.sector.body import whole_mesh  # slow to import, and seldom needed
 
         mesh, _, _ = whole_mesh(scene, wanted, **sizes)
