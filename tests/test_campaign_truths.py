@@ -11,7 +11,18 @@ import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.judge.quantities import measure, size
 from solidgear.meshing.teeth import section_area, section_polar
-from solidgear.scene import STEEL, Bearing, BoltCircle, Flat, Keyway, Port, Scene, Segment, Teeth
+from solidgear.scene import (
+    STEEL,
+    Bearing,
+    BoltCircle,
+    CrossHole,
+    Flat,
+    Keyway,
+    Port,
+    Scene,
+    Segment,
+    Teeth,
+)
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
 from validation.campaign.truths import reference as spectral_levels
@@ -235,7 +246,11 @@ def test_points_are_counted_as_closed_forms_say():
     key = Keyway(name="k", segment="rod", y=0.1, length=0.05, width=0.015, depth=0.006, angle=0.7)
     flat = Flat(name="f", segment="rod", y=0.2, length=0.05, depth=0.004)
     bolts = BoltCircle(name="b", segment="rod", count=5, diameter=0.008, circle=0.03)
+    hole = CrossHole(
+        name="h", segment="rod", y=0.1, diameter=0.012, inclination="50 deg", offset="-9 mm"
+    )
     for feature, taken in (
+        (hole, hole.volume(0.03, 0.0)),
         (key, key.volume(0.03, 0.0)),
         (flat, flat.volume(0.03, 0.0)),
         (bolts, 5 * math.pi * 0.004**2 * 0.3),

@@ -250,7 +250,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
 
 @pytest.mark.long
 def test_a_part_without_a_mirror_plane():
-    """A flat and a hole that share no plane: one block, against the 3D solid on a finer mesh."""
+    """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
     from solidgear.scene import CrossHole, Flat
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
@@ -264,7 +264,7 @@ def test_a_part_without_a_mirror_plane():
         port=sg.Port(name="gear", y=0.1, lo=0.09, hi=0.11),
         features=[
             Flat(name="flat", segment="rod", y=0.04, length=0.03, depth=0.008, angle="50 deg"),
-            CrossHole(name="hole", segment="rod", y=0.14, diameter=0.014),
+            CrossHole(name="hole", segment="rod", y=0.14, diameter=0.014, inclination="20 deg"),
         ],
     )
     own = sg.build(scene, "corrected", order=3, layers=1, edge_layers=1, refinement=0.3, modes=8)

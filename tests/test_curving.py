@@ -27,7 +27,7 @@ def test_the_volume_of_parts_is_theirs():
     features = cyclic_features(spiral)
     ports = [(s, s.attachment) for s in spiral.stations]
     made = meshed_sector(spiral, ports, features, refinement=0.7)
-    exact = volume_of_sector(spiral.segments, features, made.count)
+    exact = volume_of_sector(spiral.outline, features, made.count)
     assert made.quality.volume == pytest.approx(exact, rel=1e-6)
     rod = sg.load(GEOMETRY / "pinion_filleted.toml")
     ports = [(s, s.attachment) for s in rod.stations]
@@ -48,7 +48,7 @@ def test_straightened_edges_take_no_volume(tmp_path):
     features = cyclic_features(hollow)
     ports = [(s, s.attachment) for s in hollow.stations]
     made = meshed_sector(hollow, ports, features, refinement=0.7)
-    exact = volume_of_sector(hollow.segments, features, made.count)
+    exact = volume_of_sector(hollow.outline, features, made.count)
     assert made.quality.volume == pytest.approx(exact, rel=1e-6)
     assert made.quality.min_ratio > 0.05
 

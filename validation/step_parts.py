@@ -31,7 +31,7 @@ SAID = {
     "m": "( LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT($,.METRE.) )",
 }
 #: lengths of features, which are drawn in the unit of the file
-LENGTHS = ("y", "length", "width", "depth", "diameter")
+LENGTHS = ("y", "length", "width", "depth", "diameter", "offset")
 
 
 def write_step(

@@ -137,6 +137,10 @@ def _start(data: Catalogue, end: str) -> Inside:
     return Inside(elements, diameter, length, pitch, _angle(data, end), conformity)
 
 
+#: of the ball diameter, in the rating of a bearing (ISO 281)
+USUAL_POWER = 1.8
+
+
 def _balls(data: Catalogue, end: str) -> Inside:
     guess = _start(data, end)
     if data.load_rating is None or (data.elements and data.element_diameter):
@@ -177,12 +181,17 @@ def _misfit(inside: Inside, rating: float, usual: float, data: Catalogue) -> flo
 
 def _ball_for(inside: Inside, rating: float, data: Catalogue) -> float:
     """Ball diameter that brings the rating, for a number of balls."""
-    diameter = inside.diameter
     widest = 0.48 * (data.outer_diameter - data.bore)
+    diameter, power, last = inside.diameter, USUAL_POWER, (0.0, 0.0)
     for _ in range(40):
-        before, own = diameter, rated(data, replace(inside, diameter=diameter))
-        diameter = min(diameter * (rating / own) ** (1 / 1.8), widest)
-        if diameter == before:
+        own = rated(data, replace(inside, diameter=diameter))
+        if all(last) and own != last[1]:
+            # steps of a secant, where the rating grows as it should
+            grown = math.log(own / last[1]) / math.log(diameter / last[0])
+            power = grown if grown > USUAL_POWER / 2 else USUAL_POWER
+        last = diameter, own
+        diameter = min(diameter * (rating / own) ** (1 / power), widest)
+        if abs(diameter - last[0]) <= 1e-14 * diameter:
             break
     return diameter
 

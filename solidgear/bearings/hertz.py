@@ -19,11 +19,10 @@ contacts together, after Palmgren.
 from __future__ import annotations
 
 import functools
+import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipkm1
 
 #: Pa and ratio; ISO/TS 16281 gives its constants for this steel
 STEEL_E, STEEL_NU = 210e9, 0.3
@@ -34,8 +33,8 @@ POINT_POWER, LINE_POWER = 3 / 2, 10 / 9
 #: N / mm^(8/9 + 10/9), ISO/TS 16281:2008, equation (37)
 _ISO_LINE = 35948.0
 
-#: axes ratio of the most slender ellipse that is looked for
-_MOST_SLENDER = 1e8
+#: steps after which the axes ratio of an ellipse is taken as it is; six are common
+_MOST_STEPS = 50
 
 
 class Point(NamedTuple):
@@ -92,26 +91,39 @@ def point_contact(rolling: float, across: float, E: float = STEEL_E, nu: float =
 
 
 def _axes_ratio(difference: float) -> float:
-    if difference < 1e-12:  # a circle
-        return 1.0
-
-    def miss(log_ratio: float) -> float:
-        ratio = np.exp(log_ratio)
-        first, second = _integrals(ratio)
-        own = ((ratio**2 + 1) * second - 2 * first) / ((ratio**2 - 1) * second)
-        return own - difference
-
     # near a circle the quotient is 0/0: F = 3/4 (k - 1) there, to first order
     if difference < 1e-5:
         return 1 + 4 / 3 * difference
-    low, high = 4 / 3 * difference / 2, np.log(_MOST_SLENDER)
-    return float(np.exp(brentq(miss, low, high, xtol=1e-15, rtol=1e-14)))
+    # F is concave in the logarithm of k, so that steps of Newton from below never pass the root
+    log_ratio = 2 / 3 * difference
+    for _ in range(_MOST_STEPS):
+        ratio = math.exp(log_ratio)
+        first, second = _integrals(ratio)
+        wide = ratio**2 - 1
+        share = first / second
+        own = (wide + 2 - 2 * share) / wide
+        # dK/dlog k = (k^2 E - K) / (k^2 - 1) and dE/dlog k = (E - K) / (k^2 - 1)
+        turned = (ratio**2 - 2 * share + share**2) / wide
+        slope = 2 * (ratio**2 * (1 - own) - turned) / wide
+        step = (difference - own) / slope
+        log_ratio += step
+        if step <= 1e-14 * log_ratio:  # or it is back by rounding
+            break
+    return math.exp(log_ratio)
 
 
 def _integrals(ratio: float) -> tuple[float, float]:
-    """K(m) and E(m) at ``m = 1 - 1/ratio^2``."""
-    other = 1 / ratio**2
-    return float(ellipkm1(other)), float(ellipe(1 - other))
+    """K(m) and E(m) at ``m = 1 - 1/ratio^2``, by the arithmetic-geometric mean (Abramowitz and
+    Stegun 17.6).
+    """
+    a, b, power = 1.0, 1 / ratio, 0.5
+    left = power * (1 - b) * (1 + b)
+    while a - b > 1e-15 * a:
+        a, b, half = (a + b) / 2, math.sqrt(a * b), (a - b) / 2
+        power *= 2
+        left += power * half**2
+    first = math.pi / (2 * a)
+    return first, first * (1 - left)
 
 
 def line_constant(length: float, E: float = STEEL_E, nu: float = STEEL_NU) -> float:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.sliding import FURTHEST, balanced, condensed
 from solidgear.errors import SolidgearError
+
+#: of a push; six are common
+MOST_STEPS = 100
 
 
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
@@ -41,14 +43,20 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     >>> round(float(tight.load(np.zeros(6))[1]), 6)
     500.0
     """
-
-    def miss(push: float) -> float:
-        pressed = replace(row, preload=push)
-        return float(row.side * pressed.load(np.zeros(6))[1]) - force
-
-    if miss(FURTHEST) < 0:
+    still, low, high = np.zeros(6), 0.0, FURTHEST
+    tight, push = replace(row, preload=high), high
+    if row.side * tight.load(still)[1] < force:
         raise SolidgearError(f"no push along y preloads this row with {force:g} N")
-    return replace(row, preload=float(brentq(miss, 0.0, FURTHEST, xtol=1e-18, rtol=1e-14)))
+    for _ in range(MOST_STEPS):
+        missing, slope = force - row.side * tight.load(still)[1], tight.tangent(still)[1, 1]
+        low, high = (push, high) if missing > 0 else (low, push)
+        # Newton, or half of what is left where that leads out of it or nothing presses yet
+        further = push + missing / slope if slope > 0 else -1.0
+        before, push = push, further if low <= further <= high else (low + high) / 2
+        tight = replace(row, preload=float(push))
+        if abs(push - before) <= 1e-14 * push:
+            break
+    return tight
 
 
 @dataclass(frozen=True)

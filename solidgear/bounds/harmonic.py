@@ -18,7 +18,7 @@ j-th smallest of all lower ends.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -112,6 +112,7 @@ def harmonic_bounds(
     found: ModeSet | None = None,
     wanted: Sequence[str] = (),
     safety: float = 1.0,
+    later: ModeSet | None = None,
 ) -> HarmonicBounds:
     """Bounds of a harmonic body.
 
@@ -127,6 +128,9 @@ def harmonic_bounds(
         Names of modes.
     safety : float
         On the bounds of modes.
+    later : ModeSet, optional
+        Of the body in other supports, whose bounds will be asked for: what local problems of theirs
+        have in common with these is not done again.
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]
@@ -135,21 +139,22 @@ def harmonic_bounds(
     empty = np.zeros((cells if still else 0, size, size))
     of_ports = known or _OfPorts(empty, np.zeros((size, size)))
     modes = _asked(found, wanted)
-    energy: dict[str, np.ndarray] = {mode.name: np.zeros(cells) for mode in modes}
-    lower = dict.fromkeys(energy, 0.0)
+    local = body.cache.get(_OfModes, _OfModes).of
+    new = [m for m in (*modes, *_asked(later, wanted)) if id(m) not in local]
+    local |= {id(mode): _OfMode(mode, np.zeros(cells)) for mode in new}
     every = () if found is None else found.solved
-    for index, block in _originals(body, modes):
-        parts = [_of_modes(body, k, modes) for k in (index, *_twins(body, index))]
+    for index, block in _originals(body, new):
+        parts = [_of_modes(body, k, new) for k in (index, *_twins(body, index))]
         count = block.ports.shape[0] if still and block.components else 0
         if count:
             parts.insert(0, _of_loads(body, index))
-        names = [mode.name for part in parts for mode in part.modes]
-        if not count and not names:
+        owners = [local[id(mode)] for part in parts for mode in part.modes]
+        if not count and not owners:
             continue
         two, one = local_energies(space, block, _together([part.loading for part in parts]))
-        for k, name in enumerate(names, count):
-            energy[name] += two[:, k, k]
-            lower[name] += float(one[:, k, k].sum())
+        for k, owner in enumerate(owners, count):
+            owner.whole += two[:, k, k]
+            owner.less += float(one[:, k, k].sum())
         if count:
             rows = body.rows(block)
             of_ports.whole[np.ix_(np.arange(cells), rows, rows)] = two[:, :count, :count]
@@ -163,9 +168,11 @@ def harmonic_bounds(
                 )
                 of_ports.less[np.ix_(rows, rows)] = of_twin(body, block, of_ports.less)
         body.cache.keep(of_ports)
-    own = {name: safety * with_tail(e.sum(), lower[name]) for name, e in energy.items()}
+    energy: dict[str, _OfMode] = {mode.name: local[id(mode)] for mode in modes}
+    own = {name: safety * with_tail(e.whole.sum(), e.less) for name, e in energy.items()}
+    of_modes = {name: e.whole for name, e in energy.items()}
     return HarmonicBounds(
-        body, of_ports.whole, of_ports.less, energy, _lower_ends(modes, every, own)
+        body, of_ports.whole, of_ports.less, of_modes, _lower_ends(modes, every, own)
     )
 
 
@@ -175,6 +182,22 @@ class _OfPorts:
 
     whole: np.ndarray
     less: np.ndarray
+
+
+@dataclass
+class _OfMode:
+    """Energies of the local solutions of a mode, by cells and for an order less in sum."""
+
+    mode: Mode
+    whole: np.ndarray
+    less: float = 0.0
+
+
+@dataclass(frozen=True)
+class _OfModes:
+    """Those that are known, by the mode itself; kept with their body."""
+
+    of: dict[int, _OfMode] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

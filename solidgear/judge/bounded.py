@@ -95,6 +95,7 @@ def bounded(
     found: ModeSet | None,
     names: Sequence[Quantity],
     solver: Values,
+    later: ModeSet | None = None,
 ) -> Bounded:
     """Bars of a harmonic body by local problems.
 
@@ -106,6 +107,8 @@ def bounded(
         Those whose bars are wanted.
     solver : mapping
         Relative error that the solver may have left.
+    later : ModeSet, optional
+        As for :func:`~solidgear.bounds.harmonic.harmonic_bounds`.
     """
     asked = [q for q in names if q.is_frequency]
     bounds = harmonic_bounds(
@@ -115,6 +118,7 @@ def bounded(
         found=found,
         wanted=list(dict.fromkeys(asked)),
         safety=LOCAL,
+        later=later,
     )
     bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}

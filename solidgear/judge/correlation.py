@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components, min_weight_full_bipartite_matching
 
 from solidgear.judge.record import MacTable, PartnerRecord
 from solidgear.solve.modes import Mode, ModeSet
@@ -135,6 +136,19 @@ def _by_rank(mine: list[Mode], theirs: list[Mode]) -> list[Pairing]:
     return out
 
 
+def best_assignment(gain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns of a matrix in pairs of the largest sum, as many as there can be.
+
+    Examples
+    --------
+    >>> rows, columns = best_assignment(np.array([[0.9, 0.8, 0.0], [0.9, 0.0, 0.0]]))
+    >>> [(int(r), int(c)) for r, c in zip(rows, columns)]
+    [(0, 1), (1, 0)]
+    """
+    # the graph knows no pairs of nothing; scipy.optimize, which does, takes long to import
+    return min_weight_full_bipartite_matching(sp.csr_matrix(gain - gain.min() + 1), maximize=True)
+
+
 def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
     """An assignment by similarity, then what is certain, alone or as a cluster."""
     if not mine or not theirs:
@@ -153,11 +167,9 @@ def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:
     columns = np.repeat(np.arange(len(theirs)), [m.multiplicity for m in theirs])
     # Among equals the nearer frequency; it decides nothing else.
     gain = like - 0.01 * np.minimum(apart, 1.0)
-    from scipy.optimize import linear_sum_assignment  # slow to import, and not always needed
-
     taken = [
         (int(rows[r]), int(columns[c]))
-        for r, c in zip(*linear_sum_assignment(-gain[np.ix_(rows, columns)]))
+        for r, c in zip(*best_assignment(gain[np.ix_(rows, columns)]))
     ]
     partners = {
         j: sorted(

@@ -158,7 +158,7 @@ class Tied(Loop):
         score = None
         with self.meter.stage("band"):
             if self.model.bounded:
-                told = _judged(self.scene, found, self.wanted)
+                told = _judged(self.scene, found, self.wanted, ties.get(SECTION))
                 solution.error_bars, solution.scores = {SCENE: told.error_bars}, told.scores
                 self.error_bars = told.error_bars
                 score = self.score(told, self.wanted)
@@ -255,13 +255,18 @@ class Tied(Loop):
                 )
 
 
-def _judged(scene: Scene, found: Answer, names: Listed[Quantity]) -> Bounded:
-    """Bars of an answer by local problems."""
+def _judged(
+    scene: Scene, found: Answer, names: Listed[Quantity], later: Answer | None = None
+) -> Bounded:
+    """Bars of an answer by local problems, and of the modes of another one of the same body what they
+    have in common.
+    """
     statics = Statics(found.condensed, found.further, found.coupled)
     known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
     assert found.supports is not None  # of what was just answered
     left = found.numbers.solver
-    return bounded(scene, found.body, found.supports, statics, found.modes, known, left)
+    others = later.modes if later is not None and later.body is found.body else None
+    return bounded(scene, found.body, found.supports, statics, found.modes, known, left, others)
 
 
 def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:

@@ -58,6 +58,8 @@ class Model:
     holds : tuple of str
         Sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
         one of them at a time; a body of revolution holds none.
+    together : frozenset of str
+        Sorts of these that it holds beside each other.
     for_features : bool
         Whether it is made for the features that it holds, and for nothing else.
     bounded : bool
@@ -88,6 +90,7 @@ class Model:
     preset: ClassVar[Options] = {}
     coarser: ClassVar[str] = "use a coarser mesh"
     holds: ClassVar[tuple[str, ...]] = ()
+    together: ClassVar[frozenset[str]] = frozenset()
     for_features: ClassVar[bool] = False
     bounded: ClassVar[bool] = False
     share: ClassVar[float] = 1.0
@@ -185,7 +188,7 @@ class Model:
             )
         sorts = {f.sort for f in features}
         held_here = {f.sort for f in every} if self.for_features and not sorts else sorts
-        if len(sorts) < 2 and sorts <= set(self.holds):
+        if (len(sorts) < 2 or sorts <= self.together) and sorts <= set(self.holds):
             return self.limits(scene) if CYCLIC in held_here else ""
         if not self.holds and all(f.round for f in features):
             return ""

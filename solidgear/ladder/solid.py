@@ -70,6 +70,7 @@ class Solid(Volume):
     options = SOLID_OPTIONS
     coarser = "lower refinement or the layers, or raise size"
     holds = (CUTS, CYCLIC, PARTS, BLOCKS)
+    together = frozenset((CUTS, CYCLIC))
     _nature = "one mesh of tetrahedra,"
 
     def builder(self) -> Callable[..., Body]:
@@ -104,7 +105,17 @@ class Solid(Volume):
         """Not where its mesh is made of copies of a sector's: no second opinion, and solved only
         where it is asked for by name.
         """
-        return CYCLIC not in {f.sort for f in features_of(scene)}
+        return {CYCLIC} != {f.sort for f in features_of(scene)}
+
+    def limits(self, scene: Any) -> str:
+        """Reason why the features of a scene have no sector, or cannot be cut beside each other, or
+        nothing.
+        """
+        if CUTS not in {f.sort for f in features_of(scene)}:
+            return super().limits(scene)
+        from solidgear.models.sector.body import not_together
+
+        return not_together(scene)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
         """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,

@@ -85,16 +85,14 @@ def fine_lines(
     whether that is asked for.
     """
     least = (edge_size if edges else feature_size)(feature, radius, refinement)[1]
-    lo, hi = feature.reach
-    if feature.through:
-        # around a wall there are more than along a line by its radius over that of an element
-        return 4 * radius * (1 + (hi - lo) / 2 * GROWTH / least), least, GROWTH
-    return 2 * (hi - lo), least, GROWTH
+    length, wall = feature.lines(radius)
+    # around a wall there are more than along a line by its radius over that of an element
+    return length * (1 + wall * GROWTH / least), least, GROWTH
 
 
 def _frame(feature: Cut) -> Frame:
     c, s = _num(cos(feature.angle)), _num(sin(feature.angle))
-    return Frame(f"Sqrt((x*{c}-z*{s})^2)", f"(z*{c}+x*{s})", _num)
+    return Frame(f"(x*{c}-z*{s})", f"(z*{c}+x*{s})", _num)
 
 
 def mirror_plane(features: tuple[Cut, ...]) -> int | None:
@@ -108,11 +106,8 @@ def mirror_plane(features: tuple[Cut, ...]) -> int | None:
     0
     """
     for plane, first in ((0, 0.0), (2, pi / 2)):
-        # towards either side, or a hole across, which is as symmetric
         quarter = [(feature.angle - first) / (pi / 2) for feature in features]
-        straight = [abs(q - round(q)) < 1e-9 for q in quarter]
-        own = [ok and round(q) % 2 == 0 for ok, q in zip(straight, quarter)]
-        across = [ok and f.through for ok, f in zip(straight, features)]
-        if all(a or b for a, b in zip(own, across)):
+        straight = all(abs(q - round(q)) < 1e-9 for q in quarter)
+        if straight and all(f.mirrored(round(q) % 2 == 1) for f, q in zip(features, quarter)):
             return plane
     return None

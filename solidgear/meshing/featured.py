@@ -1,6 +1,6 @@
 """Tetrahedra in a shaft with features, each feature a volume of its own in the mesh.
 
-The shaft of revolution is cut into pieces by what its features remove (OCC's general fuse), and all
+The shaft, of revolution or with straight teeth and bolt circles, is cut into pieces by what its features remove (OCC's general fuse), and all
 pieces are meshed together. Leaving out the elements of the features gives the part, keeping them
 the plain shaft: two bodies on one mesh, whose difference is free of what they have in common.
 Where all features share a mirror plane, only one half is drawn.
@@ -23,6 +23,7 @@ from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import draw_revolved, graded_corners
 from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
 from solidgear.scene.closed_form import volume_of
+from solidgear.scene.features.cut import Cut
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import Segment
 
@@ -83,7 +84,9 @@ def featured_mesh(
 
     Parameters
     ----------
-    features : tuple of Keyway, Flat or CrossHole
+    features : tuple
+        Keyways, flats and cross holes, and beside them teeth, splines and bolt circles, with which
+        there are no halves.
     planes, circles, size, graded_size, around
         As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
     refinement : float
@@ -99,21 +102,31 @@ def featured_mesh(
         Geometry that cannot be cut or meshed, inverted elements, or a wrong volume.
     """
     gmsh = import_gmsh()
-    plane = mirror_plane(features) if half else None
+    around_axis = tuple(f for f in features if not isinstance(f, Cut))
+    features = tuple(f for f in features if isinstance(f, Cut))
+    plane = mirror_plane(features) if half and not around_axis else None
     start, turn = (0.0, 2 * pi) if plane is None else (_START[plane], pi)
     radii = {s.name: float(s.outer0) for s in outline.segments}
     share = turn / (2 * pi)
-    whole = share * volume_of(outline)
+    whole, more = share * volume_of(outline), []
+    if around_axis:
+        from solidgear.meshing import sector, sector_drawing  # slow to import, and seldom needed
+
+        whole = sector.volume_of_sector(outline, around_axis, 1)
+        more = sector.sizes_around(outline.segments, around_axis, refinement)
     arcs = lost_by_arcs(around)
 
     def made(finer: float, at_steps: float) -> tuple[MeshTet2, np.ndarray, float]:
         """The mesh, its elements in features, and their volume as OCC says."""
         graded = graded_size and graded_size / at_steps
         with Session(gmsh):
-            draw_revolved(gmsh, outline, planes, circles, start, turn)
+            if around_axis:
+                sector_drawing.draw_toothed(gmsh, outline, around_axis, planes, circles)
+            else:
+                draw_revolved(gmsh, outline, planes, circles, start, turn)
             corners = graded_corners(outline, planes, circles)
             pieces = _cut(gmsh, features, radii)
-            formulas = size_formulas(outline, corners, size, graded, None, around)
+            formulas = size_formulas(outline, corners, size, graded, None, around) + more
             formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
             sharp = [edge_size(f, radii[f.segment], refinement) for f in features if edges]
             formulas += [found[0] for found in sharp]

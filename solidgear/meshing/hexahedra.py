@@ -58,6 +58,19 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     >>> quality.n_elements == len(segment)
     True
     """
+    straight, place, owner = straight_hexahedra(scene, plan, around)
+    mesh = MeshHex2.from_mesh(straight)
+    located = mesh.doflocs.copy()
+    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(place, -1, 0)
+    return MeshHex2(located, mesh.t), owner
+
+
+def straight_hexahedra(
+    scene: Shaft, plan: Layout, around: int
+) -> tuple[MeshHex1, np.ndarray, np.ndarray]:
+    """The same with straight edges, places of the (ne, 27, 3) nodes of its elements, and segments;
+    errors as there.
+    """
     if around % 4 or around < 8:
         raise MeshError(
             f"hexahedra: {around} cells around do not fit an O-grid; "
@@ -113,10 +126,7 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
     _, where, t = np.unique(key, return_index=True, return_inverse=True)
     points = place[:, :8].reshape(-1, 3)[where]
     straight = MeshHex1(points.T.copy(), t.reshape(key.shape).T.copy().astype(np.int32))
-    mesh = MeshHex2.from_mesh(straight)
-    located = mesh.doflocs.copy()
-    located[:, mesh.dofs.element_dofs.T] = np.moveaxis(place, -1, 0)
-    return MeshHex2(located, mesh.t), np.concatenate(owner)
+    return straight, place, np.concatenate(owner)
 
 
 def _core(k: int) -> np.ndarray:

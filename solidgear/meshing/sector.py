@@ -29,7 +29,7 @@ from solidgear.meshing.revolved import graded_corners
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
 from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
-from solidgear.scene.closed_form import integrals_along
+from solidgear.scene.closed_form import integrals_along, volume_of
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import Segment
@@ -90,7 +90,7 @@ def sectors_of(features: Iterable[Any]) -> int:
 
 
 def sector_mesh(
-    segments: tuple[Any, ...],
+    outline: Outline[Segment],
     features: tuple[Any, ...],
     planes: list[float],
     circles: list[float],
@@ -125,14 +125,14 @@ def sector_mesh(
     if reason:
         raise MeshError(reason)
     gmsh = import_gmsh()
-    outline = Outline(segments)
+    segments = outline.segments
     toothed = {f.segment: f for f in features if f.toothed}
     plane = mirror_angle(features, count)
     half = plane is not None
     first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = draw_sector(gmsh, segments, toothed, planes, circles, count, half)
+        own = draw_sector(gmsh, outline, toothed, planes, circles, count, half)
         holes = [f for f in features if not f.toothed]
         own = drill(gmsh, own, holes, segments, twists, count, first)
         gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
@@ -149,7 +149,7 @@ def sector_mesh(
             formulas.append(hole_size(hole, hole_places(f, here, twists, first, within)))
         set_size(gmsh, formulas, size)
         mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
-    exact = volume_of_sector(segments, features, count) / (2 if half else 1)
+    exact = volume_of_sector(outline, features, count) / (2 if half else 1)
     quality = check_mesh(mesh, volume=exact, rtol=lost_by_arcs(around))
     segment = segment_of_elements(mesh, segments)
     if half:
@@ -176,10 +176,20 @@ def hole_sizes(
     return [(f, here, hole_of(f, here, refinement)) for f, here in found]
 
 
-def volume_of_sector(segments: Sequence[Segment], features: Iterable[Any], count: int) -> float:
+def sizes_around(
+    segments: Sequence[Segment], features: Iterable[Any], refinement: float
+) -> list[str]:
+    """Formulas of element size at straight teeth and bolt circles of a whole shaft."""
+    holes = hole_sizes(segments, features, refinement)
+    return tooth_sizes(segments, features, refinement) + [
+        hole_size(hole, hole_places(f, here, [], 0.0, pi + 1)) for f, here, hole in holes
+    ]
+
+
+def volume_of_sector(outline: Outline[Segment], features: Iterable[Any], count: int) -> float:
     """Closed form of the volume of one of so many sectors, m^3."""
-    toothed = {f.segment: f for f in features if f.toothed}
-    total = 0.0
+    toothed, segments = {f.segment: f for f in features if f.toothed}, outline.segments
+    total = volume_of(outline) - volume_of(Outline(segments))  # of fillets and chamfers
     for s in segments:
         area = section_area(toothed[s.name]) if s.name in toothed else pi
         total += area * integrals_along(s.length, s.outer0, s.outer1)[0]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from math import cos, pi, sin
+from typing import Any
 
 import numpy as np
 
@@ -10,14 +13,17 @@ from solidgear.frames import rotation
 from solidgear.meshing.holes import hole_places
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.revolved import draw_revolved
-from solidgear.meshing.teeth import half_outline, outline
-from solidgear.scene.outline import Outline
+from solidgear.meshing.teeth import half_outline
+from solidgear.meshing.teeth import outline as teeth_outline
+from solidgear.scene.features.around import middle
+from solidgear.scene.outline import Frustum, Outline
 
 
-def draw_sector(gmsh, segments, toothed, planes, circles, count: int, half: bool):
+def draw_sector(gmsh, outline: Outline, toothed, planes, circles, count: int, half: bool):
     """Volumes of the sector, or of its half from the middle on: wedges of runs of plain segments,
-    and slabs of toothed ones.
+    and slabs of toothed ones. Volumes overlap where fillets stand on the faces of toothed segments.
     """
+    segments = outline.segments
     turn = (pi if half else 2 * pi) / count
     start = -pi / 2 - (0.0 if half else turn / 2)
     runs: list[list[int]] = []
@@ -34,15 +40,58 @@ def draw_sector(gmsh, segments, toothed, planes, circles, count: int, half: bool
         inside = [
             [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
         ]
-        draw_revolved(gmsh, Outline(own), inside[0], inside[1], start, turn)
+        low, high = (_under_teeth(outline, toothed, joint) for joint in (run[0], run[-1] + 1))
+        moved = [
+            replace(c, owner=c.owner - run[0] + len(low)) for c in outline.corners if c.owner in run
+        ]
+        drawn = Outline([*low, *own, *high], moved)
+        draw_revolved(gmsh, drawn, inside[0], inside[1], start, turn)
     gmsh.model.occ.synchronize()
     return gmsh.model.getEntities(3)
+
+
+def draw_toothed(gmsh, outline: Outline, features, planes, circles) -> None:
+    """Volumes of a whole shaft with straight teeth and bolt circles: the half on one side of a mirror
+    plane of its teeth, its image, and holes. Volumes overlap as those of a sector do.
+    """
+    occ, toothed = gmsh.model.occ, {f.segment: f for f in features if f.toothed}
+    first = next((middle(teeth, 1) for teeth in toothed.values()), 0.0)
+    half = draw_sector(gmsh, outline, toothed, planes, circles, 1, True)
+    other = occ.copy(half)
+    occ.mirror(other, 1.0, 0.0, 0.0, 0.0)
+    holes = [f for f in features if not f.toothed]
+    own = drill(gmsh, [*half, *other], holes, outline.segments, [], 1, first)
+    occ.rotate(own, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, first)
+    occ.synchronize()
+
+
+def _under_teeth(outline: Outline, toothed: Mapping[str, Any], joint: int) -> list[Frustum]:
+    """A short piece of a toothed segment below the roots of its teeth, where a fillet or chamfer
+    stands on its face: the wedge beside it has this face to be drawn to.
+    """
+    here = [c for c in outline.corners if c.root and c.joint == joint]
+    found = [c for c in here if outline.segments[c.face_owner].name in toothed]
+    if not found:
+        return []
+    corner, s = found[0], outline.segments[found[0].face_owner]
+    ends = (s.outer0, s.inner0), (s.outer1, s.inner1)
+    (outer, inner), (far_outer, far_inner) = ends[:: corner.side]
+    share = min(corner.radial / s.length, 0.5)
+    root = toothed[s.name].land * outer
+    r = (corner.on_face[0] + root) / 2
+    far = (
+        corner.y - corner.side * share * s.length,
+        r * (1 + share * (far_outer / outer - 1)),
+        inner + share * (far_inner - inner),
+    )
+    low, high = (far, (corner.y, r, inner))[:: corner.side]
+    return [Frustum(*(v for pair in zip(low, high) for v in pair))]
 
 
 def _toothed(gmsh, segment, teeth, cuts: list[float], count: int, half: bool) -> None:
     """A toothed segment between the cut faces, as polyhedra from cut to cut, less its bore."""
     occ = gmsh.model.occ
-    angle, radius = (half_outline if half else outline)(teeth, count)
+    angle, radius = (half_outline if half else teeth_outline)(teeth, count)
     places = [segment.y0, *cuts, segment.y1]
     sections = []
     for y in places:

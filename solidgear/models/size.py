@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from solidgear.kernel.assembly import Pattern
-from solidgear.kernel.room import MB, PUT
+from solidgear.kernel.room import MB, PUT, assemblable
 from solidgear.solve.backends.memory_law import law
 from solidgear.solve.choice import choice
 
 if TYPE_CHECKING:
+    from skfem import Mesh
+    from skfem.element import Element
+
     from solidgear.body import Body
 
 
@@ -78,14 +78,44 @@ def of_body(body: Body) -> Size:
     return Size(body.size, tuple(in_pieces), entries, all(b.planar for b in own))
 
 
-def of_mesh(dofs: np.ndarray, parts: int = 1, mirrors: bool = False) -> Size:
-    """Of the 3D solid of a mesh by the nodes (nb, ne) of its elements, of several blocks of the
-    same mesh and with a matrix that is factored in pieces, if so.
+def of_mesh(mesh: Mesh, kind: Element, parts: int = 1, mirrors: bool = False) -> Size:
+    """Of the 3D solid of a mesh by one of its elements, of several blocks of the same mesh and with a
+    matrix that is factored in pieces, if so.
     """
-    pattern = Pattern(dofs)
-    unknowns, entries = 3 * pattern.n, 9 * len(pattern.indices)
-    matrices = pieces(unknowns, entries, mirrors) * parts
-    return Size(parts * unknowns, tuple(matrices), parts * entries)
+    counts = tuple(map(int, (mesh.nvertices, mesh.nedges, mesh.nfacets, mesh.nelements)))
+    nodes, pairs = coupled(kind, counts)
+    matrices = pieces(3 * nodes, 9 * pairs, mirrors) * parts
+    return Size(parts * 3 * nodes, tuple(matrices), parts * 9 * pairs)
+
+
+def coupled(kind: Element, counts: tuple[int, ...]) -> tuple[int, int]:
+    """Nodes of a mesh of vertices, edges, faces and cells, and ordered pairs of them that share a
+    cell: each pair counts at the smallest of these that has both.
+
+    Examples
+    --------
+    One tetrahedron of ten nodes couples them all; a second one on a face of it brings four more:
+
+    >>> from skfem.element import ElementTetP2
+    >>> coupled(ElementTetP2(), (4, 6, 4, 1)), coupled(ElementTetP2(), (5, 9, 7, 2))
+    ((10, 100), (14, 164))
+    """
+    cell, face = kind.refdom, kind.refdom.brefdom
+    # what an edge, a face and a cell have of each
+    has = (
+        (1,),
+        (2, 1),
+        (face.nnodes, face.nfacets, 1),
+        (cell.nnodes, cell.nedges, cell.nfacets, 1),
+    )
+    on = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
+    alone: list[int] = []
+    for own in has:
+        inside = sum(n * k for n, k in zip(own, on))
+        alone.append(inside**2 - sum(n * k for n, k in zip(own, alone)))
+    assemblable(counts[3], inside)
+    nodes, pairs = (sum(n * k for n, k in zip(counts, of)) for of in (on, alone))
+    return nodes, pairs
 
 
 def pieces(unknowns: int, entries: int, mirrors: bool) -> list[tuple[int, int]]:

@@ -32,6 +32,10 @@ def draw_feature(pen: Any, feature: Mapping[str, Any], segments: Sequence[Mappin
 def _name(feature: Mapping) -> str:
     turn = f", at {math.degrees(feature['angle']):.3g} deg" if feature["angle"] else ""
     kind = feature["kind"].replace("_", " ")
+    if feature.get("inclination"):
+        turn += f", {math.degrees(feature['inclination']):.3g} deg oblique"
+    if feature.get("offset"):
+        turn += f", {1e3 * feature['offset']:.3g} beside the axis"
     return f"{kind}{turn}" if feature["name"] == kind else f"{kind} {feature['name']}{turn}"
 
 
@@ -52,16 +56,17 @@ def _label(pen, x: float, height: float, text: str) -> None:
 
 def _cut(pen, cut: Mapping, here: Mapping) -> None:
     """Draw a cut into a segment."""
-    lo, hi = cut["y"], cut["y"] + cut.get("length", 0.0)
-    if "diameter" in cut:
-        lo, hi = lo - cut["diameter"] / 2, lo + cut["diameter"] / 2
+    lo, hi, lean = cut["y"], cut["y"] + cut.get("length", 0.0), 0.0
     radius = here["outer0"]
+    if "diameter" in cut:
+        half = cut["diameter"] / 2 / math.cos(cut["inclination"])
+        lo, hi, lean = lo - half, lo + half, radius * math.tan(cut["inclination"])
     floor = radius - cut["depth"] if "depth" in cut else -radius
-    x = [pen.x(y) for y in (lo, hi, hi, lo, lo)]
+    x = [pen.x(y) for y in (lo - lean, hi - lean, hi + lean, lo + lean, lo - lean)]
     r = [pen.radial * v for v in (floor, floor, radius, radius, floor)]
     pen.ax.fill(x, r, facecolor="white", lw=0, zorder=4)
     pen.ax.plot(x, r, color=CUT, lw=1.1, ls="-" if "depth" in cut else "--", zorder=5)
-    _label(pen, (x[0] + x[1]) / 2, pen.radial * max(floor, 0) - 0.05, _name(cut))
+    _label(pen, pen.x((lo + hi) / 2), pen.radial * max(floor, 0) - 0.05, _name(cut))
 
 
 def _teeth(pen, teeth: Mapping, here: Mapping) -> None:

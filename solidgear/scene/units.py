@@ -42,8 +42,13 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
 Dimension = tuple[tuple[str, float], ...]
 
 
-def _dimension(*, length: int = 0, mass: int = 0, time: int = 0) -> Dimension:
-    powers = {"[length]": length, "[mass]": mass, "[time]": time}
+def _dimension(*, length: int = 0, mass: int = 0, temperature: int = 0, time: int = 0) -> Dimension:
+    powers = {
+        "[length]": length,
+        "[mass]": mass,
+        "[temperature]": temperature,
+        "[time]": time,
+    }
     return tuple((name, float(power)) for name, power in powers.items() if power)
 
 
@@ -55,34 +60,26 @@ _MOMENT, _INERTIA = _dimension(mass=1, length=2, time=-2), _dimension(mass=1, le
 #: units that nearly every scene is written in: (SI units in one, power of the radian, dimension).
 #: What pint says of each (a test compares), without the half second that pint takes to start
 COMMON: dict[str, tuple[float, float, Dimension]] = {
-    "m": (1.0, 0.0, _LENGTH),
-    "mm": (1e-3, 0.0, _LENGTH),
-    "cm": (1e-2, 0.0, _LENGTH),
-    "um": (1e-6, 0.0, _LENGTH),
-    "rad": (1.0, 1.0, _ANGLE),
-    "deg": (0.0174532925199433, 1.0, _ANGLE),
-    "Pa": (1.0, 0.0, _STRESS),
-    "MPa": (1e6, 0.0, _STRESS),
-    "GPa": (1e9, 0.0, _STRESS),
-    "kg/m^3": (1.0, 0.0, _DENSITY),
-    "g/cm^3": (1e3, 0.0, _DENSITY),
-    "N/m": (1.0, 0.0, _PER_LENGTH),
-    "N/mm": (1e3, 0.0, _PER_LENGTH),
-    "N/um": (1e6, 0.0, _PER_LENGTH),
-    "N": (1.0, 0.0, _FORCE),
-    "kN": (1e3, 0.0, _FORCE),
-    "N/rad": (1.0, -1.0, _FORCE),
-    "kg": (1.0, 0.0, _dimension(mass=1)),
-    "kg*m^2": (1.0, 0.0, _INERTIA),
-    "kg m^2": (1.0, 0.0, _INERTIA),
-    "N*m": (1.0, 0.0, _MOMENT),
-    "N*m/rad": (1.0, -1.0, _MOMENT),
-    "N m/rad": (1.0, -1.0, _MOMENT),
-    "Hz": (1.0, 0.0, _RATE),
-    "kHz": (1e3, 0.0, _RATE),
-    "m^2/s": (1.0, 0.0, _VISCOSITY),
-    "mm^2/s": (1e-6, 0.0, _VISCOSITY),
-    "cSt": (1e-6, 0.0, _VISCOSITY),
+    unit: (factor, radians, dimension)
+    for dimension, radians, units in (
+        (_LENGTH, 0.0, {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "in": 0.0254}),
+        (_ANGLE, 0.0, {"%": 0.01}),
+        (_ANGLE, 1.0, {"rad": 1.0, "deg": 0.0174532925199433}),
+        (_STRESS, 0.0, {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}),
+        (_DENSITY, 0.0, {"kg/m^3": 1.0, "g/cm^3": 1e3}),
+        (_PER_LENGTH, 0.0, {"N/m": 1.0, "N/mm": 1e3, "N/um": 1e6}),
+        (_FORCE, 0.0, {"N": 1.0, "kN": 1e3}),
+        (_FORCE, -1.0, {"N/rad": 1.0}),
+        (_dimension(mass=1), 0.0, {"kg": 1.0, "g": 1e-3}),
+        (_INERTIA, 0.0, {"kg*m^2": 1.0, "kg m^2": 1.0}),
+        (_MOMENT, 0.0, {"N*m": 1.0, "N m": 1.0, "kN*m": 1e3, "kN m": 1e3}),
+        (_MOMENT, -1.0, {"N*m/rad": 1.0, "N m/rad": 1.0}),
+        (_RATE, 0.0, {"Hz": 1.0, "kHz": 1e3}),
+        (_RATE, 1.0, {"rad/s": 1.0, "rpm": 0.10471975511966}),
+        (_VISCOSITY, 0.0, {"m^2/s": 1.0, "mm^2/s": 1e-6, "cSt": 1e-6}),
+        (_dimension(temperature=1), 0.0, {"K": 1.0}),
+    )
+    for unit, factor in units.items()
 }
 
 #: what else stands on a nameplate for revolutions a minute

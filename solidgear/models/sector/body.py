@@ -4,6 +4,7 @@ the same mesh.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -32,11 +33,15 @@ from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
 from solidgear.models.size import Size, of_mesh
 from solidgear.models.solid.block import free_block
-from solidgear.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.models.solid.plan import tetrahedra_plan
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
-from solidgear.scene.features.around import mirror_angle, no_common_sector
+from solidgear.scene.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
+from solidgear.scene.features.base import SMALLEST
+from solidgear.scene.outline import Outline
+from solidgear.scene.parts import Segment
+from solidgear.scene.shaft import resolved
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
@@ -173,12 +178,63 @@ def no_sector(scene: Any) -> str:
     ''
     """
     features = cyclic_features(scene)
-    if features and scene.outline.corners:
-        names = ", ".join(f'{c.kind} "{c.name}"' for c in scene.outline.corners)
-        return (
-            f"a sector holds no fillets or chamfers yet, and the scene has {names}: leave them out"
-        )
-    return no_common_sector(features) if features else ""
+    if not features:
+        return ""
+    return _edge_in_teeth(scene.outline, features) or no_common_sector(features)
+
+
+def not_together(scene: Any) -> str:
+    """Reason why teeth and bolt circles of a scene cannot be drawn beside what is cut out of it, or
+    nothing.
+    """
+    features = resolved(scene)
+    around = [f for f in features if f.sort == CYCLIC]
+    toothed = {f.segment: f for f in around if f.toothed}
+    for teeth in toothed.values():
+        called = f'{teeth.what} "{teeth.name}"'
+        if teeth.spiral_angle:
+            return f"a mesh with {called} is twisted, and what is cut beside it would be with it"
+        pitch, first = 2 * math.pi / teeth.count, next(iter(toothed.values()))
+        apart = (middle(teeth, 1) - middle(first, 1) + pitch / 2) % pitch - pitch / 2
+        if abs(apart) > SAME_ANGLE:
+            return f'{called} does not lie evenly about the middle of {first.what} "{first.name}"'
+    for cut in features:
+        if cut.sort != CYCLIC and cut.segment in toothed:
+            teeth = toothed[cut.segment]
+            return f'{cut.what} "{cut.name}" is cut into the segment of {teeth.what} "{teeth.name}"'
+    return _edge_in_teeth(scene.outline, around)
+
+
+def _edge_in_teeth(outline: Outline[Segment], features: Sequence[Any]) -> str:
+    """Reason why fillets and chamfers beside teeth cannot be drawn, or nothing: they stand on the face
+    below the roots, or leave one above the tips.
+    """
+    toothed = {f.segment: f for f in features if f.toothed}
+    for c in outline.corners:
+        called, owner = f'{c.kind} "{c.name}"', outline.segments[c.owner]
+        if owner.name in toothed:
+            return f'{called} runs along the teeth of "{owner.name}": a sector holds none there'
+        if not 0 < c.joint < len(outline.segments):
+            continue
+        s = outline.segments[c.joint if c.side < 0 else c.joint - 1]
+        if s.name not in toothed:
+            continue
+        if c.surface == "bore":
+            return f'{called} is in the bore, at the teeth of "{s.name}": a sector holds none there'
+        pitch, r = s.outer0 if c.side < 0 else s.outer1, c.on_face[0]
+        root, tip = toothed[s.name].land * pitch, toothed[s.name].tip * pitch
+        least = SMALLEST * pitch
+        if c.root and r > root - least:
+            return (
+                f'{called} reaches {r:.6g} m from the axis, where the roots of "{s.name}" lie at '
+                f"{root:.6g} m: a sector needs it to end below {root - least:.6g} m"
+            )
+        if not c.root and r < tip + least:
+            return (
+                f'{called} begins {r:.6g} m from the axis, where the tips of "{s.name}" lie at '
+                f"{tip:.6g} m: a sector needs it to begin above {tip + least:.6g} m"
+            )
+    return ""
 
 
 def meshed_sector(
@@ -191,7 +247,7 @@ def meshed_sector(
     assemblable(rough_sector(scene, wanted, count=count, **sizes), 10)
     plan = tetrahedra_plan(scene, wanted, around=16, **sizes)
     plan["planes"] = sorted({*plan["planes"], *ends})
-    return sector_mesh(scene.segments, features, **plan, refinement=refinement, count=count)
+    return sector_mesh(scene.outline, features, **plan, refinement=refinement, count=count)
 
 
 def sectors_around(scene, given: Mapping[str, Any]) -> int:
@@ -231,7 +287,8 @@ def sector_size(
     made = meshed_sector(scene, wanted, cyclic_features(scene), ends, count=count, **sizes)
     made = made if half else mirrored(made)
     mesh: Any = _solved_part(made)[0]
-    (_, entries), n, own = of_mesh(mesh.dofs).matrices[0], mesh.nodes.shape[1], mesh.sector
+    (_, entries), *_ = of_mesh(mesh.mesh, basis_of("tet10")).matrices
+    n, own = mesh.nodes.shape[1], mesh.sector
     axis, waves = len(own.axis), 1 + len(ovalising)
     if made.half:
         planes = len(own.middle) + len(own.cut)

@@ -14,7 +14,8 @@ from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
 from solidgear.meshing.quality import check_mesh
-from solidgear.models.solid.block import free_block
+from solidgear.models.kinds import CYCLIC
+from solidgear.models.solid.block import Facets, free_block
 from solidgear.models.solid.halves import HalfDrawing, half_blocks
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.solid.plan import tetrahedra_of
@@ -49,7 +50,7 @@ def featured_body(
     mesh = made.mesh if plain else without(made.mesh, keep)
     quality = check_mesh(mesh)
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
-    facets = Seats(solid, scene.segments, clipped=False)
+    facets = _facets(solid, scene)
     if made.plane is None:
         block, ties = free_block(solid, scene, wanted, facets)
         blocks: tuple[Block, ...] = (tie_rigidly(block, ties),)
@@ -74,3 +75,13 @@ def featured_body(
     }
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
     return Body("solid", blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
+
+
+def _facets(solid: SolidMesh, scene: Any) -> Facets:
+    """Facets of seats on what is left of surfaces of revolution, and on teeth."""
+    around = [f for f in resolved(scene) if f.sort == CYCLIC]
+    if not around:
+        return Seats(solid, scene.segments, clipped=False)
+    from solidgear.models.sector.mesh import seats  # slow to import, and seldom needed
+
+    return seats(solid, solid.mesh.p, scene, around)

@@ -7,13 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.kernel.assembly import unknowns
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import without
-from solidgear.meshing.hexahedra import hexahedra
+from solidgear.meshing.hexahedra import straight_hexahedra
 from solidgear.models.kinds import BLOCKS, CUTS, CYCLIC, PARTS
-from solidgear.models.sector.body import whole_mesh
-from solidgear.models.size import Size, of_mesh
+from solidgear.models.size import Size, coupled, of_mesh
 from solidgear.models.solid.body import _tets
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.mesh import basis_of
@@ -22,9 +20,6 @@ from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.models.solid.rectangular import block_mesh
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.shaft import resolved
-
-#: entries of element matrices that no other element has
-OWN_ENTRIES = 0.5
 
 
 def solid_size(
@@ -52,31 +47,32 @@ def solid_size(
         return _of_file(scene.body)
     if BLOCKS in sorts:
         mesh = block_mesh(scene, wanted, element, size, refinement)
-        return of_mesh(unknowns(mesh, basis_of(element)))
-    if CYCLIC in sorts:
+        return of_mesh(mesh, basis_of(element))
+    if sorts == {CYCLIC}:
+        from solidgear.models.sector.body import whole_mesh  # slow to import, and seldom needed
+
         mesh, _, _ = whole_mesh(scene, wanted, **sizes)
-        return of_mesh(unknowns(mesh, basis_of("tet10")))
+        return of_mesh(mesh, basis_of("tet10"))
     if CUTS in sorts:
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return cut_size(meshed(scene, plan, refinement, half))
     if element.startswith("tet"):
         mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
-        return of_mesh(unknowns(mesh, basis_of(element)))
+        return of_mesh(mesh, basis_of(element))
     grading |= {"around": around, "size": size, "refinement": refinement}
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
-    mesh, _ = hexahedra(scene, plan, turns)
+    mesh, _, _ = straight_hexahedra(scene, plan, turns)
     rigid = any(a == "rigid" for _, a in wanted)
-    return of_mesh(unknowns(mesh, basis_of(element)), mirrors=not rigid)
+    return of_mesh(mesh, basis_of(element), mirrors=not rigid)
 
 
 def cut_size(made: Any) -> Size:
     """Of a :class:`~solidgear.meshing.featured.FeaturedMesh` without what is cut out of it."""
     mesh = without(made.mesh, ~made.cut)
-    dofs = unknowns(mesh, basis_of("tet10"))
     if made.plane is None:
-        return of_mesh(dofs)
-    both = of_mesh(dofs, parts=2)
+        return of_mesh(mesh, basis_of("tet10"))
+    both = of_mesh(mesh, basis_of("tet10"), parts=2)
     # of a node on the mirror plane one half has one component and the other two
     on_plane = int((np.abs(mesh.doflocs[made.plane]) < 1e-9).sum())
     return replace(both, unknowns=both.unknowns - 3 * on_plane)
@@ -84,7 +80,5 @@ def cut_size(made: Any) -> Size:
 
 def _of_file(file: Any) -> Size:
     kind = basis_of(SOLVED_AS.get(file.element, file.element))
-    on = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
-    count = 3 * int(np.dot(on, file.counts))
-    entries = int(OWN_ENTRIES * 9 * len(kind.doflocs) ** 2 * file.counts[3])
-    return Size(count, ((count, entries),), entries)
+    nodes, pairs = coupled(kind, file.counts)
+    return Size(3 * nodes, ((3 * nodes, 9 * pairs),), 9 * pairs)

@@ -4,73 +4,155 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import AfterValidator
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST
 from solidgear.scene.features.cut import Cut, Frame
 from solidgear.scene.parts import Segment
-from solidgear.scene.units import PositiveLength
+from solidgear.scene.units import Length, PositiveLength, SignedAngle
+
+#: beyond it the rim of the mouth is a wedge of less than 30 degrees, which no mesh shows at any price
+STEEPEST = math.radians(60)
+#: places across a hole at which its ends are looked for; the largest of them is off by their square
+PLACES = 2001
+
+
+def _not_steep(value: float) -> float:
+    if abs(value) > STEEPEST * (1 + 1e-9):
+        raise SceneError(
+            "must lie between -60 and 60 degrees (-1.047 and 1.047 rad): the angle of the hole to "
+            "the plane at right angles to the shaft"
+        )
+    return value
 
 
 class CrossHole(Cut):
-    """A hole drilled through the axis.
+    """A hole drilled across the shaft, all the way through.
 
     Attributes
     ----------
     name, segment : str
     y : float
-        Of its middle along the shaft, m.
+        Along the shaft, where it passes the axis, m.
     diameter : float
         m.
     angle : float
-        As for :class:`Keyway`; the hole goes all the way through.
+        As for :class:`Keyway`.
+    inclination : float
+        Of its axis to the plane at right angles to the shaft, rad: where it looks to, it leans
+        towards the end of the shaft.
+    offset : float
+        By which its axis passes that of the shaft, m, a quarter turn on from where it looks to: at
+        the angle 0 towards +x.
 
     Raises
     ------
     SceneError
-        A size that is not positive.
+        A size that is not positive, or an inclination beyond 60 degrees.
 
     Examples
     --------
     >>> from solidgear.scene import CrossHole
     >>> hole = CrossHole(name="oil", segment="shaft", y="50 mm", diameter="8 mm")
-    >>> [round(y, 3) for y in hole.reach]
+    >>> [round(y, 3) for y in hole.reach(0.03)]
     [0.046, 0.054]
+    >>> oblique = hole.with_changes(inclination="45 deg")
+    >>> [round(y, 4) for y in oblique.reach(0.03)]
+    [0.0143, 0.0857]
     """
 
     notched: ClassVar[bool] = False
-    through: ClassVar[bool] = True
 
     kind: Literal["cross_hole"] = "cross_hole"
     diameter: PositiveLength
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        return self.y - self.diameter / 2, self.y + self.diameter / 2
+    inclination: Annotated[SignedAngle, AfterValidator(_not_steep)] = 0.0
+    offset: Length = 0.0
+
+    def reach(self, radius: float) -> tuple[float, float]:
+        # its wall, line by line, where that leaves the shaft
+        half = self.diameter / 2
+        side = np.clip(self.offset + half * np.linspace(-1, 1, PLACES), -radius, radius)
+        along = np.sqrt(half**2 - np.clip(side - self.offset, -half, half) ** 2)
+        up = np.sqrt(radius**2 - side**2) * math.tan(abs(self.inclination))
+        away = float((up + along / math.cos(self.inclination)).max())
+        return self.y - away, self.y + away
+
+    def mirrored(self, across: bool) -> bool:
+        return not self.inclination if across else not self.offset
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
+        least = SMALLEST * here.outer0
+        lo, hi = self.reach(here.outer0)
+        beside, room = min(lo - here.y0, here.y1 - hi), least * math.tan(abs(self.inclination))
         if self.diameter >= here.outer0:
             yield SceneError(
                 f"a cross hole wider than the radius, {here.outer0:.6g} m, leaves no shaft",
                 path=("diameter",),
             )
-        elif self.diameter < 2 * SMALLEST * here.outer0:
+        elif self.diameter < 2 * least:
             yield SceneError(
                 f"is under a hundredth of the diameter, {2 * here.outer0:.6g} m", path=("diameter",)
             )
+        elif self.offset and abs(self.offset) + self.diameter / 2 > here.outer0 - least:
+            yield SceneError(
+                f"the hole runs out of the side of the shaft: beside half its diameter the offset "
+                f"may be {here.outer0 - least - self.diameter / 2:.6g} m",
+                path=("offset",),
+            )
+        elif here.inner0 and abs(abs(self.offset) - self.diameter / 2 - here.inner0) < least:
+            yield SceneError(
+                f"the wall of the hole grazes the bore, of radius {here.inner0:.6g} m: let it cross "
+                "the bore, or pass beside it",
+                path=("offset",),
+            )
+        elif beside < room:
+            yield SceneError(
+                f"the rim of the oblique hole lies {max(beside, 0.0):.3g} m from an end of "
+                f'"{here.name}", where a shoulder may stand: leave {room:.3g} m or more',
+                path=("y",),
+            )
 
     def tool(self, occ: Any, radius: float, top: float) -> int:
-        far = radius + top
-        return occ.addCylinder(0, self.y, -far, 0, 0, 2 * far, self.diameter / 2)
+        if self.inclination:
+            # no further out than its ends need, since a shoulder may stand beside them
+            top = SMALLEST * radius
+        half, lean = self.diameter / 2, self.inclination
+        far = (radius + top) / math.cos(lean) + half * math.tan(abs(lean))
+        up, along = far * math.cos(lean), far * math.sin(lean)
+        return occ.addCylinder(self.offset, self.y - along, -up, 0, 2 * along, 2 * up, half)
 
-    def volume(self, outer: float, inner: float) -> None:
-        return None
+    def volume(self, outer: float, inner: float) -> float:
+        from scipy.integrate import quad
+
+        half = self.diameter / 2
+
+        def section(side: float) -> float:
+            x2 = (self.offset + side) ** 2
+            wall = math.sqrt(outer**2 - x2) - math.sqrt(max(inner**2 - x2, 0.0))
+            return 4 * math.sqrt(half**2 - side**2) * wall
+
+        own = (side - self.offset for side in (-inner, inner))
+        kinks = [side for side in own if abs(side) < half] or None
+        whole = quad(section, -half, half, points=kinks, epsabs=0, epsrel=1e-10)[0]
+        return whole / math.cos(self.inclination)
 
     def edges(self, radius: float) -> tuple[float, float]:
-        # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume
-        return math.inf, math.pi * self.diameter / 8
+        # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume; mouths
+        # are ellipses, and narrower by the inclination
+        return math.inf, math.pi * self.diameter / 8 * math.cos(self.inclination)
 
     def distance(self, radius: float, frame: Frame) -> str:
-        off = f"Sqrt({frame.across}^2+(y-{frame.num(self.y)})^2)"
-        return f"Max(0,{off}-{frame.num(self.diameter / 2)})"
+        num, along = frame.num, f"(y-{frame.num(self.y)})"
+        aside = f"({frame.side}-{num(self.offset)})" if self.offset else frame.across
+        if self.inclination:
+            c, s = num(math.cos(self.inclination)), num(math.sin(self.inclination))
+            along = f"({along}*{c}-{frame.up}*{s})"
+        return f"Max(0,Sqrt({aside}^2+{along}^2)-{num(self.diameter / 2)})"
+
+    def lines(self, radius: float) -> tuple[float, float]:
+        return 4 * radius / math.cos(self.inclination), self.diameter / 2

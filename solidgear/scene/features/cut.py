@@ -19,15 +19,20 @@ class Frame(NamedTuple):
 
     Attributes
     ----------
-    across, up : str
-        Formulas of the distance from its middle plane, and of the height towards it, m.
+    side, up : str
+        Formulas of the place beside its middle plane, and of the height towards it, m.
     num : callable
         A number in a formula.
     """
 
-    across: str
+    side: str
     up: str
     num: Callable[[float], str]
+
+    @property
+    def across(self) -> str:
+        """Formula of the distance from the middle plane."""
+        return f"Sqrt({self.side}^2)"
 
     def outside(self, lo: float, hi: float) -> str:
         """Formula of the distance along the shaft from a stretch of it."""
@@ -40,8 +45,6 @@ class Cut(OnSegment):
     Words: ClassVar[type[Model]] = Along
     sources: ClassVar = {"y": ("position",)}
     sort: ClassVar[str] = "cut"
-    #: whether it goes through the axis, and so looks to both sides
-    through: ClassVar[bool] = False
 
     y: Position
 
@@ -64,7 +67,7 @@ class Cut(OnSegment):
                 path=("segment",),
             )
             return
-        lo, hi = self.reach
+        lo, hi = self.reach(here.outer0)
         if lo < here.y0 - TOUCH or hi > here.y1 + TOUCH:
             yield SceneError(
                 f"the {self.what} reaches from {lo:.6g} to {hi:.6g} m, outside "
@@ -77,13 +80,19 @@ class Cut(OnSegment):
     def _sized(self, here: Segment) -> Iterator[SceneError]:
         raise NotImplementedError
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Ends along the shaft, m."""
+    def reach(self, radius: float) -> tuple[float, float]:
+        """Ends along a shaft of some radius, m."""
         raise NotImplementedError
 
     def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
-        return self.reach
+        here = next(s for s in segments if s.name == self.segment)
+        return self.reach(here.outer0)
+
+    def mirrored(self, across: bool) -> bool:
+        """True where it is symmetric about the plane of the axis that it looks along or, `across`,
+        about the one at right angles to that.
+        """
+        return not across
 
     def tool(self, occ: Any, radius: float, top: float) -> int:
         """The solid of OCC that cuts it out of a segment of a radius, as if it looked to +z; it
@@ -93,7 +102,7 @@ class Cut(OnSegment):
 
     def volume(self, outer: float, inner: float) -> float | None:
         """Volume that it takes from its segment of these radii, m^3, where a closed form is known:
-        None for a cross hole through a wall, or a cut down to a bore.
+        None for a cut down to a bore.
 
         Examples
         --------
@@ -121,6 +130,13 @@ class Cut(OnSegment):
         """
         return None
 
+    def lines(self, radius: float) -> tuple[float, float]:
+        """Length of the lines that elements grow from at it, and radius of the wall around them,
+        m.
+        """
+        lo, hi = self.reach(radius)
+        return 2 * (hi - lo), 0.0
+
 
 class Long(Cut):
     """A cut that begins at its place and runs along the shaft, down to a plane floor."""
@@ -130,8 +146,7 @@ class Long(Cut):
 
     length: PositiveLength
 
-    @property
-    def reach(self) -> tuple[float, float]:
+    def reach(self, radius: float) -> tuple[float, float]:
         return self.y, self.y + self.length
 
     def floor(self, radius: float) -> float:
@@ -150,7 +165,7 @@ class Long(Cut):
     def distance(self, radius: float, frame: Frame) -> str:
         below = f"Max(0,{frame.num(self.floor(radius))}-{frame.up})"
         beside = f"Max(0,{frame.across}-{frame.num(self.half_width(radius))})"
-        return f"Sqrt({below}^2+{beside}^2+{frame.outside(*self.reach)}^2)"
+        return f"Sqrt({below}^2+{beside}^2+{frame.outside(*self.reach(radius))}^2)"
 
     def from_edges(self, radius: float, frame: Frame) -> tuple[str, float]:
         away, floor = self.beside_edges(radius, frame), self.floor(radius)

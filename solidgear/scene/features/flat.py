@@ -33,7 +33,7 @@ class Flat(Long):
     Examples
     --------
     >>> from solidgear.scene import Flat
-    >>> Flat(name="flat", segment="shaft", y=0.1, length=0.05, depth=0.004).reach[0]
+    >>> Flat(name="flat", segment="shaft", y=0.1, length=0.05, depth=0.004).reach(0.03)[0]
     0.1
     """
 
@@ -47,7 +47,7 @@ class Flat(Long):
         return math.sqrt(radius**2 - self.floor(radius) ** 2)
 
     def tool(self, occ: Any, radius: float, top: float) -> int:
-        (lo, hi), wide, floor = self.reach, 2 * (radius + top), self.floor(radius)
+        (lo, hi), wide, floor = self.reach(radius), 2 * (radius + top), self.floor(radius)
         return occ.addBox(-wide / 2, lo, floor, wide, hi - lo, radius + top - floor)
 
     def volume(self, outer: float, inner: float) -> float | None:
@@ -67,6 +67,6 @@ class Flat(Long):
         return self.half_width(radius) / 2, math.inf
 
     def beside_edges(self, radius: float, frame: Frame) -> str:
-        (lo, hi), half = self.reach, frame.num(self.half_width(radius))
+        (lo, hi), half = self.reach(radius), frame.num(self.half_width(radius))
         ends = f"Min(Sqrt((y-{frame.num(lo)})^2),Sqrt((y-{frame.num(hi)})^2))"
         return f"Sqrt({ends}^2+Max(0,{frame.across}-{half})^2)"

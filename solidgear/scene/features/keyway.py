@@ -42,7 +42,7 @@ class Keyway(Long):
     >>> from solidgear.scene import Keyway
     >>> key = Keyway(name="key", segment="shaft", y="120 mm", length="100 mm", width="25 mm",
     ...              depth="9 mm")
-    >>> key.reach
+    >>> key.reach(0.045)
     (0.12, 0.22)
     """
 
@@ -83,7 +83,7 @@ class Keyway(Long):
         return self.ends == "round"
 
     def tool(self, occ: Any, radius: float, top: float) -> int:
-        lo, hi = self.reach
+        lo, hi = self.reach(radius)
         floor, half = self.floor(radius), self.width / 2
         a, b = (lo + half, hi - half) if self.rounded else (lo, hi)
         places = ((-half, a), (half, a), (half, b), (-half, b))
@@ -120,7 +120,7 @@ class Keyway(Long):
         return min(self.depth, self.width / 2), curved
 
     def beside_edges(self, radius: float, frame: Frame) -> str:
-        (lo, hi), half, num = self.reach, self.width / 2, frame.num
+        (lo, hi), half, num = self.reach(radius), self.width / 2, frame.num
         if self.rounded:
             beyond = frame.outside(lo + half, hi - half)
             return f"(Sqrt({frame.across}^2+{beyond}^2)-{num(half)})"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
+from solidgear.judge.correlation import best_assignment
 from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
 from solidgear.system.system import System
@@ -84,7 +84,7 @@ def partners(
     """
     alike = mac(seen, other_seen)
     near = np.abs(np.log(hz[:, None] / other_hz[None, :]))
-    mine, its = linear_sum_assignment(-(alike - APART * np.minimum(near, MOST)))
+    mine, its = best_assignment(alike - APART * np.minimum(near, MOST))
     return {int(k): int(j) for k, j in zip(mine, its) if alike[k, j] >= ALIKE}
 
 

@@ -45,7 +45,8 @@ def _inside(f: Any, x, y, z, scene: Any) -> np.ndarray:
     lo, hi = f.span(scene.segments)
     along = (y >= lo) & (y <= hi)
     if f.kind == "cross_hole":
-        return across**2 + (y - f.y) ** 2 < f.diameter**2 / 4
+        beside = (y - f.y) * math.cos(f.inclination) - up * math.sin(f.inclination)
+        return (across - f.offset) ** 2 + beside**2 < f.diameter**2 / 4
     if f.kind == "bolt_circle":
         lo, hi = f.reach(here)
         angle = f.angle + 2 * math.pi * np.arange(f.count) / f.count
