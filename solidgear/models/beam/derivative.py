@@ -10,7 +10,6 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.models.beam.body import on_nodes
 from solidgear.scene.attached import attached_stations
-from solidgear.solve.adjoint import Form
 
 #: what a beam is built with unless told otherwise
 USUAL = {"head": "cone", "mass": "consistent", "kappa": "hutchinson", "shoulder": False}
@@ -45,21 +44,6 @@ class BeamAdjoint:
         at = np.array(sorted(marks))
         nodes = np.interp(self.nodes, at, [marks[m] for m in at])
         return on_nodes(scene, nodes, [*attached_stations(scene.stations)], **self.options)
-
-
-def change(form: Form, low: Body, high: Body) -> float:
-    """Change of a number from one body to the other, at the states of one between."""
-    total = 0.0
-    for a, b in form.pairs:
-        for index in a.vectors.keys() & b.vectors.keys():
-            one, two = low.blocks[index], high.blocks[index]
-            u, v = a.vectors[index], b.vectors[index]
-            total -= u @ (two.stiffness @ v - one.stiffness @ v)
-            total += a.eigenvalue * (u @ (two.mass @ v - one.mass @ v))
-            rows = low.rows(one)
-            total += a.forces[rows] @ (two.ports @ v - one.ports @ v)
-            total += b.forces[rows] @ (two.ports @ u - one.ports @ u)
-    return form.scale * float(total)
 
 
 def _places(scene) -> list[tuple[float, str]]:

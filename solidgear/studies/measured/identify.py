@@ -10,21 +10,20 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from solidgear.body import Body
+from solidgear.body import as_supports
 from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.ladder import build
 from solidgear.scene import Scene
 from solidgear.scene.paths import Keys, Tables, changed, entry, keys_of, label_of
 from solidgear.scene.toml_file import parse
+from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.derivatives import log_derivatives
 from solidgear.studies.measured.identified import Fitted, Identification, Identified, Predicted
 from solidgear.studies.measured.shapes import mac_of
-from solidgear.studies.sweep.bench import surface
+from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sweep.entries import in_si
 
 Progress = Callable[[str], None]
@@ -34,6 +33,8 @@ ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
 EARLY, LIKELY = 2, 0.5
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
 UNDETERMINED = math.log(2.0)
+#: of the logarithm of an entry, to either side, for derivatives
+STEP = 1e-4
 #: of the logarithm of entries, along what is not told where it begins
 NUDGE = 0.03
 #: share of the direction that is not determined from which on an entry belongs to it
@@ -232,20 +233,14 @@ class _Study:
 
     def derivatives(self, computed: Computed) -> np.ndarray:
         """(modes, entries) derivatives of logarithms."""
+        scene, body = computed.scene, computed.body
+        forms = [of_mode(body, as_supports(scene), mode) for mode in computed.modes]
+        by = Derivatives(scene, body, forms, computed.rung, computed.options).by
         columns = []
-        for k in range(len(self.keys)):
-
-            def at(x: float, k: int = k) -> tuple[Scene, Body]:
-                moved = self.x.copy()
-                moved[k] += x
-                scene = self.scene_at(moved)
-                # springs and masses leave the body as it is
-                if surface(scene) == surface(computed.scene):
-                    return scene, computed.body
-                return scene, build(scene, computed.rung, **computed.options)
-
-            columns.append(log_derivatives(computed.modes, at))
-        return np.column_stack(columns)
+        for own in STEP * np.eye(len(self.keys)):
+            columns.append(by(self.scene_at(self.x - own), self.scene_at(self.x + own), 2 * STEP))
+        frequencies = np.array([mode.frequency_hz for mode in computed.modes])
+        return np.column_stack(columns) / frequencies[:, None]
 
 
 class _Fit:

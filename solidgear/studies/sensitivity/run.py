@@ -14,6 +14,7 @@ from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, listed, nearest
+from solidgear.ladder import build
 from solidgear.machine.threads import pinned
 from solidgear.quantity import Quantity
 from solidgear.scene import Scene
@@ -22,6 +23,7 @@ from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import Form, of_entry, of_mode
 from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
+from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers, unit_of
 from solidgear.studies.sweep.entries import in_si
 
@@ -229,7 +231,7 @@ def sensitivities(
         path = label_of(keys, tables)
         try:
             low, high, step, at = around(scene, tables, keys, where)
-            fine, *rest = [[d.by(k, low, high, step) for k in range(len(asked))] for d in found]
+            fine, *rest = [d.by(low, high, step) for d in found]
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
@@ -275,8 +277,6 @@ def _supported(scene: Scene, model: str) -> None:
 def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any]:
     if model == "harmonic":
         return {"order": max(3, options.get("order", 5) - 1)}
-    from solidgear.ladder import build
-
     return {"elements": max(1, build(scene, model, **options).mesh["elements"] // 2)}
 
 
@@ -289,8 +289,6 @@ class Derived:
     """Numbers of one body and what they feel."""
 
     def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
-        from solidgear.ladder import build
-
         self.scene, self.model = scene, model
         self.body: Body = build(scene, model, **options)
         self.supports = as_supports(scene)
@@ -318,51 +316,7 @@ class Derived:
             self.values.append(value)
             self.forms.append(form)
             self.pairs.append(False)
-        if model == "harmonic":
-            from solidgear.models.harmonic.derivative import HarmonicAdjoint
-
-            self.harmonic = HarmonicAdjoint(scene, self.body, self.forms)
-        else:
-            from solidgear.models.beam.derivative import BeamAdjoint
-
-            self.beam = BeamAdjoint(scene, self.body, options)
-        self._last: tuple[Any, Any] = (None, None)
-
-    def by(self, number: int, low: Scene, high: Scene, step: float) -> float:
-        """Derivative of one of the numbers."""
-        form = self.forms[number]
-        return self._of_springs(form, low, high, step) + self._of_shaft(number, low, high, step)
-
-    def _of_springs(self, form: Form, low: Scene, high: Scene, step: float) -> float:
-        one, two = as_supports(low), as_supports(high)
-        stiff, heavy = two.stiffness - one.stiffness, two.masses - one.masses
-        there = self.supports.rows(self.body)
-        total = 0.0
-        for a, b in form.pairs:
-            moved = (stiff - a.eigenvalue * heavy) @ b.motions[there]
-            total -= a.motions[there] @ moved
-        return form.scale * float(total) / step
-
-    def _of_shaft(self, number: int, low: Scene, high: Scene, step: float) -> float:
-        if _same_shaft(low, high):
-            return 0.0
-        if self._last[0] is not low:
-            if self.model == "harmonic":
-                from solidgear.models.harmonic.motion import Motion
-
-                self._last = low, Motion(self.harmonic, low, high, step)
-            else:
-                self._last = low, (self.beam.moved(low), self.beam.moved(high))
-        if self.model == "harmonic":
-            return self._last[1].of(self.harmonic.pushes[number])
-        from solidgear.models.beam.derivative import change
-
-        return change(self.forms[number], *self._last[1]) / step
-
-
-def _same_shaft(low: Scene, high: Scene) -> bool:
-    seats = [[(s.y, s.lo, s.hi) for s in scene.stations] for scene in (low, high)]
-    return low.segments == high.segments and seats[0] == seats[1]
+        self.by = Derivatives(scene, self.body, self.forms, model, options).by
 
 
 def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:

@@ -1,0 +1,83 @@
+"""Derivatives of numbers of one body by what may change of its scene, from a scene on either side:
+springs and masses by their matrices, the shaft by what its model says of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import SolidgearError
+from solidgear.ladder import build
+from solidgear.models.beam.derivative import BeamAdjoint
+from solidgear.models.harmonic.derivative import HarmonicAdjoint
+from solidgear.models.harmonic.motion import Motion
+from solidgear.scene import Scene
+from solidgear.solve.adjoint import Form, of_bodies, of_supports
+from solidgear.studies.sweep.bench import surface
+
+
+class Derivatives:
+    """Derivatives of the numbers of some forms.
+
+    Parameters
+    ----------
+    model : str
+    options : dict
+        That the body was built with.
+    """
+
+    def __init__(
+        self, scene: Scene, body: Body, forms: Sequence[Form], model: str, options: dict[str, Any]
+    ):
+        self.scene, self.body, self.forms = scene, body, forms
+        self.model, self.options = model, options
+        self.there = as_supports(scene).rows(body)
+
+    def by(self, low: Scene, high: Scene, step: float) -> np.ndarray:
+        """(forms,) change of numbers from one scene to another, over a step.
+
+        Raises
+        ------
+        SolidgearError
+            If the mesh cannot follow.
+        """
+        springs = as_supports(low), as_supports(high)
+        change = np.array([of_supports(form, self.there, *springs) for form in self.forms]) / step
+        return change if surface(low) == surface(high) else change + self._shaft(low, high, step)
+
+    def _shaft(self, low: Scene, high: Scene, step: float) -> np.ndarray:
+        if self.model == "harmonic":
+            try:
+                felt = self._harmonic
+            except SolidgearError:
+                if _shape(low) != _shape(high):
+                    raise
+            else:
+                moved = Motion(felt, low, high, step)
+                return np.array([moved.of(push) for push in felt.pushes])
+        if self.model in ("timoshenko", "euler"):
+            one, two = self._beam.moved(low), self._beam.moved(high)
+        else:
+            one, two = (build(scene, self.model, **self.options) for scene in (low, high))
+        return np.array([of_bodies(form, one, two) for form in self.forms]) / step
+
+    @cached_property
+    def _harmonic(self) -> HarmonicAdjoint:
+        return HarmonicAdjoint(self.scene, self.body, self.forms)
+
+    @cached_property
+    def _beam(self) -> BeamAdjoint:
+        return BeamAdjoint(self.scene, self.body, self.options)
+
+
+def _shape(scene: Scene) -> Hashable:
+    """All that a mesh is made of: the shaft but for its materials."""
+    bare = scene.with_changes(
+        segments=[one.with_changes(material=scene.material) for one in scene.segments]
+    )
+    return surface(bare)
