@@ -46,9 +46,11 @@ class Derivatives:
         SolidgearError
             If the mesh cannot follow.
         """
-        springs = as_supports(low), as_supports(high)
-        change = np.array([of_supports(form, self.there, *springs) for form in self.forms]) / step
-        return change if surface(low) == surface(high) else change + self._shaft(low, high, step)
+        out = np.zeros(len(self.forms))
+        if _springs(low) != _springs(high):
+            one, two = as_supports(low), as_supports(high)
+            out += [of_supports(form, self.there, one, two) / step for form in self.forms]
+        return out if surface(low) == surface(high) else out + self._shaft(low, high, step)
 
     def _shaft(self, low: Scene, high: Scene, step: float) -> np.ndarray:
         if self.model == "harmonic":
@@ -61,9 +63,8 @@ class Derivatives:
                 moved = Motion(felt, low, high, step)
                 return np.array([moved.of(push) for push in felt.pushes])
         if self.model in ("timoshenko", "euler"):
-            one, two = self._beam.moved(low), self._beam.moved(high)
-        else:
-            one, two = (build(scene, self.model, **self.options) for scene in (low, high))
+            return self._beam.by(low, high, step)
+        one, two = (build(scene, self.model, **self.options) for scene in (low, high))
         return np.array([of_bodies(form, one, two) for form in self.forms]) / step
 
     @cached_property
@@ -72,7 +73,14 @@ class Derivatives:
 
     @cached_property
     def _beam(self) -> BeamAdjoint:
-        return BeamAdjoint(self.scene, self.body, self.options)
+        return BeamAdjoint(self.scene, self.body, self.forms)
+
+
+def _springs(scene: Scene) -> tuple:
+    """All that supports are made of."""
+    springs = [(b.matrix, b.axial_series, b.housing) for b in scene.bearings]
+    around = scene.housing and (scene.housing, [b.y for b in scene.bearings])
+    return springs, scene.masses, scene.housing_axial, around
 
 
 def _shape(scene: Scene) -> Hashable:

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.scene import Scene
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
 from solidgear.studies.loading import part_of
@@ -76,9 +80,9 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     refused: list[SceneError] = []
     for sign in (-1, 1):
         try:
-            value = float(number) + sign * step / one
-            text = f"{value!r} {unit}" if unit else value
-            sides.append(_held(put(tables, keys, text), scene, where))
+            side = _in_place(scene, tables, keys, at + sign * step)
+            text = _text(float(number) + sign * step / one, unit)
+            sides.append(side or _held(put(tables, keys, text), scene, where))
         except SceneError as error:
             refused.append(error)
     if len(refused) == 2:
@@ -86,6 +90,49 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str):
     if refused:
         raise SolidgearError("the scene holds to one side of it alone")
     return sides[0], sides[1], 2 * step, at
+
+
+def _text(value: float, unit: str) -> str | float:
+    return f"{value!r} {unit}" if unit else value
+
+
+def _in_place(scene: Scene, tables: Tables, keys: Keys, value: float) -> Scene | None:
+    """A scene with an entry of a stiffness matrix or of the material changed, which no place hangs on;
+    None for other entries.
+    """
+    first, *rest = keys
+    if first == "material" and not any("material" in one for one in tables["segment"]):
+        material = scene.material.with_changes(**{str(keys[1]): value})
+        segments = tuple(one.with_changes(material=material) for one in scene.segments)
+        return scene.unjudged(material=material, segments=segments)
+    if first == "housing" and scene.housing is not None:
+        housing = _stiffened(scene.housing, rest, value)
+        return housing and scene.unjudged(housing=housing)
+    if first != "bearing":
+        return None
+    place, *rest = rest
+    own = scene.bearings[int(place)]
+    if rest[0] == "housing":
+        inside = _stiffened(own.housing, rest[1:], value)
+        bearing = inside and own.with_changes(housing=inside)
+    else:
+        bearing = _stiffened(own, rest, value)
+    if bearing is None:
+        return None
+    return scene.unjudged(bearings=tuple(bearing if one is own else one for one in scene.bearings))
+
+
+def _stiffened(thing: Any, keys: Sequence[str | int], value: float) -> Any:
+    """A thing with an entry of its matrix, and the mirror of it, changed; None for other entries."""
+    if keys[0] == "stiffness":
+        row, column, _ = STIFFNESS_NAMES[str(keys[1])]
+    elif keys[0] == "matrix":
+        row, column = map(int, keys[1:])
+    else:
+        return None
+    matrix = np.array(thing.matrix)
+    matrix[row, column] = matrix[column, row] = value
+    return thing.with_changes(matrix=matrix)
 
 
 def put(tables: Tables, keys: Keys, value: str | float) -> Tables:
