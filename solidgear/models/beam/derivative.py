@@ -47,6 +47,8 @@ class BeamAdjoint:
         By :data:`SEAT`.
     steps : (k, 3, f) ndarray
         By compliances of shoulders.
+    velocity : (n,) ndarray
+        Of the nodes, at the last call of :meth:`by`.
     """
 
     def __init__(self, scene, body: Body, forms: Sequence[Form]):
@@ -193,28 +195,28 @@ class BeamAdjoint:
             If the shaft takes another form, or what lies at one place moves apart.
         """
 
-        def rate(of) -> np.ndarray:
-            one, two = (np.array(of(scene)) for scene in (low, high))
+        def rate(things, names) -> np.ndarray:
+            one, two = (
+                np.array([[getattr(one, name) for name in names] for one in things(scene)])
+                for scene in (low, high)
+            )
             if one.shape != two.shape:
                 raise SolidgearError("the shaft takes another form there")
             return (two - one) / step
 
-        def values(things, names):
-            return [[getattr(one, name) for name in names] for one in things]
-
-        segments = rate(lambda scene: values(scene.segments, SHAPE))
-        seats = rate(lambda scene: values(scene.stations, SEAT))
-        matter = rate(lambda scene: values([s.material for s in scene.segments], MATTER))
+        segments = rate(lambda scene: scene.segments, SHAPE)
+        seats = rate(lambda scene: scene.stations, SEAT)
+        matter = rate(lambda scene: [s.material for s in scene.segments], MATTER)
         out = np.einsum("sk,skf->f", segments, self.segments)
         out += np.einsum("sk,skf->f", matter, self.materials)
         out += np.einsum("pk,pkf->f", seats, self.seats)
         if self.body.mesh["shoulder"]:
-            bends = rate(lambda scene: values(hinges(scene.segments), HINGE))
+            bends = rate(lambda scene: hinges(scene.segments), HINGE).reshape(-1, len(HINGE))
             if len(bends) != len(self.hinges):
                 raise SolidgearError("a step opens there, and is another one to either side")
-            bends = bends.reshape(-1, len(HINGE))
             out += np.einsum("hk,hkf->f", bends, self.steps)
-        return out + self._along(segments, seats) @ self.nodes
+        self.velocity = self._along(segments, seats)
+        return out + self.velocity @ self.nodes
 
     def _along(self, segments: np.ndarray, seats: np.ndarray) -> np.ndarray:
         """(n,) velocity of the nodes."""
