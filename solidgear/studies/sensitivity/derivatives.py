@@ -17,8 +17,12 @@ from solidgear.models.beam.derivative import BeamAdjoint
 from solidgear.models.harmonic.derivative import HarmonicAdjoint
 from solidgear.models.harmonic.motion import Motion
 from solidgear.scene import Scene
+from solidgear.scene.coned import coned
 from solidgear.solve.adjoint import Form, of_bodies, of_supports
 from solidgear.studies.sweep.bench import surface
+
+#: of how far nodes move between two meshes, that the one between may lie beside their middle
+BESIDE = 1e-2
 
 
 class Derivatives:
@@ -53,19 +57,24 @@ class Derivatives:
         return out if surface(low) == surface(high) else out + self._shaft(low, high, step)
 
     def _shaft(self, low: Scene, high: Scene, step: float) -> np.ndarray:
-        if self.model == "harmonic":
-            try:
-                felt = self._harmonic
-            except SolidgearError:
-                if _shape(low) != _shape(high):
-                    raise
-            else:
-                moved = Motion(felt, low, high, step)
-                return np.array([moved.of(push) for push in felt.pushes])
         if self.model in ("timoshenko", "euler"):
             return self._beam.by(low, high, step)
+        moves = _shape(low) != _shape(high)
+        if self.model == "harmonic" and self._straight:
+            moved = Motion(self._harmonic, low, high, step)
+            return np.array([moved.of(push) for push in self._harmonic.pushes])
+        if moves and self.model != "harmonic":
+            raise SolidgearError(
+                f"the {self.model} model meshes every shape anew, and no mesh follows it"
+            )
         one, two = (build(scene, self.model, **self.options) for scene in (low, high))
+        if moves:
+            _follows(one, self.body, two)
         return np.array([of_bodies(form, one, two) for form in self.forms]) / step
+
+    @cached_property
+    def _straight(self) -> bool:
+        return not coned(self.scene).outline.corners and self.body.mesh["order"] >= 3
 
     @cached_property
     def _harmonic(self) -> HarmonicAdjoint:
@@ -74,6 +83,17 @@ class Derivatives:
     @cached_property
     def _beam(self) -> BeamAdjoint:
         return BeamAdjoint(self.scene, self.body, self.forms)
+
+
+def _follows(low: Body, body: Body, high: Body) -> None:
+    """Refuse meshes of which one does not lie half way between the others."""
+    flats: list[Any] = [one.geometry.meridian for one in (low, body, high)]  # type: ignore[union-attr]
+    same = all(np.array_equal(flat.cells, flats[1].cells) for flat in flats)
+    if same:
+        one, at, two = (flat.points for flat in flats)
+        same = abs((one + two) / 2 - at).max() <= BESIDE * abs(two - one).max()
+    if not same:
+        raise SolidgearError("the mesh changes with it")
 
 
 def _springs(scene: Scene) -> tuple:

@@ -20,7 +20,7 @@ from solidgear.studies.sweep.entries import in_si
 #: they move is linear in it but for angles, materials and springs in series
 STEP, OF_PLACES = 1e-4, 1e-5
 #: tables of a file whose numbers say how the shaft is
-HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
+HELD_TABLES = ("material", "segment", "feature", "bearing", "mass", "housing", "port")
 #: words in them that may look like numbers
 WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
 #: keys of lengths that may be zero

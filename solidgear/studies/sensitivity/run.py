@@ -27,6 +27,8 @@ from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers, unit_of
 from solidgear.studies.sweep.entries import in_si
 
+#: models that have derivatives
+MODELS = ("harmonic", "timoshenko", "euler", "solid")
 #: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
 NOTHING = 1e-9
 
@@ -176,7 +178,8 @@ def sensitivities(
     ----------
     file : str or path
         A scene file (TOML).
-    model : {'harmonic', 'timoshenko', 'euler'}
+    model : {'harmonic', 'timoshenko', 'euler', 'solid'}
+        The solid has derivatives by springs, masses and materials alone.
     of : sequence of str, optional
         Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
         and the compliance ``C_zz``.
@@ -218,7 +221,7 @@ def sensitivities(
     asked = [Quantity(name) for name in of or ("bending 1", "C_zz")]
     moves = [*numbers(tables, by)]
     levels: list[dict[str, Any]] = [{}]
-    if coarser:
+    if coarser and model != "solid":
         levels.append(_coarser(scene, model, options))
     found = []
     for more in levels:
@@ -262,15 +265,15 @@ def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
 
 
 def _supported(scene: Scene, model: str) -> None:
-    known = ("harmonic", "timoshenko", "euler")
-    if model not in known:
+    if model not in MODELS:
         raise SolidgearError(
-            f"the {model} model has no derivatives; ask {', '.join(known[:-1])} or {known[-1]}"
+            f"the {model} model has no derivatives; ask {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
-    if scene.body is not None or scene.features:
+    if model != "solid" and (scene.body is not None or scene.features):
         what = "a part from a file" if scene.body is not None else scene.features[0].name
         raise SolidgearError(
-            f"{what}: derivatives are for shafts of segments; features and [body] have none"
+            f"{what}: derivatives by the {model} model are for shafts of segments; the solid model "
+            "has those by springs, masses and materials"
         )
 
 
