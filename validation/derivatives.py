@@ -5,7 +5,8 @@
 
 All numbers of a file are changed up and down at once, along random directions, and the shaft is built
 on the mesh that has moved with it (what is compared is exact on any mesh; light ones do). Two
-differences, of a step and of half of it, leave an error of fourth order (Richardson). Told is the largest error of a change, in the strongest of its parts, and what differences on a moved mesh cannot tell: surfaces that part in two, seats that slide on it.
+differences, of a step and of half of it, leave an error of fourth order (Richardson). Told is the largest error of a change, in the strongest of its parts, and what differences on a moved mesh
+cannot tell: surfaces that part in two, seats that slide on it, entries that go one way only.
 """
 
 from __future__ import annotations
@@ -175,9 +176,9 @@ def compared(seed: int, model: str, folder: Path) -> tuple[list[tuple[float, str
     for keys in numbers(tables, None):
         if label_of(keys, tables) in found.without:
             continue
-        low, high, step, _ = around(scene, tables, keys, str(file))
-        if mesh.velocity(low, high, step)[1]:
-            told[keys] = step
+        sides = around(scene, tables, keys, str(file))
+        if not sides.side and mesh.velocity(sides.low, sides.high, sides.step)[1]:
+            told[keys] = sides.step
         else:
             untold += 1
     errors: list[tuple[float, str]] = []

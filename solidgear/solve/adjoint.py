@@ -155,7 +155,9 @@ def _loaded(body: Body, supports: Supports, here: np.ndarray, load: Sequence[flo
         own = list(block.components)
         original, signs = block.mirror or (index, (1.0,) * len(own))
         pushed = np.tile(signs, len(body.ports)) * forces[body.rows(block)]
-        u = flex.fields[original] @ pushed + block.rigid @ solved[r:][own]
+        u = block.rigid @ solved[r:][own]
+        if block.size > len(own):  # else all of it is rigid, and what bends is rounding
+            u = u + flex.fields[original] @ pushed
         if u.any():
             vectors[index] = u
     return State(vectors, forces, motions)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -62,34 +63,58 @@ def _is_number(keys: Keys, tables: Tables) -> bool:
     return bool(in_si(value)) or (in_si(value) == 0.0 and PLACES.intersection(keys[-2:]) != set())
 
 
-def around(scene: Scene, tables: Tables, keys: Keys, where: str):
-    """The scene with an entry a little smaller and a little larger, the step in SI and the entry in
-    SI.
+@dataclass(frozen=True)
+class Around:
+    """The scene with an entry a little smaller and a little larger.
+
+    Attributes
+    ----------
+    low, high : Scene
+        One of them the scene itself where the file allows no number on that side.
+    step : float
+        Between them, SI.
+    at : float
+        The entry, SI.
+    side : {'', 'larger', 'smaller'}
+        The only way that the entry may go.
+    """
+
+    low: Scene
+    high: Scene
+    step: float
+    at: float
+    side: str = ""
+
+
+def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:
+    """The scene on both sides of an entry.
 
     Raises
     ------
-    SolidgearError
-        Where the file allows no other number on one side, or on both.
+    SceneError
+        Where the file allows no other number on either side.
     """
     written = entry(keys, tables)
     number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
     one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
     at = float(in_si(written) or 0.0)
     step = OF_PLACES * scene.length if PLACES.intersection(keys[-2:]) else STEP * abs(at)
-    sides: list[Scene] = []
-    refused: list[SceneError] = []
+    sides: list[Scene | None] = []
     for sign in (-1, 1):
         try:
-            side = _in_place(scene, tables, keys, at + sign * step)
+            other = _in_place(scene, tables, keys, at + sign * step)
             text = _text(float(number) + sign * step / one, unit)
-            sides.append(side or _held(put(tables, keys, text), scene, where))
+            sides.append(other or _held(put(tables, keys, text), scene, where))
         except SceneError as error:
-            refused.append(error)
-    if len(refused) == 2:
-        raise refused[0]
-    if refused:
-        raise SolidgearError("the scene holds to one side of it alone")
-    return sides[0], sides[1], 2 * step, at
+            sides.append(None)
+            refused = error
+    low, high = sides
+    if low is None and high is None:
+        raise refused
+    if low is not None and high is not None:
+        return Around(low, high, 2 * step, at)
+    side = "larger" if low is None else "smaller"
+    return Around(low or scene, high or scene, step, at, side)
 
 
 def _text(value: float, unit: str) -> str | float:

@@ -53,6 +53,8 @@ class Derivative:
         Relative change of the number over that of the entry.
     apart : float or None
         Distance of the elasticity from that on a coarser mesh.
+    side : {'', 'larger', 'smaller'}
+        The only way that the entry may go, and that the derivative is for.
     """
 
     path: str
@@ -62,6 +64,7 @@ class Derivative:
     by: float
     elasticity: float
     apart: float | None = None
+    side: str = ""
 
     @property
     def by_unit(self) -> float:
@@ -145,6 +148,7 @@ class Sensitivities:
                             "derivative": d.by,
                             "elasticity": d.elasticity,
                             "from_coarser_mesh": d.apart,
+                            "one_sided": d.side,
                         }
                         for d in one.derivatives
                     ],
@@ -233,17 +237,19 @@ def sensitivities(
     for keys in moves:
         path = label_of(keys, tables)
         try:
-            low, high, step, at = around(scene, tables, keys, where)
-            fine, *rest = [d.by(low, high, step) for d in found]
+            sides = around(scene, tables, keys, where)
+            fine, *rest = [d.by(sides.low, sides.high, sides.step) for d in found]
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
-        text = str(entry(keys, tables))
+        at, text = sides.at, str(entry(keys, tables))
         unit = unit_of(text)
         for k, value in enumerate(found[0].values):
             scale = at / value
             apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
-            rows[k].append(Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart))
+            rows[k].append(
+                Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart, sides.side)
+            )
     first = found[0]
     given = [
         OfNumber(str(q), v, q.unit, pair, _ranked(r))
@@ -329,6 +335,10 @@ def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator
     pairs = [one.name for one in of if one.pair]
     if pairs:
         yield f"{listed(pairs)}: derivative of the mean of the pair."
+    for side in ("larger", "smaller"):
+        paths = sorted(d.path for d in of[0].derivatives if d.side == side)
+        if paths:
+            yield f"One-sided, for {side} entries, as the file allows no others: {listed(paths)}."
     if len(levels) > 1:
         mesh = ", ".join(f"{key} {value}" for key, value in levels[1].items())
         yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."
