@@ -18,9 +18,11 @@ from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, align
+from solidgear.studies.measured.computed import computed_up_to
 from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
 from solidgear.studies.measured.identify import identify
+from solidgear.studies.measured.sprung import Sprung
 from solidgear.studies.sensitivity.derivatives import Derivatives
 
 ROD = """
@@ -196,6 +198,21 @@ def test_derivatives_are_those_of_solutions_on_either_side():
         # of second order in the step
         assert own == pytest.approx(np.log(high[3] / low[3]) / (2 * step), abs=1e-6), path
     assert len(found) >= 5
+
+
+def test_a_body_that_is_not_solved_again_knows_its_frequencies_on_other_springs():
+    scene = sg.load(SHAFT)
+    before = computed_up_to(scene, 3000.0, 1e-2)
+    other = scene.with_bearing_scale(1.3)
+    hertz, motions = Sprung(before).at(as_supports(other))
+    there = sg.modes(before.body, other, n=30)
+    solved = {str(m.name): m.frequency_hz for m in there.modes}
+    moved = [abs(solved[str(m.name)] / m.frequency_hz - 1) for m in before.modes]
+    # the modes that were solved and static deflections span those nearby: to a hundredth of what
+    # the springs move
+    for mode, own in zip(before.modes, hertz):
+        assert own == pytest.approx(solved[str(mode.name)], rel=1e-2 * max(moved)), mode.name
+    assert max(moved) > 0.02 and motions.any()
 
 
 def test_a_modulus_is_found_and_its_deviation_is_that_of_the_data(rod):

@@ -34,7 +34,9 @@ class Sprung:
                 continue
             original = block.mirror[0] if block.mirror else index
             own = [shape[index][:, None] for shape in shapes if index in shape]
-            spans = np.hstack([*own, fields[original], block.rigid])
+            # which bodies that are not of revolution do not keep
+            static = fields.get(original, block.rigid)
+            spans = np.hstack([*own, static, block.rigid])
             spans = spans / np.sqrt(np.einsum("nk,nk->k", spans, block.mass @ spans))
             size, turn = np.linalg.eigh(spans.T @ (block.mass @ spans))
             kept = size > LEAST * size[-1]

@@ -16,7 +16,7 @@ from solidgear.ladder import build
 from solidgear.models.beam.derivative import BeamAdjoint
 from solidgear.models.harmonic.derivative import HarmonicAdjoint
 from solidgear.models.harmonic.motion import Motion
-from solidgear.scene import Scene
+from solidgear.scene import STEEL, Scene
 from solidgear.scene.coned import coned
 from solidgear.solve.adjoint import Form, of_bodies, of_supports
 from solidgear.studies.sweep.bench import surface
@@ -105,7 +105,5 @@ def _springs(scene: Scene) -> tuple:
 
 def _shape(scene: Scene) -> Hashable:
     """All that a mesh is made of: the shaft but for its materials."""
-    bare = scene.with_changes(
-        segments=[one.with_changes(material=scene.material) for one in scene.segments]
-    )
+    bare = scene.with_changes(segments=[one.with_changes(material=STEEL) for one in scene.segments])
     return surface(bare)

@@ -27,6 +27,8 @@ from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers, unit_of
 from solidgear.studies.sweep.entries import in_si
 
+#: what is asked for
+USUAL = ("bending 1", "C_zz")
 #: models that have derivatives
 MODELS = ("harmonic", "timoshenko", "euler", "solid")
 #: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
@@ -183,7 +185,7 @@ def sensitivities(
     file : str or path
         A scene file (TOML).
     model : {'harmonic', 'timoshenko', 'euler', 'solid'}
-        The solid has derivatives by springs, masses and materials alone.
+        The solid has derivatives of modes by springs, masses and materials alone.
     of : sequence of str, optional
         Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
         and the compliance ``C_zz``.
@@ -222,7 +224,10 @@ def sensitivities(
     where = os.fspath(file)
     scene, tables = load(where), parse(where)
     _supported(scene, model)
-    asked = [Quantity(name) for name in of or ("bending 1", "C_zz")]
+    asked = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
+    if model == "solid" and not all(one.is_frequency for one in asked):
+        static = next(one for one in asked if not one.is_frequency)
+        raise SolidgearError(f"derivatives of {static} are for bodies of revolution; ask for modes")
     moves = [*numbers(tables, by)]
     levels: list[dict[str, Any]] = [{}]
     if coarser and model != "solid":
