@@ -11,15 +11,19 @@ import pytest
 from typer.testing import CliRunner
 
 import solidgear as sg
+from solidgear.body import as_supports
 from solidgear.cli.app import app
 from solidgear.scene.paths import changed, keys_of
 from solidgear.scene.toml_file import parse
+from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, align
+from solidgear.studies.measured.computed import computed_up_to
 from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
-from solidgear.studies.measured.derivatives import log_derivatives
 from solidgear.studies.measured.identify import identify
+from solidgear.studies.measured.sprung import Sprung
+from solidgear.studies.sensitivity.derivatives import Derivatives
 
 ROD = """
 material = { E = "200 GPa", nu = 0.3, density = "7850 kg/m^3" }
@@ -175,31 +179,40 @@ def test_a_rod_is_held_against_the_theory_of_rods(rod):
 def test_derivatives_are_those_of_solutions_on_either_side():
     tables, step = parse(SHAFT), 1e-3
 
-    def at(path, value):
-        keys = keys_of(path, tables)
+    def solved(path, value):
+        scene = scene_of(changed(tables, keys_of(path, tables), value), SHAFT)
+        body = sg.build(scene, "harmonic", order=3)
+        found = [m for m in sg.modes(body, scene, n=8).modes if m.frequency_hz > 0]
+        return scene, body, found, np.array([m.frequency_hz for m in found])
 
-        def moved(x):
-            scene = scene_of(changed(tables, keys, value * math.exp(x)), SHAFT)
-            return scene, sg.build(scene, "harmonic", order=3)
-
-        return moved
-
-    def hertz(pair):
-        found = sg.modes(pair[1], pair[0], n=8)
-        return np.array([m.frequency_hz for m in found.modes if m.frequency_hz > 0])
-
-    entries = {"material.nu": 0.3, "material.E": 207e9, "bearing.A.stiffness.kyy": 2e8}
-    scene, body = at("material.nu", 0.3)(0.0)
-    modes = [m for m in sg.modes(body, scene, n=8).modes if m.frequency_hz > 0]
-    for path, value in entries.items():
-        make = at(path, value)
-        own = log_derivatives(
-            [m for m in sg.modes(*make(0.0)[::-1], n=8).modes if m.frequency_hz > 0], make
-        )
-        differences = np.log(hertz(make(step)) / hertz(make(-step))) / (2 * step)
+    scene, body, found, hertz = solved("material.nu", 0.3)
+    forms = [of_mode(body, as_supports(scene), mode) for mode in found]
+    by = Derivatives(scene, body, forms, "harmonic", {"order": 3}).by
+    for path, value in {
+        "material.nu": 0.3,
+        "material.E": 207e9,
+        "bearing.A.stiffness.kyy": 2e8,
+    }.items():
+        low, high = (solved(path, value * math.exp(x)) for x in (-step, step))
+        own = by(low[0], high[0], 2 * step) / hertz
         # of second order in the step
-        assert own == pytest.approx(differences, abs=1e-6), path
-    assert len(modes) >= 5
+        assert own == pytest.approx(np.log(high[3] / low[3]) / (2 * step), abs=1e-6), path
+    assert len(found) >= 5
+
+
+def test_a_body_that_is_not_solved_again_knows_its_frequencies_on_other_springs():
+    scene = sg.load(SHAFT)
+    before = computed_up_to(scene, 3000.0, 1e-2)
+    other = scene.with_bearing_scale(1.3)
+    hertz, motions = Sprung(before).at(as_supports(other))
+    there = sg.modes(before.body, other, n=30)
+    solved = {str(m.name): m.frequency_hz for m in there.modes}
+    moved = [abs(solved[str(m.name)] / m.frequency_hz - 1) for m in before.modes]
+    # the modes that were solved and static deflections span those nearby: to a hundredth of what
+    # the springs move
+    for mode, own in zip(before.modes, hertz):
+        assert own == pytest.approx(solved[str(mode.name)], rel=1e-2 * max(moved)), mode.name
+    assert max(moved) > 0.02 and motions.any()
 
 
 def test_a_modulus_is_found_and_its_deviation_is_that_of_the_data(rod):

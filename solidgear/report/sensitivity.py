@@ -78,9 +78,21 @@ def lines(found: Any) -> Table:
         "derivative",
         "elasticity",
         "apart",
+        "one-sided",
     )
     rows = [
-        (one.name, one.value, one.unit, d.path, d.written, d.at, d.by, d.elasticity, d.apart)
+        (
+            one.name,
+            one.value,
+            one.unit,
+            d.path,
+            d.written,
+            d.at,
+            d.by,
+            d.elasticity,
+            d.apart,
+            d.side,
+        )
         for one in found.of
         for d in one.derivatives
     ]

@@ -67,6 +67,16 @@ class _Shown(ModelMetaclass):
         return sorted(name for name in names if "pydantic" not in name)
 
 
+class _NoSuch(AttributeError):
+    """Its hint is looked for when it is told: most who ask for an attribute take another answer."""
+
+    def __str__(self) -> str:
+        model, name = self.args
+        known = {one: None for one in dir(model) if not one.startswith("_")}
+        meant = did_you_mean(near(f"{name}s", known) or near(name, known))
+        return f"a {type(model).__name__} has no {name!r}{meant}"
+
+
 class Model(BaseModel, metaclass=_Shown):
     """Frozen and validated; a refusal names every problem in a sentence of its own.
 
@@ -129,9 +139,7 @@ class Model(BaseModel, metaclass=_Shown):
             return getattr(self, type(self)._also[name])
         if name.startswith("_"):
             return super().__getattr__(name)  # type: ignore[misc]
-        known = {one: None for one in dir(self) if not one.startswith("_")}
-        meant = did_you_mean(near(f"{name}s", known) or near(name, known))
-        raise AttributeError(f"a {type(self).__name__} has no {name!r}{meant}")
+        raise _NoSuch(self, name)
 
     @classmethod
     def table_keys(cls) -> dict[str, FieldInfo | None]:
@@ -167,6 +175,13 @@ class Model(BaseModel, metaclass=_Shown):
     ) -> _Self:
         """As `with_changes` of `update`: pydantic's own copy would skip validation."""
         return self.with_changes(**(update or {}))
+
+    def unjudged(self: _Self, **changes: Any) -> _Self:
+        """A copy with fields that are sound by themselves and bear on no other."""
+        out = super().model_copy(update=changes)
+        for name in {*out.__dict__} - {*type(self).model_fields}:  # what was cached
+            del out.__dict__[name]
+        return out
 
 
 @dataclass(frozen=True)

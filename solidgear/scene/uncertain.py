@@ -89,7 +89,7 @@ def stated(
         for path, text in {**texts, **given}.items()
     ]
     problems.tell()
-    return scene.with_changes(uncertain=tuple(found)) if found else scene
+    return scene.unjudged(uncertain=tuple(found)) if found else scene
 
 
 def scaled(scene: Scene, path: str, factor: float) -> Scene:

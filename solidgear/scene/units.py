@@ -161,44 +161,42 @@ _PLACE = re.compile(r"(?:[^.\d][^.]*\.)?(?:start|middle|end|mid_face)")
 
 def _read_text(text: str, dimension: str) -> float:
     si, example, powers = DIMENSIONS[dimension]
-    value, name = show(text), dimension.replace("_", " ")
+
+    def wrong(reason: str) -> SceneError:
+        return SceneError(reason, value=show(text))
+
     if len(text) > LONGEST:  # before any pattern looks at it: their time grows with the square
-        raise SceneError(
+        raise wrong(
             f"an unknown unit, or no quantity at all: {len(text)} letters; "
-            f'write for example "{example}"',
-            value=value,
+            f'write for example "{example}"'
         )
     if _COMMA.match(text):
-        raise SceneError(
-            f'has a comma: decimals take a point, and thousands no mark, as in "{example}"',
-            value=value,
-        )
+        raise wrong(f'has a comma: decimals take a point, and thousands no mark, as in "{example}"')
     match = _TEXT.fullmatch(text)
     if match is None and dimension == "length" and _PLACE.fullmatch(text):
-        raise SceneError(
+        raise wrong(
             "names a place, where a number with a unit belongs: write position = "
-            f'"0 mm" and from = {value}',
-            value=value,
+            f'"0 mm" and from = {show(text)}'
         )
     if match is None:
-        raise SceneError(f'must be a number with a unit, such as "{example}"', value=value)
+        raise wrong(f'must be a number with a unit, such as "{example}"')
     number, unit = float(match["number"]), match["unit"]
     if not unit:
         if si:
-            raise SceneError(
+            raise wrong(
                 f"has no unit: write a plain number (without quotes) for SI ({si}), "
-                f'or add a unit as in "{example}"',
-                value=value,
+                f'or add a unit as in "{example}"'
             )
         return number
     known = _si_factor(unit)
     if known is None:
-        raise SceneError(f'unknown unit {show(unit)}; write for example "{example}"', value=value)
+        raise wrong(f'unknown unit {show(unit)}; write for example "{example}"')
     factor, radians, dimensionality = known
     own = _si_factor(si) if si else None
     if dimensionality != (own[2] if own else ()) or radians not in powers:
-        wrong = f"not a unit of {name}" if si else "a unit, but this is a plain ratio"
-        raise SceneError(f'{show(unit)} is {wrong}; write for example "{example}"', value=value)
+        what = dimension.replace("_", " ")
+        kind = f"not a unit of {what}" if si else "a unit, but this is a plain ratio"
+        raise wrong(f'{show(unit)} is {kind}; write for example "{example}"')
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
     # as 0.208
     return (

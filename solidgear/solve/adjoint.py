@@ -97,6 +97,41 @@ def of_mode(body: Body, supports: Supports, mode: Mode) -> Form:
     return Form(tuple((one, one) for one in states), each)
 
 
+def of_bodies(form: Form, low: Body, high: Body) -> float:
+    """Change of a number from one body to another with the same unknowns, at the states of one
+    between.
+
+    Raises
+    ------
+    SolidgearError
+        If the mesh changes.
+    """
+    total = 0.0
+    for a, b in form.pairs:
+        for index in a.vectors.keys() & b.vectors.keys():
+            one, two = low.block(index), high.block(index)
+            u, v = a.vectors[index], b.vectors[index]
+            if not one.size == two.size == len(u):
+                raise SolidgearError("the mesh changes with it")
+            total -= u @ (two.stiffness @ v - one.stiffness @ v)
+            if a.eigenvalue:
+                total += a.eigenvalue * (u @ (two.mass @ v - one.mass @ v))
+            if one.components:
+                rows = low.rows(one)
+                total += a.forces[rows] @ (two.ports @ v - one.ports @ v)
+                total += b.forces[rows] @ (two.ports @ u - one.ports @ u)
+    return form.scale * float(total)
+
+
+def of_supports(form: Form, there: np.ndarray, low: Supports, high: Supports) -> float:
+    """Change of a number from springs and masses to others, on ports at the rows `there`."""
+    stiff, heavy = high.stiffness - low.stiffness, high.masses - low.masses
+    total = 0.0
+    for a, b in form.pairs:
+        total -= a.motions[there] @ (stiff - a.eigenvalue * heavy) @ b.motions[there]
+    return form.scale * float(total)
+
+
 def _loaded(body: Body, supports: Supports, here: np.ndarray, load: Sequence[float]) -> State:
     """State under a load on a port: forces of bearings and the rigid motion from equilibrium."""
     flex, there, root = flexibility(body), supports.rows(body), supports.root
@@ -120,7 +155,9 @@ def _loaded(body: Body, supports: Supports, here: np.ndarray, load: Sequence[flo
         own = list(block.components)
         original, signs = block.mirror or (index, (1.0,) * len(own))
         pushed = np.tile(signs, len(body.ports)) * forces[body.rows(block)]
-        u = flex.fields[original] @ pushed + block.rigid @ solved[r:][own]
+        u = block.rigid @ solved[r:][own]
+        if block.size > len(own):  # else all of it is rigid, and what bends is rounding
+            u = u + flex.fields[original] @ pushed
         if u.any():
             vectors[index] = u
     return State(vectors, forces, motions)

@@ -17,7 +17,13 @@ from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
 from solidgear.models.beam.drawing import BeamLine
-from solidgear.models.beam.element import Fields, Section, bending_matrices, rod_matrices
+from solidgear.models.beam.element import (
+    Elements,
+    Section,
+    bending_matrices,
+    rod_matrices,
+    surface,
+)
 from solidgear.models.beam.shoulder import Hinge, hinges
 from solidgear.models.options import BEAM_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
@@ -115,52 +121,22 @@ def on_nodes(
     shoulder: bool,
 ) -> Body:
     """The same with given nodes (m) and stations with their attachments."""
-    n, owner = len(nodes), owners(scene, nodes)
+    n = len(nodes)
     if not shear:
         _long_enough(nodes)
-    # Timoshenko elements carry internal unknowns, after the nodal ones; only rotary inertia drives
-    # the second.
-    inner = 1 + rotary_inertia if shear and mass == "consistent" else 0
-    size = {"bending": 2 * n + inner * (n - 1), "axial": n, "torsion": n}
-    entries: dict[str, tuple[list, list, list, list]] = {name: ([], [], [], []) for name in size}
-    fields: list[Fields] = []
-    soft = _softened(nodes, hinges(scene.segments)) if shoulder else {}
-    made: dict[tuple[float, ...], tuple] = {}
-    for e, segment in enumerate(owner):
-        left, right = nodes[e], nodes[e + 1]
-        # pieces of a cylinder that are as long as each other but for rounding are one
-        alike: tuple[float, ...] = (id(segment), round((right - left) / scene.length, 12))
-        if e in soft or segment.outer0 != segment.outer1 or segment.inner0 != segment.inner1:
-            alike = (*alike, e)
-        if alike not in made:
-            section = Section(segment, left, right, head, kappa)
-            for step in soft.get(e, ()):
-                section.soften(step.bend, step.stretch, step.twist)
-            made[alike] = (
-                bending_matrices(section, shear, rotary_inertia, mass),
-                rod_matrices(section, section.stretch, section.mass, mass),
-                rod_matrices(section, section.twist, section.polar, mass),
-            )
-        bend, stretch, twist = made[alike]
-        ends = np.array([e, e + 1])
-        both = np.concatenate([np.arange(2 * e, 2 * e + 4), 2 * n + inner * e + np.arange(inner)])
-        fields.append(
-            Fields(segment, left, right, (both, bend[2]), (ends, stretch[2]), (ends, twist[2]))
-        )
-        parts = {
-            "bending": (*bend[:2], both),
-            "axial": (*stretch[:2], ends),
-            "torsion": (*twist[:2], ends),
-        }
-        for name, (ke, me, at) in parts.items():
-            row, column = np.repeat(at, len(at)), np.tile(at, len(at))
-            for store, values in zip(entries[name], (row, column, ke.ravel(), me.ravel())):
-                store.append(values)
+    elements = Elements.of(scene.segments, nodes)
+    section = Section(elements, head, kappa)
+    if shoulder:
+        section.soften(*softening(nodes, hinges(scene.segments)))
+    made = matrices(section, shear, rotary_inertia, mass)
+    at = unknowns(made, n)
+    size = {name: int(places.max()) + 1 for name, places in at.items()}
     k, m = {}, {}
-    for name, lists in entries.items():
-        row, col, stiff, heavy = (np.concatenate(p) for p in lists)
-        k[name] = sp.csr_matrix((stiff, (row, col)), shape=(size[name],) * 2)
-        m[name] = sp.csr_matrix((heavy, (row, col)), shape=(size[name],) * 2)
+    for name, (stiff, heavy, _) in made.items():
+        places = np.broadcast_to(at[name][:, :, None], stiff.shape)
+        both = (places.ravel(), places.transpose(0, 2, 1).ravel())
+        k[name] = sp.csr_matrix((stiff.ravel(), both), shape=(size[name],) * 2)
+        m[name] = sp.csr_matrix((heavy.ravel(), both), shape=(size[name],) * 2)
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
     one, zero = np.ones(n), np.zeros(n)
     lift = np.column_stack(
@@ -168,10 +144,9 @@ def on_nodes(
     )
     lift = np.vstack([lift, np.zeros((size["bending"] - 2 * n, 2))])
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
-    rows = [_port_rows(station, attachment, nodes, fields, size) for station, attachment in wanted]
-    stacked = {}
-    for name in size:
-        stacked[name] = sp.csr_matrix(np.vstack([r[name] for r in rows]))
+    shape = {name: part[2] for name, part in made.items()}
+    rows = [port_rows(station, how, elements, shape, at, size) for station, how in wanted]
+    stacked = {name: sp.csr_matrix(np.vstack([r[name] for r in rows])) for name in size}
     rigid = [(i, s) for i, (s, a) in enumerate(wanted) if a == "rigid"]
 
     def tied(block: Block, per_node: int) -> Block:
@@ -200,6 +175,7 @@ def on_nodes(
         "rotary_inertia": rotary_inertia,
         "head": head,
         "mass": mass,
+        "kappa": kappa,
         "shoulder": shoulder,
     }
     return Body(
@@ -232,20 +208,39 @@ def mesh(scene, elements: int | None, wanted=()):
     return np.concatenate(filled)
 
 
-def owners(scene, nodes) -> list:
-    """The segment of every element."""
-    middle = (nodes[1:] + nodes[:-1]) / 2
-    ends = np.array([s.y1 for s in scene.segments])
-    return [scene.segments[i] for i in np.minimum(np.searchsorted(ends, middle), len(ends) - 1)]
+def matrices(section: Section, shear: bool, rotary_inertia: bool, mass: str):
+    """Stiffness, mass and fields of all elements, by block."""
+    return {
+        "bending": bending_matrices(section, shear, rotary_inertia, mass),
+        "axial": rod_matrices(section, section.stretch, section.mass, mass),
+        "torsion": rod_matrices(section, section.twist, section.polar, mass),
+    }
 
 
-def _softened(nodes, steps: tuple[Hinge, ...]) -> dict[int, list[Hinge]]:
-    """Shoulders by the element that they soften: the first one of the thick part."""
-    out: dict[int, list[Hinge]] = {}
+def unknowns(made, n: int) -> dict[str, np.ndarray]:
+    """(e, k) unknowns of every element of a beam of n nodes, by block; internal ones, that Timoshenko
+    elements carry, after those of the nodes.
+    """
+    ends = np.arange(n - 1)[:, None] + np.arange(2)
+    inner = made["bending"][0].shape[-1] - 4
+    inside = 2 * n + np.arange((n - 1) * inner).reshape(n - 1, inner)
+    both = np.hstack([2 * ends[:, :1] + np.arange(4), inside])
+    return {"bending": both, "axial": ends, "torsion": ends}
+
+
+def softening(nodes, steps: tuple[Hinge, ...]) -> np.ndarray:
+    """(3, e) compliances of shoulders in bending, stretch and twist, each on the element that it
+    softens: the first one of the thick part.
+    """
+    out = np.zeros((3, len(nodes) - 1))
     for step in steps:
-        at = int(np.argmin(abs(nodes - step.y)))
-        out.setdefault(at if step.ahead else at - 1, []).append(step)
+        out[:, softened(nodes, step)] += step.bend, step.stretch, step.twist
     return out
+
+
+def softened(nodes, step: Hinge) -> int:
+    """The element that a shoulder softens."""
+    return int(np.argmin(abs(nodes - step.y))) - (not step.ahead)
 
 
 def _long_enough(nodes):
@@ -268,42 +263,49 @@ def _long_enough(nodes):
         )
 
 
-def _port_rows(
-    station, attachment: str, nodes, fields: list[Fields], size: dict[str, int]
+def port_rows(
+    station, attachment: str, e: Elements, shape, at, size: dict[str, int]
 ) -> dict[str, np.ndarray]:
     """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where
     the tie is rigid.
     """
-    out: dict[str, np.ndarray] = {
-        name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()
-    }
+    out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
     if attachment == "section":
-        at = int(np.argmin(abs(nodes - station.y)))
-        out["bending"][[0, 1], [2 * at, 2 * at + 1]] = 1.0
-        out["axial"][0, at] = out["torsion"][0, at] = 1.0
-    if attachment != "average":
-        return out
-    gram, area, polar = np.zeros((2, 2)), 0.0, 0.0
-    for field in fields:
-        lo, hi = max(field.left, station.lo), min(field.right, station.hi)
-        if hi <= lo:
-            continue
-        y, r, ds, lagrange = field.part(lo, hi)
-        h, w = y - station.y, 2 * np.pi * r * ds
-        unknowns, shape = field.bend
-        deflection, turn = (lagrange @ part for part in shape)
-        out["bending"][0, unknowns] += w @ deflection
-        out["bending"][1, unknowns] += (w * h) @ deflection + (w * r**2 / 2) @ turn
-        gram += np.array([[w.sum(), w @ h], [w @ h, w @ (h * h + r**2 / 2)]])
-        for name, (held, along), weight in (
-            ("axial", field.stretch, w),
-            ("torsion", field.twist, w * r**2),
-        ):
-            out[name][0, held] += weight @ lagrange @ along
-        area, polar = area + w.sum(), polar + (w * r**2).sum()
-    out["bending"] = np.linalg.solve(gram, out["bending"])
-    out["axial"] /= area
-    out["torsion"] /= polar
+        node = int(np.argmin(abs(np.append(e.left, e.right[-1]) - station.y)))
+        out["bending"][[0, 1], [2 * node, 2 * node + 1]] = 1.0
+        out["axial"][0, node] = out["torsion"][0, node] = 1.0
+    if attachment == "average":
+        under, lo, hi = pieces(e, station)
+        own = {name: part[under] for name, part in shape.items()}
+        for name, (gram, rows) in seat(e.only(under), own, lo, hi, station.y).items():
+            for places, row in zip(at[name][under], rows):
+                out[name][:, places] += row
+            out[name] = np.linalg.solve(gram.sum(axis=0), out[name])
+    return out
+
+
+def pieces(e: Elements, station) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(k,) elements under a seat, and the ends of what is under it of each, m."""
+    lo, hi = np.maximum(e.left, station.lo), np.minimum(e.right, station.hi)
+    under = np.flatnonzero(hi > lo)
+    return under, lo[under], hi[under]
+
+
+def seat(e: Elements, shape, lo, hi, y) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """What each piece of a seat adds to the Gram matrix of the motions of its port, a point at y, and
+    to their rows before they are divided by it, by block.
+    """
+    place, r, ds, lagrange = surface(e, lo, hi)
+    h, w = place - y, 2 * np.pi * r * ds
+    deflection, turn = (lagrange @ shape["bending"][:, k] for k in (0, 1))
+    rows = [w[:, None] @ deflection]
+    rows.append((w * h)[:, None] @ deflection + (w * r**2 / 2)[:, None] @ turn)
+    area, first, second = ((w * f).sum(axis=1) for f in (1.0, h, h * h + r**2 / 2))
+    gram = np.stack([np.stack([area, first], -1), np.stack([first, second], -1)], axis=1)
+    out = {"bending": (gram, np.concatenate(rows, axis=1))}
+    for name, weight in (("axial", w), ("torsion", w * r**2)):
+        total = weight.sum(axis=1)[:, None, None]
+        out[name] = (total, weight[:, None] @ (lagrange @ shape[name]))
     return out
 
 

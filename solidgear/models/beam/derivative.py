@@ -1,73 +1,273 @@
-"""Derivatives of a beam by its shape and material: its matrices with the same elements, moved."""
+"""Derivatives of a beam by its shape and material, with the same elements, moved.
+
+What numbers feel of the nodes, seats and segments is gathered once from the energies of elements and
+then multiplied with the velocities of as many parameters as there are. Derivatives of an element by
+what it is made of are imaginary parts (:mod:`solidgear.models.beam.element`), exact to rounding.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.models.beam.body import on_nodes
+from solidgear.models.beam.body import (
+    matrices,
+    pieces,
+    port_rows,
+    seat,
+    softened,
+    softening,
+    unknowns,
+)
+from solidgear.models.beam.element import MATTER, SHAPE, Elements, Section, owners
+from solidgear.models.beam.shoulder import hinges
 from solidgear.scene.attached import attached_stations
 from solidgear.solve.adjoint import Form
 
-#: what a beam is built with unless told otherwise
-USUAL = {"head": "cone", "mass": "consistent", "kappa": "hutchinson", "shoulder": False}
+#: imaginary step: its square is nothing beside one
+STEP = 1e-30
+SEAT = ("y", "lo", "hi")
+HINGE = ("bend", "stretch", "twist")
 
 
 class BeamAdjoint:
-    """A beam whose nodes follow the ends of segments, rigid seats and sections."""
+    """What numbers of a beam feel, each array (..., forms).
 
-    def __init__(self, scene, body: Body, options: dict[str, Any]):
+    Attributes
+    ----------
+    nodes : (n, f) ndarray
+        By places of nodes, which follow the ends of segments, rigid seats and sections.
+    segments, materials : (s, 6, f) and (s, 3, f) ndarray
+        By :data:`SHAPE` and :data:`MATTER`.
+    seats : (p, 3, f) ndarray
+        By :data:`SEAT`.
+    steps : (k, 3, f) ndarray
+        By compliances of shoulders.
+    velocity : (n,) ndarray
+        Of the nodes, at the last call of :meth:`by`.
+    """
+
+    def __init__(self, scene, body: Body, forms: Sequence[Form]):
         self.scene, self.body = scene, body
-        self.nodes = body.geometry.nodes  # type: ignore[union-attr]
-        shear = body.mesh["element"] == "timoshenko"
-        self.options = {"shear": shear, "rotary_inertia": body.mesh["rotary_inertia"]}
-        self.options |= {key: options.get(key, usual) for key, usual in USUAL.items()}
+        self.places = body.geometry.nodes  # type: ignore[union-attr]
+        self.stations = [*attached_stations(scene.stations)]
+        self.owner = owners(scene.segments, self.places)
+        self.elements = Elements.of(scene.segments, self.places)
+        self.hinges = hinges(scene.segments) if body.mesh["shoulder"] else ()
+        self.soft = softening(self.places, self.hinges)
+        f, s = len(forms), len(scene.segments)
+        self.nodes = np.zeros((len(self.places), f))
+        self.segments, self.materials = np.zeros((s, len(SHAPE), f)), np.zeros((s, len(MATTER), f))
+        self.seats = np.zeros((len(self.stations), len(SEAT), f))
+        self.steps = np.zeros((len(self.hinges), len(HINGE), f))
+        made = self._made(self.elements, self.soft)
+        self.shape = {name: part[2] for name, part in made.items()}
+        self.at = unknowns(made, len(self.places))
+        families = self._families(forms)
+        for family in families:
+            self._tied(family, made)
+        self._gather(families)
 
-    def moved(self, scene) -> Body:
-        """The body of a scene like this one.
+    def _made(self, elements: Elements, soft: np.ndarray):
+        facts = self.body.mesh
+        section = Section(elements, facts["head"], facts["kappa"])
+        if self.hinges:
+            section.soften(*soft)
+        shear = facts["element"] == "timoshenko"
+        return matrices(section, shear, facts["rotary_inertia"], facts["mass"])
+
+    def _families(self, forms: Sequence[Form]) -> list[_Family]:
+        pairs: dict[str, list] = {}
+        for k, form in enumerate(forms):
+            for a, b in form.pairs:
+                for index in a.vectors.keys() & b.vectors.keys():
+                    block = self.body.block(index)
+                    name = block.name.partition("_")[0]
+                    _, signs = block.mirror or (index, (1.0,) * len(block.components))
+                    sides = []
+                    for state in (a, b):
+                        u = state.vectors[index]
+                        u = u if block.expand is None else block.expand @ u
+                        six = (state.forces, state.motions)
+                        own = [
+                            part.reshape(-1, 6)[:, list(block.components)] * signs for part in six
+                        ]
+                        sides.append((u, *own))
+                    pairs.setdefault(name, []).append((k, form.scale, a.eigenvalue, *sides))
+        return [_Family(name, some, len(forms)) for name, some in pairs.items()]
+
+    def _gather(self, families: list[_Family]) -> None:
+        """All elements and seats, once for each of their parts, with an imaginary step in it."""
+        own = [one.name for one in fields(Elements)]
+        names = [*own, *(HINGE if self.hinges else ()), *SEAT]
+        rows, count = len(names), len(self.owner)
+
+        def stepped(values: np.ndarray | float, name: str) -> np.ndarray:
+            """(rows, e) values, of which those of one row take the step."""
+            step = 1j * STEP * (np.array(names) == name)
+            return np.atleast_1d(values) + step[:, None]
+
+        every = Elements(*(stepped(getattr(self.elements, n), n).ravel() for n in own))
+        soft = np.array([stepped(part, n).ravel() for part, n in zip(self.soft, HINGE)])
+        made = {
+            kind: [part.reshape(rows, count, *part.shape[1:]) for part in parts]
+            for kind, parts in self._made(every, soft).items()
+        }
+        felt = np.zeros((rows, count, self.nodes.shape[1]))
+        for family in families:
+            felt += family.energy(made[family.name], self.at[family.name])
+        for p, (station, how) in enumerate(self.stations):
+            if how != "average":
+                continue
+            under, lo, hi = pieces(self.elements, station)
+            begin = stepped(self.elements.left[under], "left")
+            end = stepped(self.elements.right[under], "right")
+            # inside the seat its pieces end where elements do
+            begin[:, 0], end[:, -1] = stepped(lo[0], "lo")[:, 0], stepped(hi[-1], "hi")[:, 0]
+            places = (np.arange(rows)[:, None] * count + under).ravel()
+            shape = {
+                kind: parts[2][:, under].reshape(len(places), *parts[2].shape[2:])
+                for kind, parts in made.items()
+            }
+            y = np.repeat(stepped(station.y, "y"), len(under), axis=0)
+            terms = seat(every.only(places), shape, begin.ravel(), end.ravel(), y)
+            for family in families:
+                gram, row = (t.reshape(rows, len(under), *t.shape[1:]) for t in terms[family.name])
+                more = family.port(p, gram, row, self.at[family.name][under])
+                felt[:, under] += more
+                self.seats[p] += more[-len(SEAT) :].sum(axis=1)
+        for name, one in zip(names, felt):
+            self._felt(name, one)
+
+    def _felt(self, name: str, felt: np.ndarray) -> None:
+        """Add what every element feels of one of its parts to whose part that is."""
+        if name == "left":
+            self.nodes[:-1] += felt
+        elif name == "right":
+            self.nodes[1:] += felt
+        elif name in SHAPE:
+            np.add.at(self.segments[:, SHAPE.index(name)], self.owner, felt)
+        elif name in MATTER:
+            np.add.at(self.materials[:, MATTER.index(name)], self.owner, felt)
+        elif name in HINGE:
+            for k, step in enumerate(self.hinges):
+                self.steps[k, HINGE.index(name)] += felt[softened(self.places, step)]
+
+    def _tied(self, family: _Family, made) -> None:
+        """A rigid seat takes its nodes along as they lie about the port."""
+        if family.name != "bending" or all(how != "rigid" for _, how in self.stations):
+            return
+        stiff, heavy, shape = made["bending"]
+        at = self.at["bending"]
+        size = {name: int(part.max()) + 1 for name, part in self.at.items()}
+        rows = [
+            port_rows(station, how, self.elements, self.shape, self.at, size)["bending"]
+            for station, how in self.stations
+        ]
+        for mine, other in ((0, 1), (1, 0)):
+            u, forces = family.u[mine], family.forces[mine]
+            pull = np.zeros_like(u)
+            local = stiff @ u[at] - family.eigenvalue * (heavy @ u[at])
+            np.add.at(pull, at, local)
+            for row, force in zip(rows, forces.transpose(1, 2, 0)):
+                pull -= row.T @ force
+            for p, (station, how) in enumerate(self.stations):
+                if how != "rigid":
+                    continue
+                tol = 1e-9 * self.places[-1]
+                inside = np.flatnonzero(
+                    (self.places > station.lo - tol) & (self.places < station.hi + tol)
+                )
+                held = -family.scale * pull[2 * inside] * family.motions[other][:, p, 1]
+                self.nodes[inside] += family.sums(held)
+                self.seats[p, 0] -= family.sums(held).sum(axis=0)
+
+    def by(self, low, high, step: float) -> np.ndarray:
+        """(f,) derivatives along the way from one scene to another.
 
         Raises
         ------
         SolidgearError
             If the shaft takes another form, or what lies at one place moves apart.
         """
-        marks: dict[float, float] = {}
+
+        def rate(things, names) -> np.ndarray:
+            one, two = (
+                np.array([[getattr(one, name) for name in names] for one in things(scene)])
+                for scene in (low, high)
+            )
+            if one.shape != two.shape:
+                raise SolidgearError("the shaft takes another form there")
+            return (two - one) / step
+
+        segments = rate(lambda scene: scene.segments, SHAPE)
+        seats = rate(lambda scene: scene.stations, SEAT)
+        matter = rate(lambda scene: [s.material for s in scene.segments], MATTER)
+        out = np.einsum("sk,skf->f", segments, self.segments)
+        out += np.einsum("sk,skf->f", matter, self.materials)
+        out += np.einsum("pk,pkf->f", seats, self.seats)
+        if self.body.mesh["shoulder"]:
+            bends = rate(lambda scene: hinges(scene.segments), HINGE).reshape(-1, len(HINGE))
+            if len(bends) != len(self.hinges):
+                raise SolidgearError("a step opens there, and is another one to either side")
+            out += np.einsum("hk,hkf->f", bends, self.steps)
+        self.velocity = self._along(segments, seats)
+        return out + self.velocity @ self.nodes
+
+    def _along(self, segments: np.ndarray, seats: np.ndarray) -> np.ndarray:
+        """(n,) velocity of the nodes."""
+        marks = {0.0: 0.0} | {s.y1: v[1] for s, v in zip(self.scene.segments, segments)}
         tol = 1e-9 * self.scene.length
-        for old, new in zip(_places(self.scene), _places(scene), strict=True):
-            near = [m for m in marks if abs(m - old[0]) < tol]
-            if not near:
-                marks[old[0]] = new[0]
-            elif abs(marks[near[0]] - new[0]) > tol:
-                raise SolidgearError(f"{old[1]} moves away from where something else stays")
+        for (station, how), rates in zip(self.stations, seats):
+            wanted = {"section": SEAT[:1], "rigid": SEAT[1:], "average": ()}[how]
+            for name in wanted:
+                place, rate = getattr(station, name), rates[SEAT.index(name)]
+                near = next((m for m in marks if abs(m - place) < tol), None)
+                if near is None:
+                    marks[place] = rate
+                elif abs(marks[near] - rate) > 1e-6 * max(1.0, abs(rate)):
+                    raise SolidgearError(
+                        f"{station.name} moves away from where something else stays"
+                    )
         at = np.array(sorted(marks))
-        nodes = np.interp(self.nodes, at, [marks[m] for m in at])
-        return on_nodes(scene, nodes, [*attached_stations(scene.stations)], **self.options)
+        return np.interp(self.places, at, [marks[m] for m in at])
 
 
-def change(form: Form, low: Body, high: Body) -> float:
-    """Change of a number from one body to the other, at the states of one between."""
-    total = 0.0
-    for a, b in form.pairs:
-        for index in a.vectors.keys() & b.vectors.keys():
-            one, two = low.blocks[index], high.blocks[index]
-            u, v = a.vectors[index], b.vectors[index]
-            total -= u @ (two.stiffness @ v - one.stiffness @ v)
-            total += a.eigenvalue * (u @ (two.mass @ v - one.mass @ v))
-            rows = low.rows(one)
-            total += a.forces[rows] @ (two.ports @ v - one.ports @ v)
-            total += b.forces[rows] @ (two.ports @ u - one.ports @ u)
-    return form.scale * float(total)
+class _Family:
+    """Pairs of states in blocks of one kind."""
 
+    def __init__(self, name: str, pairs: list, forms: int):
+        self.name = name
+        form, scale, eigenvalue, first, second = zip(*pairs)
+        self.scale, self.eigenvalue = np.array(scale), np.array(eigenvalue)
+        self.owner = np.eye(forms)[list(form)]
+        sides = [[np.array(part) for part in zip(*side)] for side in (first, second)]
+        #: (n, pairs) unknowns, (pairs, p, c) forces and motions of ports, of both states
+        self.u = [side[0].T for side in sides]
+        self.forces, self.motions = [side[1] for side in sides], [side[2] for side in sides]
 
-def _places(scene) -> list[tuple[float, str]]:
-    """Places that nodes follow, and whose they are."""
-    out = [(0.0, "the shaft")] + [(s.y1, s.name) for s in scene.segments]
-    for station, attachment in attached_stations(scene.stations):
-        if attachment == "section":
-            out.append((station.y, station.name))
-        elif attachment == "rigid":
-            out += [(station.lo, station.name), (station.hi, station.name)]
-    return out
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """(..., forms) sums over the pairs of each."""
+        return values @ self.owner
+
+    def energy(self, made, at: np.ndarray) -> np.ndarray:
+        """(..., e, forms) derivatives from elements with an imaginary step in them."""
+        stiff, heavy = (part.imag / STEP for part in made[:2])
+        one, two = (u[at] for u in self.u)
+        each = (one * (self.eigenvalue * (heavy @ two) - stiff @ two)).sum(axis=-2)
+        return self.sums(self.scale * each)
+
+    def port(self, p: int, gram: np.ndarray, rows: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """(..., k, forms) derivatives from the pieces of a seat with an imaginary step in them."""
+        whole = gram[0].sum(axis=0).real
+        gram, rows = gram.imag / STEP, rows.imag / STEP
+        total = np.zeros((*rows.shape[:2], len(self.scale)))
+        for mine, other in ((0, 1), (1, 0)):
+            force = np.linalg.solve(whole, self.forces[mine][:, p].T)
+            moved = rows @ self.u[other][at] - gram @ self.motions[other][:, p].T
+            total += (moved * force).sum(axis=-2)
+        return self.sums(self.scale * total)

@@ -4,30 +4,40 @@ One element serves both theories and any taper. Its stiffness is the inverse of 
 of the element clamped at one end, integrated over the true section; its mass is consistent with the
 displacement field of that static problem. A uniform element is the textbook one. Nothing here is
 shared with the solid builders: that independence is what makes a comparison worth having.
+
+All elements of a beam are made at once. What they are made of may be complex, so that a derivative
+is an imaginary part (Squire and Trapp 1998, SIAM Review 40, 110), without a difference.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.linalg as sla
 
 if TYPE_CHECKING:
     from solidgear.scene import Segment
 
 _GAUSS = np.polynomial.legendre.leggauss(8)
+_POWERS = np.arange(len(_GAUSS[0]))
+#: coefficients of the polynomial through values at the Gauss points
+_THROUGH = np.linalg.inv(np.vander(_GAUSS[0], increasing=True))
+#: integrates values at the Gauss points of (-1, 1) from its left end to each of them
+_INTEGRAL = np.column_stack(
+    [(_GAUSS[0] ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for j in _POWERS]
+) @ _THROUGH  # fmt: skip
 
 
-def shear_coefficient(nu: float, outer, inner):
+def shear_coefficient(nu, outer, inner):
     """Timoshenko shear coefficient of a circular tube (Hutchinson 2001, J. Appl. Mech. 68, eq. 49).
 
     For a solid circle it is ``6 (1+nu)^2 / (7 + 12 nu + 4 nu^2)``.
 
     Parameters
     ----------
-    nu : float
+    nu : float or ndarray
         Poisson's ratio.
     outer, inner : float or ndarray
         Radii, m.
@@ -43,8 +53,7 @@ def shear_coefficient(nu: float, outer, inner):
     >>> round(float(shear_coefficient(0.3, outer=0.045, inner=0.0449)), 3)  # a thin tube
     0.565
     """
-    a, b = np.asarray(outer, float), np.asarray(inner, float)
-    a2, b2 = a * a, b * b
+    a2, b2 = np.square(outer), np.square(inner)
     top = 6 * (1 + nu) ** 2 * (a2 + b2) ** 2
     bottom = (
         7 * a2**2
@@ -56,15 +65,55 @@ def shear_coefficient(nu: float, outer, inner):
     return top / bottom
 
 
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """What the elements of a beam are made of, each (e,): where one begins and ends, and the two ends,
+    radii (m) and material (SI) of the segment that it lies in.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    y0: np.ndarray
+    y1: np.ndarray
+    outer0: np.ndarray
+    outer1: np.ndarray
+    inner0: np.ndarray
+    inner1: np.ndarray
+    E: np.ndarray
+    nu: np.ndarray
+    density: np.ndarray
+
+    @classmethod
+    def of(cls, segments: Sequence[Segment], nodes: np.ndarray) -> Elements:
+        """Those between nodes, m."""
+        owner = owners(segments, nodes)
+        shapes = np.array([[getattr(s, name) for name in SHAPE] for s in segments])[owner].T
+        matter = np.array([[getattr(s.material, name) for name in MATTER] for s in segments])
+        return cls(nodes[:-1], nodes[1:], *shapes, *matter[owner].T)
+
+    def only(self, some: np.ndarray) -> Elements:
+        """Some of them."""
+        return Elements(*(getattr(self, one.name)[some] for one in fields(self)))
+
+
+#: fields of a segment and of its material that make an element
+SHAPE = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
+MATTER = ("E", "nu", "density")
+
+
+def owners(segments: Sequence[Segment], nodes: np.ndarray) -> np.ndarray:
+    """(e,) place of the segment of every element."""
+    middle = (nodes[1:] + nodes[:-1]) / 2
+    ends = np.array([s.y1 for s in segments])
+    return np.minimum(np.searchsorted(ends, middle), len(ends) - 1)
+
+
 class Section:
-    """Section properties of one element at its Gauss points (distances s from the left end).
+    """Section properties of elements at their Gauss points (distances s from their left ends).
 
     Parameters
     ----------
-    segment : Segment
-        That the element lies in.
-    left, right : float
-        Its ends, m.
+    elements : Elements
     head : {'cone', 'mean'}
         Follow the taper, or take mean radii.
     kappa : {'hutchinson', 'cowper'}
@@ -72,69 +121,63 @@ class Section:
 
     Attributes
     ----------
-    length : float
+    length : (e,) ndarray
         m.
-    s, w : (q,) ndarray
+    s, w : (e, q) ndarray
         Gauss points and weights, m.
-    bend, shear, stretch, twist : (q,) ndarray
+    bend, shear, stretch, twist : (e, q) ndarray
         ``E I`` (N m^2), ``kappa G A`` (N), ``E A`` (N) and ``G J`` (N m^2).
-    mass, rotary, polar : (q,) ndarray
+    mass, rotary, polar : (e, q) ndarray
         ``rho A`` (kg/m), ``rho I`` and ``rho J`` (kg m).
-    integral : (q, q) ndarray
-        Integrates values at the Gauss points from 0 to each of them.
     """
 
-    def __init__(self, segment, left, right, head, kappa):
+    def __init__(self, elements: Elements, head: str, kappa: str):
         x, w = _GAUSS
-        self.length = right - left
-        self.s = self.length * (x + 1) / 2
-        self.w = self.length * w / 2
-        if head == "mean":
-            a = np.full_like(self.s, (segment.outer0 + segment.outer1) / 2)
-            b = np.full_like(self.s, (segment.inner0 + segment.inner1) / 2)
-        else:
-            t = (left + self.s - segment.y0) / segment.length
-            a = segment.outer0 + t * (segment.outer1 - segment.outer0)
-            b = segment.inner0 + t * (segment.inner1 - segment.inner0)
-        mat = segment.material
+        e = elements
+        self.length = e.right - e.left
+        self.s = self.length[:, None] * (x + 1) / 2
+        self.w = self.length[:, None] * w / 2
+        t = (e.left - e.y0)[:, None] + self.s
+        t = t / (e.y1 - e.y0)[:, None] if head == "cone" else np.full_like(t, 0.5)
+        a = e.outer0[:, None] + t * (e.outer1 - e.outer0)[:, None]
+        b = e.inner0[:, None] + t * (e.inner1 - e.inner0)[:, None]
+        modulus, nu, density = e.E[:, None], e.nu[:, None], e.density[:, None]
         area = np.pi * (a**2 - b**2)
         second = np.pi / 4 * (a**4 - b**4)
-        g = mat.E / (2 * (1 + mat.nu))
-        self.bend = mat.E * second
+        g = modulus / (2 * (1 + nu))
+        self.bend = modulus * second
         # Cowper (1966), J. Appl. Mech. 33, 335: 6 (1 + nu) / (7 + 6 nu)
         factor = (
-            shear_coefficient(mat.nu, a, b)
-            if kappa == "hutchinson"
-            else 6 * (1 + mat.nu) / (7 + 6 * mat.nu)
+            shear_coefficient(nu, a, b) if kappa == "hutchinson" else 6 * (1 + nu) / (7 + 6 * nu)
         )
         self.shear = factor * g * area
-        self.stretch = mat.E * area
+        self.stretch = modulus * area
         self.twist = 2 * g * second
-        self.mass = mat.density * area
-        self.rotary = mat.density * second
+        self.mass = density * area
+        self.rotary = density * second
         self.polar = 2 * self.rotary
-        # Integration from 0 to s at the Gauss points, exact for the polynomial through them.
-        lagrange = np.linalg.inv(np.vander(x, increasing=True))
-        powers = np.empty((len(x), len(x)))
-        for j in range(len(x)):
-            powers[:, j] = [(xi ** (j + 1) - (-1.0) ** (j + 1)) / (j + 1) for xi in x]
-        self.integral = self.length / 2 * powers @ lagrange
 
-    def soften(self, bend: float, stretch: float, twist: float) -> None:
+    def soften(self, bend: np.ndarray, stretch: np.ndarray, twist: np.ndarray) -> None:
         """Add compliance, spread evenly over the length; shear and inertia stay.
 
         Parameters
         ----------
-        bend, stretch, twist : float
+        bend, stretch, twist : (e,) ndarray
             rad/(N m), m/N and rad/(N m).
         """
-        self.bend = 1 / (1 / self.bend + bend / self.length)
-        self.stretch = 1 / (1 / self.stretch + stretch / self.length)
-        self.twist = 1 / (1 / self.twist + twist / self.length)
+        self.bend = 1 / (1 / self.bend + (bend / self.length)[:, None])
+        self.stretch = 1 / (1 / self.stretch + (stretch / self.length)[:, None])
+        self.twist = 1 / (1 / self.twist + (twist / self.length)[:, None])
+
+    def integral(self, values: np.ndarray) -> np.ndarray:
+        """(e, q, k) integrals from the left end to each Gauss point, exact for the polynomial through
+        the values there.
+        """
+        return (self.length / 2)[:, None, None] * (_INTEGRAL @ values)
 
 
 def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
-    """Stiffness, mass and fields of one bending element on ``(z, thx)`` at both ends, then internal
+    """Stiffness, mass and fields of bending elements on ``(z, thx)`` at both ends, then internal
     unknowns.
 
     With shear the static field has constant shear in an element, which alone converges with the
@@ -152,141 +195,127 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
 
     Returns
     -------
-    stiffness, mass : (n, n) ndarray
+    stiffness, mass : (e, n, n) ndarray
         n is 4, with internal unknowns 5 or 6; N/m, N, N m, and kg, kg m, kg m^2.
-    shape : (2, q, n) ndarray
+    shape : (e, 2, q, n) ndarray
         Deflection and turn at the Gauss points.
 
     Examples
     --------
+    >>> import numpy as np
     >>> from solidgear import Segment
     >>> rod = Segment.cylinder("rod", length=0.6, diameter=0.02)
-    >>> section = Section(rod, 0.0, 0.6, head="cone", kappa="hutchinson")
+    >>> section = Section(Elements.of([rod], np.array([0.0, 0.6])), head="cone", kappa="hutchinson")
     >>> k, m, _ = bending_matrices(section, shear=False, rotary=False, mass="consistent")
-    >>> round(float(k[0, 0] * 0.6**3 / section.bend[0]), 9)  # 12 E I / L^3
+    >>> round(float(k[0, 0, 0] * 0.6**3 / section.bend[0, 0]), 9)  # 12 E I / L^3
     12.0
     """
-    L, s, w = c.length, c.s, c.w
-    soft = np.stack([1 / c.bend, 1 / c.shear if shear else np.zeros_like(s)])
+    left, one = c.length[:, None] - c.s, np.ones_like(c.s)
+    none = np.zeros_like(c.s)
+    soft = np.stack([1 / c.bend, 1 / c.shear if shear else none], axis=1)
     # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a
     # uniform force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row
     # shear forces.
-    tip = np.stack(
-        [
-            np.column_stack([L - s, np.ones_like(s)]),
-            np.column_stack([np.ones_like(s), np.zeros_like(s)]),
-        ]
-    )
-    spread = np.stack(
-        [np.column_stack([(L - s) ** 2 / 2, L - s]), np.column_stack([L - s, np.zeros_like(s)])]
-    )
+    tip = np.stack([np.stack([left, one], -1), np.stack([one, none], -1)], axis=1)
+    spread = np.stack([np.stack([left**2 / 2, left], -1), np.stack([left, none], -1)], axis=1)
+
+    def product(a, weight, b):
+        a, b = ((part.reshape(len(part), -1, part.shape[-1])) for part in (a, b))
+        return (a * weight.reshape(len(a), -1, 1)).transpose(0, 2, 1) @ b
 
     def energy(a, b):
-        return np.einsum("kqi,kq,kqj->ij", a, w * soft, b)
+        return product(a, c.w[:, None] * soft, b)
 
     def field(inner):
         """Deflection and turn along the cantilever for internal moments and forces."""
-        turn = c.integral @ (inner[0] * soft[0][:, None])
-        return np.stack([c.integral @ (turn + inner[1] * soft[1][:, None]), turn])
+        turn = c.integral(inner[:, 0] * soft[:, 0, :, None])
+        slope = turn + inner[:, 1] * soft[:, 1, :, None]
+        return np.stack([c.integral(slope), turn], axis=1)
 
     resist = np.linalg.inv(energy(tip, tip))
-    carry = np.array([[1.0, L], [0.0, 1.0]])  # rigid motion of the right end under that of the left
-    difference = np.hstack([-carry, np.eye(2)])
-    k = difference.T @ resist @ difference
-    rigid = np.zeros((2, len(s), 4))
-    rigid[0, :, 0] = rigid[1, :, 1] = 1.0
-    rigid[0, :, 1] = s
-    shape = field(tip) @ resist @ difference + rigid
-    inertia = np.stack([c.mass, c.rotary if rotary else np.zeros_like(s)])
+    # rigid motion of the right end less that of the left
+    difference = np.zeros((len(left), 2, 4), left.dtype)
+    difference[:, [0, 1, 0, 1], [0, 1, 2, 3]] = -1.0, -1.0, 1.0, 1.0
+    difference[:, 0, 1] = -c.length
+    carried = resist @ difference
+    k = difference.transpose(0, 2, 1) @ carried
+    shape = field(tip) @ carried[:, None]
+    shape[:, 0, :, 0] += 1.0
+    shape[:, 1, :, 1] += 1.0
+    shape[:, 0, :, 1] += c.s
+    inertia = np.stack([c.mass, c.rotary if rotary else none], axis=1)
     if mass == "lumped":
-        left = s < L / 2
-        ends = [(w * i)[part].sum() for part in (left, ~left) for i in inertia]
-        return k, np.diag(ends), shape
+        halves = [(c.w[:, None] * inertia)[:, :, part].sum(-1) for part in _HALVES]
+        return k, np.concatenate(halves, axis=1)[:, None] * np.eye(4), shape
     if shear:
-        spread = spread[:, :, : 1 + rotary]
-        clamped = spread - tip @ (resist @ energy(tip, spread))
-        stiff = energy(clamped, clamped)
+        spread = spread[..., : 1 + rotary]
+        clamped = spread - tip @ (resist @ energy(tip, spread))[:, None]
+        size = np.diagonal(energy(clamped, clamped), axis1=1, axis2=2)
         # Brought to the size of the nodal stiffness, for a well-scaled matrix.
-        clamped = clamped * np.sqrt(k[0, 0] / np.diag(stiff))
-        k = sla.block_diag(k, energy(clamped, clamped))
-        shape = np.concatenate([shape, field(clamped)], axis=2)
-    m = np.einsum("kqi,kq,kqj->ij", shape, w * inertia, shape)
-    return k, m, shape
+        clamped = clamped * np.sqrt(k[:, :1, 0] / size)[:, None, None]
+        nodal, n = k, 5 + rotary
+        inside = energy(clamped, clamped)
+        k = np.zeros((len(left), n, n), np.result_type(nodal, inside))
+        k[:, :4, :4], k[:, 4:, 4:] = nodal, inside
+        shape = np.concatenate([shape, field(clamped)], axis=3)
+    return k, product(shape, c.w[:, None] * inertia, shape), shape
+
+
+#: Gauss points of the left and of the right half
+_HALVES = (_GAUSS[0] < 0, _GAUSS[0] > 0)
 
 
 def rod_matrices(c: Section, rigidity, inertia, mass: str):
-    """Stiffness, mass and field of a tapered bar in stretch or twist.
+    """Stiffness, mass and field of tapered bars in stretch or twist.
 
     Parameters
     ----------
-    rigidity : (q,) ndarray
+    rigidity : (e, q) ndarray
         ``E A`` or ``G J``.
-    inertia : (q,) ndarray
+    inertia : (e, q) ndarray
         ``rho A`` or ``rho J``.
     mass : {'consistent', 'lumped'}
 
     Returns
     -------
-    stiffness, mass : (2, 2) ndarray
-    shape : (q, 2) ndarray
+    stiffness, mass : (e, 2, 2) ndarray
+    shape : (e, q, 2) ndarray
         Motion at the Gauss points.
     """
-    compliance = (c.w / rigidity).sum()
+    compliance = (c.w / rigidity).sum(axis=1)[:, None, None]
     k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
-    right = c.integral @ (1 / rigidity) / compliance
-    shape = np.column_stack([1 - right, right])
-    m = shape.T @ ((c.w * inertia)[:, None] * shape)
+    right = c.integral(1 / rigidity[..., None]) / compliance
+    shape = np.concatenate([1 - right, right], axis=2)
+    m = shape.transpose(0, 2, 1) @ ((c.w * inertia)[..., None] * shape)
     if mass == "lumped":
-        m = np.diag(m.sum(axis=1))
+        m = m.sum(axis=1)[:, None] * np.eye(2)
     return k, m, shape
 
 
-@dataclass(frozen=True)
-class Fields:
-    """Displacement fields of one element, at its Gauss points.
+def surface(e: Elements, lo: np.ndarray, hi: np.ndarray):
+    """Quadrature on the outer surface of parts of elements.
 
-    Attributes
+    Parameters
     ----------
-    left, right : float
-        Ends of the element, m.
-    bend : (ndarray of int, (2, q, n) ndarray)
-        Unknowns, and the deflection and turn that each makes.
-    stretch, twist : (ndarray of int, (q, n) ndarray)
-        Unknowns, and the motion that each makes.
+    lo, hi : (e,) ndarray
+        m.
+
+    Returns
+    -------
+    y, r : (e, q) ndarray
+        Places along the shaft, and radii there, m.
+    weight : (e, q) ndarray
+        Of the length along the surface, m.
+    lagrange : (e, q, q) ndarray
+        Interpolation from the Gauss points of the element.
     """
-
-    segment: Segment
-    left: float
-    right: float
-    bend: tuple[np.ndarray, np.ndarray]
-    stretch: tuple[np.ndarray, np.ndarray]
-    twist: tuple[np.ndarray, np.ndarray]
-
-    def part(self, lo: float, hi: float):
-        """Quadrature on the outer surface of a part of the element.
-
-        Parameters
-        ----------
-        lo, hi : float
-            m.
-
-        Returns
-        -------
-        y, r : (q,) ndarray
-            Places along the shaft, and radii there, m.
-        weight : (q,) ndarray
-            Of the length along the surface, m.
-        lagrange : (q, q) ndarray
-            Interpolation from the Gauss points of the element.
-        """
-        x, w = _GAUSS
-        middle, half = (lo + hi) / 2, (hi - lo) / 2
-        y = middle + half * x
-        local = (2 * y - self.left - self.right) / (self.right - self.left)
-        lagrange = np.vander(local, len(x), increasing=True) @ np.linalg.inv(
-            np.vander(x, increasing=True)
-        )
-        segment = self.segment
-        slope = (segment.outer1 - segment.outer0) / segment.length
-        r = segment.outer0 + slope * (y - segment.y0)
-        return y, r, w * half * np.hypot(1.0, slope), lagrange
+    x, w = _GAUSS
+    y = (lo + hi)[:, None] / 2 + (hi - lo)[:, None] / 2 * x
+    local = (2 * y - (e.left + e.right)[:, None]) / (e.right - e.left)[:, None]
+    powers = [np.ones_like(local)]
+    for _ in _POWERS[1:]:
+        powers.append(powers[-1] * local)
+    slope = ((e.outer1 - e.outer0) / (e.y1 - e.y0))[:, None]
+    r = e.outer0[:, None] + slope * (y - e.y0[:, None])
+    length = (hi - lo)[:, None] / 2 * np.sqrt(1 + slope**2)
+    return y, r, w * length, np.stack(powers, axis=-1) @ _THROUGH

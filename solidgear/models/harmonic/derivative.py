@@ -62,23 +62,12 @@ class Push:
 
 
 class HarmonicAdjoint:
-    """What numbers of a harmonic body feel of its shape and material.
-
-    Raises
-    ------
-    SolidgearError
-        For a body with fillets, or of an order below 3.
+    """What numbers of a harmonic body of straight sides, of order 3 or more, feel of its shape and
+    material.
     """
 
     def __init__(self, scene, body: Body, forms: Sequence[Form]):
         self.scene = scene = coned(scene)
-        if scene.outline.corners:
-            raise SolidgearError(
-                f"{scene.corners[0].name}: derivatives by the harmonic solid are for segments "
-                "without fillets and chamfers; use -f timoshenko, or leave them out"
-            )
-        if body.mesh["order"] < 3:
-            raise SolidgearError("derivatives by the harmonic solid need order 3 or more")
         geometry: Any = body.geometry
         self.flat, self.body = geometry.meridian, body
         self.work = _Work(

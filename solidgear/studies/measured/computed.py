@@ -23,8 +23,8 @@ from solidgear.studies.sweep.bench import surface
 Progress = Callable[[str], None]
 #: of the highest measured frequency: modes above it may be what was measured
 BEYOND = 1.1
-#: shapes that are asked for first
-FEW = 30
+#: shapes that are asked for first, and beside those of a scene like it
+FEW, MORE = 60, 6
 #: highest order of elements that is tried, and steps between
 HIGHEST, STEP = 11, 2
 
@@ -45,6 +45,8 @@ class Computed:
         Model.
     options : dict
         Of its builder.
+    limit : float
+        Hz, up to which there are all modes.
     """
 
     scene: Scene
@@ -54,6 +56,7 @@ class Computed:
     tolerance: float
     rung: str
     options: dict[str, Any]
+    limit: float
 
     @property
     def mesh(self) -> str:
@@ -108,7 +111,7 @@ def computed_up_to(
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
         listed, bars = _barred(scene, body, limit, settled)
-    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options)
+    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit)
 
 
 @pinned
@@ -117,8 +120,8 @@ def computed_like(before: Computed, scene: Scene) -> Computed:
     body = before.body
     if surface(scene) != surface(before.scene):
         body = build(scene, before.rung, **before.options)
-    limit = max(mode.frequency_hz for mode in before.modes) * BEYOND
-    listed = _elastic(_modes(scene, body, limit, len(before.modes)))
+    shapes = sum(mode.multiplicity for mode in before.modes)
+    listed = _elastic(_modes(scene, body, before.limit, shapes + MORE))
     bars = {str(mode.name): bar for mode, bar in zip(before.modes, before.bars)}
     # planes that part have other names, and bars like the others
     usual = max((bar for bar in before.bars if math.isfinite(bar)), default=math.inf)
@@ -141,9 +144,8 @@ def _barred(
     return listed, [told.get(str(mode.name), math.inf) for mode in listed]
 
 
-def _modes(scene: Scene, body: Body, limit: float, guess: int = FEW) -> ModeSet:
+def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:
     """All modes up to a frequency: as many shapes are asked for as it takes to pass it."""
-    count = max(FEW, 2 * guess)
     while True:
         found = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
         if count >= MOST_MODES or sum(m.multiplicity for m in _elastic(found)) < count:

@@ -10,30 +10,35 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from solidgear.body import Body
+from solidgear.body import as_supports
 from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.ladder import build
 from solidgear.scene import Scene
 from solidgear.scene.paths import Keys, Tables, changed, entry, keys_of, label_of
 from solidgear.scene.toml_file import parse
+from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.derivatives import log_derivatives
 from solidgear.studies.measured.identified import Fitted, Identification, Identified, Predicted
 from solidgear.studies.measured.shapes import mac_of
+from solidgear.studies.measured.sprung import Sprung
+from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.entries import in_si
 
 Progress = Callable[[str], None]
 #: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none
 ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
+#: change of a logarithm that is none between rounds
+NEARER = 1e-5
 #: rounds in which pairs count from a lower probability on
 EARLY, LIKELY = 2, 0.5
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
 UNDETERMINED = math.log(2.0)
+#: of the logarithm of an entry, to either side, for derivatives
+STEP = 1e-4
 #: of the logarithm of entries, along what is not told where it begins
 NUDGE = 0.03
 #: share of the direction that is not determined from which on an entry belongs to it
@@ -112,6 +117,11 @@ class _Study:
         self.labels = [label_of(keys, self.tables) for keys in self.keys]
         self.before = np.array([self._number(keys) for keys in self.keys])
         self.x = np.zeros(len(self.keys))
+        here = surface(self.scene_at(self.x))
+        #: whether all that is varied leaves the body as it is
+        self.on_springs = all(
+            surface(self.scene_at(own)) == here for own in STEP * np.eye(len(self.keys))
+        )
 
     def _keys(self, path: str) -> Keys:
         try:
@@ -156,10 +166,11 @@ class _Study:
                 # may
                 self.x = self.x + NUDGE * fit.right[-1]
                 continue
-            step = fit.step()
-            self.x = self.x + step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
+            step = fit.step(fit.rows, fit.residual)
             if turn >= EARLY and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
+                self.x = self.x + step
                 break
+            self.x = self.x + (self._nearer(fit, computed) if self.on_springs else _short(step))
         else:
             raise SolidgearError(
                 f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
@@ -174,7 +185,6 @@ class _Study:
         left = fit.residual - fit.rows @ step
         leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.covariance, fit.rows) * fit.weight**2
         out = left / np.maximum(1 - leverage, 1e-12)
-        measured = np.array([self.measured.modes[i].frequency for i, _ in fit.pairs])
         fitted = tuple(
             Fitted(
                 str(computed.modes[j].name),
@@ -182,7 +192,7 @@ class _Study:
                 float(f * math.exp(-a)),
                 float(f * math.exp(-b)),
             )
-            for (_, j), f, a, b in zip(fit.pairs, measured, left, out)
+            for (_, j), f, a, b in zip(fit.pairs, fit.measured, left, out)
         )
         used = {i for i, _ in fit.pairs}
         return Identification(
@@ -198,6 +208,24 @@ class _Study:
             computed.mesh,
             self.tables_at(self.x),
         )
+
+    def _nearer(self, fit: _Fit, computed: Computed) -> np.ndarray:
+        """Change of the logarithms of entries that no mesh hangs on, to the least squares of a body that
+        is not solved again.
+        """
+        sprung, x = Sprung(computed), self.x
+        for _ in range(ROUNDS):
+            at = sprung.at(as_supports(self.scene_at(x)))
+            sides = [
+                [as_supports(self.scene_at(x + sign * own)) for sign in (-1, 1)]
+                for own in STEP * np.eye(len(x))
+            ]
+            rows = np.column_stack([sprung.slopes(at, *ends) for ends in sides]) / (2 * STEP)
+            step = _short(fit.step(rows[fit.at], np.log(fit.measured / at[0][fit.at])))
+            x = x + step
+            if abs(step).max() < NEARER:
+                break
+        return x - self.x
 
     def _predicted(self, count: int, fit: _Fit, before: Computed) -> tuple[Predicted, ...]:
         """Modes beyond the highest that was measured."""
@@ -232,20 +260,14 @@ class _Study:
 
     def derivatives(self, computed: Computed) -> np.ndarray:
         """(modes, entries) derivatives of logarithms."""
+        scene, body = computed.scene, computed.body
+        forms = [of_mode(body, as_supports(scene), mode) for mode in computed.modes]
+        by = Derivatives(scene, body, forms, computed.rung, computed.options).by
         columns = []
-        for k in range(len(self.keys)):
-
-            def at(x: float, k: int = k) -> tuple[Scene, Body]:
-                moved = self.x.copy()
-                moved[k] += x
-                scene = self.scene_at(moved)
-                # springs and masses leave the body as it is
-                if surface(scene) == surface(computed.scene):
-                    return scene, computed.body
-                return scene, build(scene, computed.rung, **computed.options)
-
-            columns.append(log_derivatives(computed.modes, at))
-        return np.column_stack(columns)
+        for own in STEP * np.eye(len(self.keys)):
+            columns.append(by(self.scene_at(self.x - own), self.scene_at(self.x + own), 2 * STEP))
+        frequencies = np.array([mode.frequency_hz for mode in computed.modes])
+        return np.column_stack(columns) / frequencies[:, None]
 
 
 class _Fit:
@@ -267,11 +289,11 @@ class _Fit:
             )
         every = study.derivatives(computed)
         modes = [study.measured.modes[i] for i, _ in self.pairs]
-        at = [j for _, j in self.pairs]
+        self.at = at = [j for _, j in self.pairs]
         self.rows = every[at]
-        self.residual = np.array(
-            [math.log(m.frequency / computed.modes[j].frequency_hz) for m, j in zip(modes, at)]
-        )
+        #: (pairs,) frequencies, Hz
+        self.measured = np.array([m.frequency for m in modes])
+        self.residual = np.log(self.measured / [computed.modes[j].frequency_hz for j in at])
         own = np.array([(m.width_hz or 0.0) / m.frequency for m in modes])
         mesh = np.array([min(computed.bars[j], 1.0) / DEVIATIONS for j in at])
         variance = own**2 + mesh**2
@@ -280,17 +302,19 @@ class _Fit:
         best = self.residual - self.rows @ np.linalg.lstsq(self.rows, self.residual, rcond=None)[0]
         self.scatter = math.sqrt(max(float(best @ best) / spare - float(variance.mean()), 0.0))
         self.weight = 1 / np.sqrt(variance + self.scatter**2 + 1e-24)
-        left, sizes, right = np.linalg.svd(self.rows * self.weight[:, None], full_matrices=False)
-        self.left, self.sizes, self.right = left, sizes, right
+        _, sizes, right = np.linalg.svd(self.rows * self.weight[:, None], full_matrices=False)
+        self.sizes, self.right = sizes, right
         kept = np.maximum(sizes, 1e-30)
         #: of the logarithms of entries
         self.covariance = (right.T / kept**2) @ right
 
-    def step(self) -> np.ndarray:
-        """Change of the logarithms of entries; none along what the data do not tell."""
-        told = self.sizes > 1 / UNDETERMINED
-        parts = (self.left.T @ (self.residual * self.weight))[told] / self.sizes[told]
-        return parts @ self.right[told]
+    def step(self, rows: np.ndarray, residual: np.ndarray) -> np.ndarray:
+        """Change of the logarithms of entries from (pairs, entries) derivatives and (pairs,) residuals;
+        none along what the data do not tell.
+        """
+        left, sizes, right = np.linalg.svd(rows * self.weight[:, None], full_matrices=False)
+        told = sizes > 1 / UNDETERMINED
+        return ((left.T @ (residual * self.weight))[told] / sizes[told]) @ right[told]
 
     def deviations(self) -> np.ndarray:
         """(entries,) standard deviations of logarithms."""
@@ -325,6 +349,11 @@ class _Fit:
             f"than their scatter ({_factor(deviation)}); "
             "leave one of them out, or measure a mode that it moves"
         )
+
+
+def _short(step: np.ndarray) -> np.ndarray:
+    """A step, no longer than what one round may go."""
+    return step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
 
 
 def _factor(deviation: float) -> str:

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.scene import Scene
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
 from solidgear.studies.loading import part_of
@@ -16,7 +21,7 @@ from solidgear.studies.sweep.entries import in_si
 #: they move is linear in it but for angles, materials and springs in series
 STEP, OF_PLACES = 1e-4, 1e-5
 #: tables of a file whose numbers say how the shaft is
-HELD_TABLES = ("material", "segment", "bearing", "mass", "housing", "port")
+HELD_TABLES = ("material", "segment", "feature", "bearing", "mass", "housing", "port")
 #: words in them that may look like numbers
 WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
 #: keys of lengths that may be zero
@@ -58,34 +63,101 @@ def _is_number(keys: Keys, tables: Tables) -> bool:
     return bool(in_si(value)) or (in_si(value) == 0.0 and PLACES.intersection(keys[-2:]) != set())
 
 
-def around(scene: Scene, tables: Tables, keys: Keys, where: str):
-    """The scene with an entry a little smaller and a little larger, the step in SI and the entry in
-    SI.
+@dataclass(frozen=True)
+class Around:
+    """The scene with an entry a little smaller and a little larger.
+
+    Attributes
+    ----------
+    low, high : Scene
+        One of them the scene itself where the file allows no number on that side.
+    step : float
+        Between them, SI.
+    at : float
+        The entry, SI.
+    side : {'', 'larger', 'smaller'}
+        The only way that the entry may go.
+    """
+
+    low: Scene
+    high: Scene
+    step: float
+    at: float
+    side: str = ""
+
+
+def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:
+    """The scene on both sides of an entry.
 
     Raises
     ------
-    SolidgearError
-        Where the file allows no other number on one side, or on both.
+    SceneError
+        Where the file allows no other number on either side.
     """
     written = entry(keys, tables)
     number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
     one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
     at = float(in_si(written) or 0.0)
     step = OF_PLACES * scene.length if PLACES.intersection(keys[-2:]) else STEP * abs(at)
-    sides: list[Scene] = []
-    refused: list[SceneError] = []
+    sides: list[Scene | None] = []
     for sign in (-1, 1):
         try:
-            value = float(number) + sign * step / one
-            text = f"{value!r} {unit}" if unit else value
-            sides.append(_held(put(tables, keys, text), scene, where))
+            other = _in_place(scene, tables, keys, at + sign * step)
+            text = _text(float(number) + sign * step / one, unit)
+            sides.append(other or _held(put(tables, keys, text), scene, where))
         except SceneError as error:
-            refused.append(error)
-    if len(refused) == 2:
-        raise refused[0]
-    if refused:
-        raise SolidgearError("the scene holds to one side of it alone")
-    return sides[0], sides[1], 2 * step, at
+            sides.append(None)
+            refused = error
+    low, high = sides
+    if low is None and high is None:
+        raise refused
+    if low is not None and high is not None:
+        return Around(low, high, 2 * step, at)
+    side = "larger" if low is None else "smaller"
+    return Around(low or scene, high or scene, step, at, side)
+
+
+def _text(value: float, unit: str) -> str | float:
+    return f"{value!r} {unit}" if unit else value
+
+
+def _in_place(scene: Scene, tables: Tables, keys: Keys, value: float) -> Scene | None:
+    """A scene with an entry of a stiffness matrix or of the material changed, which no place hangs on;
+    None for other entries.
+    """
+    first, *rest = keys
+    if first == "material" and not any("material" in one for one in tables["segment"]):
+        material = scene.material.with_changes(**{str(keys[1]): value})
+        segments = tuple(one.with_changes(material=material) for one in scene.segments)
+        return scene.unjudged(material=material, segments=segments)
+    if first == "housing" and scene.housing is not None:
+        housing = _stiffened(scene.housing, rest, value)
+        return housing and scene.unjudged(housing=housing)
+    if first != "bearing":
+        return None
+    place, *rest = rest
+    own = scene.bearings[int(place)]
+    if rest[0] == "housing":
+        inside = _stiffened(own.housing, rest[1:], value)
+        bearing = inside and own.with_changes(housing=inside)
+    else:
+        bearing = _stiffened(own, rest, value)
+    if bearing is None:
+        return None
+    return scene.unjudged(bearings=tuple(bearing if one is own else one for one in scene.bearings))
+
+
+def _stiffened(thing: Any, keys: Sequence[str | int], value: float) -> Any:
+    """A thing with an entry of its matrix, and the mirror of it, changed; None for other entries."""
+    if keys[0] == "stiffness":
+        row, column, _ = STIFFNESS_NAMES[str(keys[1])]
+    elif keys[0] == "matrix":
+        row, column = map(int, keys[1:])
+    else:
+        return None
+    matrix = np.array(thing.matrix)
+    matrix[row, column] = matrix[column, row] = value
+    return thing.with_changes(matrix=matrix)
 
 
 def put(tables: Tables, keys: Keys, value: str | float) -> Tables:

@@ -14,6 +14,7 @@ from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, listed, nearest
+from solidgear.ladder import build
 from solidgear.machine.threads import pinned
 from solidgear.quantity import Quantity
 from solidgear.scene import Scene
@@ -22,9 +23,14 @@ from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import Form, of_entry, of_mode
 from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
+from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers, unit_of
 from solidgear.studies.sweep.entries import in_si
 
+#: what is asked for
+USUAL = ("bending 1", "C_zz")
+#: models that have derivatives
+MODELS = ("harmonic", "timoshenko", "euler", "solid")
 #: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
 NOTHING = 1e-9
 
@@ -49,6 +55,8 @@ class Derivative:
         Relative change of the number over that of the entry.
     apart : float or None
         Distance of the elasticity from that on a coarser mesh.
+    side : {'', 'larger', 'smaller'}
+        The only way that the entry may go, and that the derivative is for.
     """
 
     path: str
@@ -58,6 +66,7 @@ class Derivative:
     by: float
     elasticity: float
     apart: float | None = None
+    side: str = ""
 
     @property
     def by_unit(self) -> float:
@@ -141,6 +150,7 @@ class Sensitivities:
                             "derivative": d.by,
                             "elasticity": d.elasticity,
                             "from_coarser_mesh": d.apart,
+                            "one_sided": d.side,
                         }
                         for d in one.derivatives
                     ],
@@ -174,7 +184,8 @@ def sensitivities(
     ----------
     file : str or path
         A scene file (TOML).
-    model : {'harmonic', 'timoshenko', 'euler'}
+    model : {'harmonic', 'timoshenko', 'euler', 'solid'}
+        The solid has derivatives of modes by springs, masses and materials alone.
     of : sequence of str, optional
         Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
         and the compliance ``C_zz``.
@@ -213,10 +224,13 @@ def sensitivities(
     where = os.fspath(file)
     scene, tables = load(where), parse(where)
     _supported(scene, model)
-    asked = [Quantity(name) for name in of or ("bending 1", "C_zz")]
+    asked = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
+    if model == "solid" and not all(one.is_frequency for one in asked):
+        static = next(one for one in asked if not one.is_frequency)
+        raise SolidgearError(f"derivatives of {static} are for bodies of revolution; ask for modes")
     moves = [*numbers(tables, by)]
     levels: list[dict[str, Any]] = [{}]
-    if coarser:
+    if coarser and model != "solid":
         levels.append(_coarser(scene, model, options))
     found = []
     for more in levels:
@@ -228,17 +242,19 @@ def sensitivities(
     for keys in moves:
         path = label_of(keys, tables)
         try:
-            low, high, step, at = around(scene, tables, keys, where)
-            fine, *rest = [[d.by(k, low, high, step) for k in range(len(asked))] for d in found]
+            sides = around(scene, tables, keys, where)
+            fine, *rest = [d.by(sides.low, sides.high, sides.step) for d in found]
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
-        text = str(entry(keys, tables))
+        at, text = sides.at, str(entry(keys, tables))
         unit = unit_of(text)
         for k, value in enumerate(found[0].values):
             scale = at / value
             apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
-            rows[k].append(Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart))
+            rows[k].append(
+                Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart, sides.side)
+            )
     first = found[0]
     given = [
         OfNumber(str(q), v, q.unit, pair, _ranked(r))
@@ -260,23 +276,21 @@ def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
 
 
 def _supported(scene: Scene, model: str) -> None:
-    known = ("harmonic", "timoshenko", "euler")
-    if model not in known:
+    if model not in MODELS:
         raise SolidgearError(
-            f"the {model} model has no derivatives; ask {', '.join(known[:-1])} or {known[-1]}"
+            f"the {model} model has no derivatives; ask {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
-    if scene.body is not None or scene.features:
+    if model != "solid" and (scene.body is not None or scene.features):
         what = "a part from a file" if scene.body is not None else scene.features[0].name
         raise SolidgearError(
-            f"{what}: derivatives are for shafts of segments; features and [body] have none"
+            f"{what}: derivatives by the {model} model are for shafts of segments; the solid model "
+            "has those by springs, masses and materials"
         )
 
 
 def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any]:
     if model == "harmonic":
         return {"order": max(3, options.get("order", 5) - 1)}
-    from solidgear.ladder import build
-
     return {"elements": max(1, build(scene, model, **options).mesh["elements"] // 2)}
 
 
@@ -289,8 +303,6 @@ class Derived:
     """Numbers of one body and what they feel."""
 
     def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
-        from solidgear.ladder import build
-
         self.scene, self.model = scene, model
         self.body: Body = build(scene, model, **options)
         self.supports = as_supports(scene)
@@ -318,51 +330,7 @@ class Derived:
             self.values.append(value)
             self.forms.append(form)
             self.pairs.append(False)
-        if model == "harmonic":
-            from solidgear.models.harmonic.derivative import HarmonicAdjoint
-
-            self.harmonic = HarmonicAdjoint(scene, self.body, self.forms)
-        else:
-            from solidgear.models.beam.derivative import BeamAdjoint
-
-            self.beam = BeamAdjoint(scene, self.body, options)
-        self._last: tuple[Any, Any] = (None, None)
-
-    def by(self, number: int, low: Scene, high: Scene, step: float) -> float:
-        """Derivative of one of the numbers."""
-        form = self.forms[number]
-        return self._of_springs(form, low, high, step) + self._of_shaft(number, low, high, step)
-
-    def _of_springs(self, form: Form, low: Scene, high: Scene, step: float) -> float:
-        one, two = as_supports(low), as_supports(high)
-        stiff, heavy = two.stiffness - one.stiffness, two.masses - one.masses
-        there = self.supports.rows(self.body)
-        total = 0.0
-        for a, b in form.pairs:
-            moved = (stiff - a.eigenvalue * heavy) @ b.motions[there]
-            total -= a.motions[there] @ moved
-        return form.scale * float(total) / step
-
-    def _of_shaft(self, number: int, low: Scene, high: Scene, step: float) -> float:
-        if _same_shaft(low, high):
-            return 0.0
-        if self._last[0] is not low:
-            if self.model == "harmonic":
-                from solidgear.models.harmonic.motion import Motion
-
-                self._last = low, Motion(self.harmonic, low, high, step)
-            else:
-                self._last = low, (self.beam.moved(low), self.beam.moved(high))
-        if self.model == "harmonic":
-            return self._last[1].of(self.harmonic.pushes[number])
-        from solidgear.models.beam.derivative import change
-
-        return change(self.forms[number], *self._last[1]) / step
-
-
-def _same_shaft(low: Scene, high: Scene) -> bool:
-    seats = [[(s.y, s.lo, s.hi) for s in scene.stations] for scene in (low, high)]
-    return low.segments == high.segments and seats[0] == seats[1]
+        self.by = Derivatives(scene, self.body, self.forms, model, options).by
 
 
 def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:
@@ -372,6 +340,10 @@ def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator
     pairs = [one.name for one in of if one.pair]
     if pairs:
         yield f"{listed(pairs)}: derivative of the mean of the pair."
+    for side in ("larger", "smaller"):
+        paths = sorted(d.path for d in of[0].derivatives if d.side == side)
+        if paths:
+            yield f"One-sided, for {side} entries, as the file allows no others: {listed(paths)}."
     if len(levels) > 1:
         mesh = ", ".join(f"{key} {value}" for key, value in levels[1].items())
         yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."
