@@ -55,7 +55,7 @@ def correlate(
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = correlated(loaded, data, tol, progress)
         files = _written(out, found, progress) if out else []
-    tables = [peaks(found)] * (data.responses is not None) + [pairs(found)]
+    tables = [pairs(found)] if data.responses is None else [peaks(found), pairs(found)]
     _tell(found, tables, files, run)
 
 

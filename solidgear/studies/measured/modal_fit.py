@@ -212,13 +212,12 @@ class _Band:
         step = np.zeros_like(poles)
         for turn in range(ROUNDS):
             fit = _Fit(self, poles, weight)
-            if turn >= WEIGHING and fit.cost > cost * (1 + 1e-9):
+            if turn > WEIGHING and fit.cost > cost * (1 + 1e-9):
                 step = step / 2
                 poles = poles - step
                 continue
             if turn < WEIGHING:
                 weight = fit.weight()
-                fit = _Fit(self, poles, weight)
             cost, step = fit.cost, fit.step()
             far = np.abs(step) / np.maximum(-poles.real, self.step)
             step = step / np.maximum(1.0, far)
