@@ -172,7 +172,7 @@ def load_measured(path: str | os.PathLike) -> Measured:
     tables: Mapping[str, Any] | Responses
     tables = _of_csv(Path(path)) if where.lower().endswith(".csv") else parse(where)
     if isinstance(tables, Responses):
-        return _of_responses(where, tables)
+        return of_responses(tables, where)
     try:
         return Measured(**tables)
     except SceneError as error:
@@ -182,14 +182,21 @@ def load_measured(path: str | os.PathLike) -> Measured:
 def _of_universal(where: str) -> Measured:
     read = read_universal(where)
     if isinstance(read, Responses):
-        return _of_responses(where, read)
+        return of_responses(read, where)
     frequencies, shapes = read
     out = _checked(where, {"mode": [{"frequency": one} for one in frequencies]})
     out._shapes = shapes
     return out
 
 
-def _of_responses(where: str, responses: Responses) -> Measured:
+def of_responses(responses: Responses, where: str = "responses") -> Measured:
+    """Resonances that are found in responses; `where` is their file.
+
+    Raises
+    ------
+    SceneError
+        Where no resonance stands out of the noise.
+    """
     try:
         found = ResponseFit.of(responses)
     except SolidgearError as error:

@@ -42,6 +42,8 @@ DAMPED = 0.2
 DEGREE, ROUNDS, WEIGHING, ENDS = 6, 25, 3, 1e-4
 #: power of a mode over that of the noise of as many unknowns from which on it is one
 SIGNIFICANT = 12.0
+#: half widths (of the wider) within which two poles are told as one
+NEAR = 1.25
 #: lines over which noise is alike
 ABOUT = 9
 
@@ -162,7 +164,10 @@ class _Band:
             width = -poles.real
             inside = self.inside(poles)
             mode = (width > 0) & (width < DAMPED * abs(poles)) & (width < self.half)
-            kept = mode & ((power > SIGNIFICANT) | ~inside)
+            # noise that grows with the response splits a peak; two as near as that are told as one
+            apart = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
+            under = ((apart < NEAR) & (power < power[:, None])).any(axis=0)
+            kept = mode & ~under & ((power > SIGNIFICANT) | ~inside)
             if kept.all():
                 at = np.flatnonzero(inside)
                 scaled = residues * self.scale[:, None]
