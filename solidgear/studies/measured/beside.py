@@ -16,12 +16,17 @@ from solidgear.studies.measured.shapes import OnPoints
 #: modes that a page has room for
 MOST = 16
 #: size of a point, as a share of the longest side of all
-SIZE = 0.012
+SIZE = 0.015
 #: corners of an octahedron and its middle, and its faces
 CORNERS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1], [0, 0, 0]])
 FACES = np.array(
     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
 )
+
+
+#: thickness of a rod over that of a point; places around it, and its sides
+ROD, RING = 0.45, np.exp(2j * np.pi * np.arange(3) / 3)
+SIDES = np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5]])
 
 
 def turned_beside(found: Correlation) -> tuple[Turned, ...]:
@@ -48,14 +53,14 @@ def turned_beside(found: Correlation) -> tuple[Turned, ...]:
     named = [(str(mode.name), mode.frequency_hz) for mode in modes]
     member = Member(computed.body, np.eye(3), np.zeros(3), [[one] for one in vectors])
     own = together(computed.mesh, named, [member])
-    shapes = []
+    mesh, shapes = _mesh(measured.points), []
     for one, vector, shape in zip(own.shapes, vectors, moved):
         raw = computed.body.surface(vector).displacement[own.mesh.source]
         factor = np.vdot(raw, one.displacement) / np.vdot(raw, raw)
-        each = np.repeat(factor * shape, len(CORNERS), axis=0)
+        each = factor * shape[mesh.source]
         hertz = found.measured.modes[numbers[one.name]].frequency
         shapes.append(replace(one, frequency_hz=hertz, displacement=each))
-    return Turned("measured", _mesh(measured.points), tuple(shapes)), own
+    return Turned("measured", mesh, tuple(shapes)), own
 
 
 def _real(shape: np.ndarray) -> np.ndarray:
@@ -64,12 +69,24 @@ def _real(shape: np.ndarray) -> np.ndarray:
 
 
 def _mesh(points: np.ndarray) -> Mesh:
-    """Points as octahedra, joined by the shortest tree of lines."""
+    """Points as octahedra, joined by rods along the shortest tree."""
     size = SIZE * float(np.ptp(points, axis=0).max())
-    corners = (points[:, None] + size * CORNERS).reshape(-1, 3)
-    first = len(CORNERS) * np.arange(len(points))
     tree = minimum_spanning_tree(distance_matrix(points, points)).tocoo()
-    middle = len(CORNERS) - 1
-    lines = np.column_stack([first[tree.row], first[tree.col]]) + middle
-    faces = (first[:, None, None] + FACES).reshape(-1, 3)
-    return Mesh(corners, faces, lines, np.repeat(np.arange(len(points)), len(CORNERS)))
+    first = len(CORNERS) * np.arange(len(points))
+    corners, faces = [points[:, None] + size * CORNERS], [first[:, None, None] + FACES]
+    source = [np.repeat(np.arange(len(points)), len(CORNERS))]
+    for k, (one, other) in enumerate(zip(tree.row, tree.col)):
+        along = points[other] - points[one]
+        across = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+        sides = np.array([across, np.cross(along, across) / np.linalg.norm(along)])
+        ring = ROD * size / np.linalg.norm(across) * np.column_stack([RING.real, RING.imag]) @ sides
+        corners.append(np.array([points[one] + ring, points[other] + ring]))
+        faces.append(len(CORNERS) * len(points) + 2 * len(RING) * k + SIDES)
+        source.append(np.repeat([one, other], len(RING)))
+    lines = np.column_stack([first[tree.row], first[tree.col]]) + len(CORNERS) - 1
+    return Mesh(
+        np.concatenate([part.reshape(-1, 3) for part in corners]),
+        np.concatenate([part.reshape(-1, 3) for part in faces]),
+        lines,
+        np.concatenate(source),
+    )

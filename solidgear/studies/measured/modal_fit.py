@@ -36,7 +36,7 @@ CIRCLE = 0.9
 #: a pole stays where it is within this share of its half width, over so many orders of those
 STAYS, STABLE = 0.5, 3
 #: largest damping of a mode
-DAMPED = 0.2
+DAMPED = 0.1
 #: degree of the polynomial, rounds of the fit, of which weights are of the first, and the change of
 #: the poles in half widths that ends it
 DEGREE, ROUNDS, WEIGHING, ENDS = 6, 25, 3, 1e-4

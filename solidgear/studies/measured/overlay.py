@@ -54,7 +54,7 @@ class Overlay:
     def told(self) -> str:
         """How the computed ones were made, in words."""
         return (
-            f"Computed: the modes up to {self.limit:.4g} Hz and the rigid motions that nothing "
+            f"Computed: the modes up to {self.limit:.0f} Hz and the rigid motions that nothing "
             "holds, each with the damping measured of it, others with the median, "
             f"{100 * self.damping:.2g} %. What is stiffer is left out, which moves minima more than "
             "peaks; the computed response has no bar."
