@@ -66,7 +66,7 @@ def test_intervals_of_95_per_cent_hold_95_of_a_hundred(points, grows):
 
 
 def test_residues_are_those_of_the_modes_whatever_the_noise_of_each_response():
-    clean = accelerances(4, noise=0.0)
+    clean = accelerances(4, points=5, noise=0.0)
     drawn = np.random.default_rng(9).standard_normal((*clean.shape, 2)) @ [1, 1j]
     levels = np.geomspace(1e-3, 1.0, len(clean))[:, None]
     found = fit_modes(HERTZ, clean + levels * drawn)
@@ -121,7 +121,7 @@ def test_responses_in_every_unit_are_the_same(tmp_path, code):
 
 
 def test_a_file_of_responses_is_read_as_its_resonances_with_shapes(tmp_path):
-    values = accelerances(1, noise=1e-4)
+    values = accelerances(1, points=4, noise=1e-4)
     found = load_measured(written(tmp_path / "a.uff", values=values, directions=(-3, 1)))
     assert [one.frequency for one in found.modes] == pytest.approx([f for f, _ in MODES], abs=0.05)
     assert all(0 < one.width_hz < 0.05 for one in found.modes)
@@ -146,7 +146,7 @@ def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
 
 
 def test_receptances_have_the_modes_of_accelerances(tmp_path):
-    values = accelerances(1, noise=1e-4)
+    values = accelerances(1, points=4, noise=1e-4)
     one = load_measured(written(tmp_path / "a.uff", values=values))
     receptance = values / (2j * np.pi * HERTZ) ** 2
     other = load_measured(written(tmp_path / "b.uff", kind=8, values=receptance))
