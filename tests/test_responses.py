@@ -65,6 +65,12 @@ def test_intervals_of_95_per_cent_hold_95_of_a_hundred(points, grows):
         assert 0.91 < np.mean(np.abs(numbers) < 1.96) < 0.99
 
 
+def test_two_modes_within_their_half_width_are_told_apart_where_they_stand_out():
+    near = [(700.0, 0.003), (701.5, 0.003)]
+    found = fit_modes(HERTZ[500:900], accelerances(2, near, hertz=HERTZ[500:900]))
+    assert np.max(np.abs(off(found, near))) < 4.5
+
+
 def test_residues_are_those_of_the_modes_whatever_the_noise_of_each_response():
     clean = accelerances(4, points=5, noise=0.0)
     drawn = np.random.default_rng(9).standard_normal((*clean.shape, 2)) @ [1, 1j]

@@ -42,8 +42,8 @@ DAMPED = 0.1
 DEGREE, ROUNDS, WEIGHING, ENDS = 6, 25, 3, 1e-4
 #: power of a mode over that of the noise of as many unknowns from which on it is one
 SIGNIFICANT = 12.0
-#: half widths (of the wider) within which two poles are told as one
-NEAR = 1.25
+#: half widths (of the wider) within which a second pole must stand out more, and how much more
+NEAR, STEEP = 1.25, 5
 #: lines over which noise is alike
 ABOUT = 9
 
@@ -128,9 +128,10 @@ def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
         band = _Band(omega[lines], data[:, lines])
         low = omega[first] if first else -math.inf
         high = omega[last] if last < len(omega) else math.inf
+        before = [other for other, *_ in found]
         for one in band.modes():
             # a mode on an edge is found from both sides
-            near = any(abs(one[0] - other) < -one[0].real for other, *_ in found)
+            near = any(abs(one[0] - other) < -one[0].real / 2 for other in before)
             slack = -one[0].real
             if low - slack <= one[0].imag < high + slack and not near:
                 found.append(one)
@@ -164,10 +165,11 @@ class _Band:
             width = -poles.real
             inside = self.inside(poles)
             mode = (width > 0) & (width < DAMPED * abs(poles)) & (width < self.half)
-            # noise that grows with the response splits a peak; two as near as that are told as one
+            # the nearer a stronger pole, the more a second one takes of noise that grows with peaks
             apart = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
-            under = ((apart < NEAR) & (power < power[:, None])).any(axis=0)
-            kept = mode & ~under & ((power > SIGNIFICANT) | ~inside)
+            stronger = np.where(power > power[:, None], apart, np.inf).min(axis=1)
+            asked = SIGNIFICANT * np.maximum(1.0, NEAR / np.maximum(stronger, 1e-3)) ** STEEP
+            kept = mode & ((power > asked) | ~inside)
             if kept.all():
                 at = np.flatnonzero(inside)
                 scaled = residues * self.scale[:, None]
@@ -257,22 +259,16 @@ class _Fit:
         self.solved = self.inverse @ (self.left.T @ self.data)
         self.rest = self.data - self.basis @ self.solved
         self.cost = float(np.sum(self.rest**2))
-        a, b = self.solved[: self.count], self.solved[self.count : 2 * self.count]
-        self.residues = ((a + 1j * b) * unit[:, None] / weight).T
+        #: (part, mode, response): factors of both columns of every mode
+        self.parts = self.solved[: 2 * self.count].reshape(2, self.count, -1)
+        scaled = (self.parts[0] + 1j * self.parts[1]) * unit[:, None]
+        self.residues = (scaled / weight).T
         self.given = weight
-        # slopes along the real and the imaginary part of every pole
         fall, mirrored = unit * one**2, unit * other**2
-        slopes = [fall, mirrored, 1j * fall, -1j * mirrored]
-        ahead, back = self._free(slopes[0] + slopes[1]), self._free(1j * (fall - mirrored))
-        up, across = self._free(slopes[2] + slopes[3]), self._free(1j * (1j * fall + 1j * mirrored))
-        #: (responses, lines, unknowns)
-        self.rows = np.concatenate(
-            [
-                a.T[:, None] * ahead + b.T[:, None] * back,
-                a.T[:, None] * up + b.T[:, None] * across,
-            ],
-            axis=2,
-        )
+        along = (fall + mirrored, 1j * (fall - mirrored))
+        up = (1j * (fall - mirrored), -(fall + mirrored))
+        #: (real or imaginary part of the pole, part, mode, line)
+        self.slopes = np.array([[self._free(part).T for part in way] for way in (along, up)])
 
     def _free(self, slopes: np.ndarray) -> np.ndarray:
         """Slopes without what the residues take of them."""
@@ -292,8 +288,14 @@ class _Fit:
 
     def step(self) -> np.ndarray:
         """Change of the poles."""
-        rows = self.rows.reshape(-1, 2 * self.count)
-        move = np.linalg.lstsq(rows.T @ rows, rows.T @ self.rest.T.ravel(), rcond=1e-14)[0]
+        flat = self.slopes.reshape(4 * self.count, -1)
+        gram = (flat @ flat.T).reshape(2 * self.slopes.shape[:3])
+        both = self.parts.reshape(2 * self.count, -1)
+        shared = (both @ both.T).reshape(2 * self.parts.shape[:2])
+        normal = np.einsum("acmbdn,cmdn->ambn", gram, shared).reshape(2 * (2 * self.count,))
+        seen = (flat @ self.rest).reshape(*self.slopes.shape[:3], -1)
+        right = np.sum(seen * self.parts, axis=(1, 3)).ravel()
+        move = np.linalg.lstsq(normal, right, rcond=1e-14)[0]
         return move[: self.count] + 1j * move[self.count :]
 
     def power(self) -> np.ndarray:
@@ -312,11 +314,11 @@ class _Fit:
 
     def covariances(self) -> np.ndarray:
         """Of the real and imaginary part of every pole."""
-        rows = self.rows.reshape(-1, 2 * self.count)
+        each = np.einsum("acml,cmo->olam", self.slopes, self.parts, optimize=True)
+        each = each.reshape(*each.shape[:2], 2 * self.count)
+        rows = each.reshape(-1, 2 * self.count)
         bread = np.linalg.pinv(rows.T @ rows)
-        lever = np.sum(self.left**2, axis=1)[:, None] + np.einsum(
-            "oli,ij,olj->lo", self.rows, bread, self.rows
-        )
+        lever = np.sum(self.left**2, axis=1)[:, None] + np.einsum("oli,oli->lo", each @ bread, each)
         rest = (self.rest / np.maximum(1 - lever, 0.1)).T.ravel()
         whole = bread @ ((rows.T * rest**2) @ rows) @ bread
         at = [[k, k + self.count] for k in range(self.count)]
