@@ -235,7 +235,7 @@ def write_correlation(
         Section(
             "pairs",
             "Pairs",
-            charts={"off": partial(off_chart, found, title)},
+            charts={"off": partial(off_chart, found, title)} if found.worst else {},
             tables=[pairs(found), alone(found)],
         )
     ]

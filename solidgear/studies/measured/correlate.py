@@ -159,7 +159,7 @@ class Correlation(Displayed):
             "scene": self.scene,
             "measurement": self.title,
             "mesh": self.mesh,
-            "rms": self.rms,
+            "rms": None if self.worst is None else self.rms,
             "shift": self.shift,
             "scatter": self.scatter,
             "pairs": [
