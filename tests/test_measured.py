@@ -175,6 +175,12 @@ def test_a_rod_is_held_against_the_theory_of_rods(rod):
     assert all(mode.name.startswith("bending") for mode, _ in found.missed)
 
 
+def test_a_resonance_far_below_all_modes_has_none_and_data_without_a_number_say_so(rod):
+    found = correlate(sg.load(rod), Measured(uncertainty=1e-3, mode=[{"frequency": 11.0}]))
+    (pair,) = json.loads(json.dumps(found.results, allow_nan=False))["pairs"]
+    assert pair["mode"] is None and found.results["rms"] is None
+
+
 # ---------------------------------------------------------------------------------- identification
 def test_derivatives_are_those_of_solutions_on_either_side():
     tables, step = parse(SHAFT), 1e-3

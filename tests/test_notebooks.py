@@ -13,12 +13,12 @@ import notebooks  # noqa: E402
 
 FOLDER = ROOT / "examples" / "notebooks"
 #: compares all models, refined until the solid can judge: some ten seconds
-MARKS = {"compare": pytest.mark.slow, "tutorial": pytest.mark.long}
+MARKS = {"compare": pytest.mark.slow, "tutorial": pytest.mark.long, "tap_test": pytest.mark.long}
 NAMES = sorted(p.stem for p in FOLDER.glob("*.ipynb"))
 
 
-def test_there_are_three():
-    assert NAMES == ["bearings_and_systems", "compare", "tutorial"]
+def test_there_are_four():
+    assert NAMES == ["bearings_and_systems", "compare", "tap_test", "tutorial"]
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=MARKS.get(n, ())) for n in NAMES])

@@ -10,7 +10,7 @@ from solidgear.errors import SceneError, SolidgearError
 from solidgear.studies.measured.computed import computed_up_to
 from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.universal import read_responses
+from solidgear.studies.measured.universal import read_universal
 
 pyuff = pytest.importorskip("pyuff")
 
@@ -70,7 +70,7 @@ def test_responses_come_back_in_si_over_one_axis(tmp_path):
     hertz = np.linspace(10.0, 1000.0, 100)
     values = np.random.default_rng(2).standard_normal((3, 100, 2)) @ [1, 1j]
     sets = [response(k + 1, hertz, one) for k, one in enumerate(values)]
-    found = read_responses(written(tmp_path / "a.uff", units(), *sets))
+    found = read_universal(written(tmp_path / "a.uff", units(), *sets))
     assert found.frequencies == pytest.approx(hertz) and found.points[2] == (3, 1)
     # mm/s^2 over mN are m/s^2 over N
     assert found.values == pytest.approx(values)

@@ -39,7 +39,7 @@ HEAD = """# Gallery
 
 Short scripts, each with what it prints: a picture opens its script. They are in `examples/` and run from the folder of the project; the tests run them too. This page is made from them by `docs/tools/gallery.py`.
 
-Three notebooks in `examples/notebooks/` hold their outputs: `tutorial` (a shaft of one's own), `compare` (which model to trust, and why), `bearings_and_systems` (a hundred bearings, and two parts in one system). The tests run them without Jupyter.
+Four notebooks in `examples/notebooks/` hold their outputs: `tutorial` (a shaft of one's own), `compare` (which model to trust, and why), `bearings_and_systems` (a hundred bearings, and two parts in one system), `tap_test` (from measured responses to a modulus; the data are synthetic). The tests run them without Jupyter.
 """
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,7 +18,7 @@ MeasuredFile = Annotated[
     Path,
     typer.Argument(
         help="Measured resonances: .csv with a head such as frequency [Hz], or .toml with a list mode, "
-        "or .unv, .uff with mode shapes."
+        "or .unv, .uff with mode shapes or frequency responses."
     ),
 ]
 Tolerance = Annotated[
@@ -44,7 +45,7 @@ def correlate(
 ) -> None:
     """Measured resonances beside computed modes: which is which, how sure, and how far apart."""
     from solidgear.cli.reading import load
-    from solidgear.report.correlation_tables import pairs, write_correlation
+    from solidgear.report.correlation_tables import pairs, peaks
     from solidgear.report.folder import held
     from solidgear.studies.measured.correlate import correlate as correlated
     from solidgear.studies.measured.data import load_measured
@@ -53,8 +54,9 @@ def correlate(
     loaded = load(scene)
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = correlated(loaded, data, tol, progress)
-        files = write_correlation(out, found) if out else []
-    _tell(found, [pairs(found)], files, run)
+        files = _written(out, found, progress) if out else []
+    tables = [pairs(found)] if data.responses is None else [peaks(found), pairs(found)]
+    _tell(found, tables, files, run)
 
 
 @command
@@ -93,6 +95,18 @@ def identify(
         files = write_identification(out, found) if out else []
     tables = [entries(found), fitted(found)] + [predicted(found)] * bool(found.predicted)
     _tell(found, tables, files, run)
+
+
+def _written(out: Path, found: Any, progress: Callable[[str], None]) -> list[Path]:
+    """The page of a correlation, with shapes to be turned and responses where there are any."""
+    from solidgear.report.correlation_tables import write_correlation
+    from solidgear.report.viewer import viewer_fragment
+    from solidgear.studies.measured.beside import turned_beside
+    from solidgear.studies.measured.overlay import overlay
+
+    progress("responses and shapes at the measuring points")
+    shown = turned_beside(found)
+    return write_correlation(out, found, overlay(found), viewer_fragment(shown) if shown else "")
 
 
 def _tell(found: Any, tables: list, files: list[Path], run: Run) -> None:

@@ -1,4 +1,4 @@
-"""Tables and the chart of measured resonances beside computed ones."""
+"""Tables and the page of measured resonances beside computed ones."""
 
 from __future__ import annotations
 
@@ -9,14 +9,17 @@ from typing import Any
 import numpy as np
 
 from solidgear.judge.record import MacTable
+from solidgear.report.measured_chart import outline
 from solidgear.report.mode_charts import mac_panel
-from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, readout
+from solidgear.report.panel import GREY, INK, PERCENT, Axis, Panel, Series, readout
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import NUMBER, Column, Table, text
+from solidgear.report.train_sheet import Section
 from solidgear.report.words import hertz, percent
 
 #: looks of pairs by their verdict
+BOTH = {"measured": Series(INK), "computed": Series("#00805e")}
 LOOKS = {"agrees": Series("#00805e"), "differs": Series("#b3305c"), "no band": Series("#0072b2")}
 
 
@@ -123,23 +126,138 @@ def mac_map(found: Any, width: float = WIDE) -> Chart:
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 
-def write_correlation(folder: Path, found: Any) -> list[Path]:
-    """Page, data, table and chart of a correlation."""
+def peaks(found: Any, overlay: Any = None) -> Table:
+    """Resonances that were found in responses."""
+    fit = found.measured.responses.fit
+    columns = [
+        Column("", lambda k: k + 1, kind=NUMBER),
+        Column("frequency\nHz", lambda k: fit.frequencies[k], hertz, kind=NUMBER),
+        Column("deviation\nHz", lambda k: fit.deviations[0][k], "{:.2g}".format, kind=NUMBER),
+        Column("damping", lambda k: fit.damping[k], _unsigned, kind=NUMBER),
+        Column("deviation", lambda k: 100 * fit.deviations[1][k], "{:.2g} %".format, kind=NUMBER),
+    ]
+    note = (
+        "Deviation: one standard deviation, of the noise of these responses; another hanging, another "
+        "sensor or a mass on the part are not in it. Damping: the ratio."
+    )
+    if overlay is not None:
+        constant = partial(_constant, overlay)
+        columns.append(Column("size", constant, "{:.2f}".format, kind=NUMBER))
+        note += " Size: computed modal constant over the measured one, of all responses."
+    return Table("Resonances of the responses", columns, range(len(fit.poles)), note, style="ruled")
+
+
+def _constant(overlay: Any, k: int) -> float | None:
+    return overlay.constants.get(k + 1)
+
+
+def alone(found: Any) -> Table:
+    """What was measured and not computed, and the reverse."""
+    rows = [("measured", "", p.measured.frequency, p.probability) for p in found.pairs]
+    rows = [row for row, pair in zip(rows, found.pairs) if pair.computed is None]
+    rows += [("computed", mode.name, mode.frequency_hz, share) for mode, share in found.missed]
+    columns = [
+        text("only", lambda row: row[0]),
+        text("mode", lambda row: row[1]),
+        Column("Hz", lambda row: row[2], hertz, kind=NUMBER),
+        Column("sure", lambda row: row[3], "{:.0%}".format, kind=NUMBER),
+    ]
+    note = "Sure: probability that it has no partner."
+    return Table("Without a partner", columns, rows, note, style="ruled")
+
+
+def overlay_chart(overlay: Any, found: Any, title: str, width: float = WIDE) -> Chart:
+    """A response, and the root mean square of all, measured and computed."""
+    k = overlay.loudest
+    parts = [(overlay.names[k], np.abs(overlay.measured[k]), np.abs(overlay.computed[k]))]
+    if len(overlay.names) > 1:
+        both = [
+            np.sqrt(np.mean(np.abs(v) ** 2, axis=0)) for v in (overlay.measured, overlay.computed)
+        ]
+        parts.append((f"root mean square of all {len(overlay.names)}", *both))
+    panels = [_responses(overlay, found, *part, last=part is parts[-1]) for part in parts]
+    return Chart([[panel] for panel in panels], width, title)
+
+
+def _responses(
+    overlay: Any, found: Any, what: str, measured: np.ndarray, computed: np.ndarray, last: bool
+) -> Panel:
+    khz = overlay.hertz / 1e3
+    low, high = (float(end(measured[measured > 0])) for end in (np.min, np.max))
+    panel = Panel(
+        Axis("frequency, kHz" if last else "", (float(khz[0]), float(khz[-1]))),
+        Axis(f"{overlay.kind}, {overlay.unit}", (max(low, 1e-6 * high) / 2, 3 * high), log=True),
+        260.0,
+        title=what,
+        series=BOTH,
+        legend={"orient": "top", "symbolType": "stroke"}
+        if not last or what[:4] != "root"
+        else None,
+    )
+    for name, values in (("measured", measured), ("computed", computed)):
+        kept = outline(khz, values)
+        rows = [
+            {"x": x, "y": y, "name": name}
+            for x, y in zip(khz[kept].tolist(), values[kept].tolist())
+        ]
+        panel.draw({"type": "line", "strokeWidth": 1.3, "clip": True}, rows)
+    dots = []
+    for pair in found.pairs:
+        at = int(np.searchsorted(khz, pair.measured.frequency / 1e3).clip(0, len(khz) - 1))
+        its = pair.computed
+        facts = (
+            ("measured", hertz(pair.measured.frequency), "Hz"),
+            ("computed", hertz(its.frequency_hz) if its else "", "Hz"),
+        )
+        words = readout(its.name if its else "no mode", *facts)
+        dots.append({"x": float(khz[at]), "y": float(measured[at]), "told": words})
+    panel.draw({"type": "point", "filled": True, "size": 34, "color": INK}, dots)
+    return panel
+
+
+def write_correlation(
+    folder: Path, found: Any, overlay: Any = None, viewer: str = ""
+) -> list[Path]:
+    """Page, data, tables and charts of a correlation.
+
+    Parameters
+    ----------
+    found : Correlation
+    overlay : Overlay, optional
+        Measured and computed responses.
+    viewer : str
+        HTML of shapes beside each other.
+    """
     title = f"{found.scene}: measured and computed"
     lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."
-    charts = {"off": partial(off_chart, found, title)}
+    lines = {"pairs": pairs(found)}
+    sections = [
+        Section(
+            "pairs",
+            "Pairs",
+            charts={"off": partial(off_chart, found, title)} if found.worst else {},
+            tables=[pairs(found), alone(found)],
+        )
+    ]
     if found.mac is not None:
-        charts["mac"] = partial(mac_map, found)
+        sections.append(Section("shapes", "Shapes", charts={"mac": partial(mac_map, found)}))
+    if found.measured.responses is not None:
+        lines["peaks"] = peaks(found, overlay)
+        drawn = {"overlay": partial(overlay_chart, overlay, found, title)} if overlay else {}
+        words = overlay.told if overlay else ""
+        sections.append(Section("responses", "Responses", words, drawn, [lines["peaks"]]))
     return write_files(
         folder,
         "correlation",
         title,
         lead,
-        [pairs(found)],
+        [],
         found.results,
-        lines={"pairs": pairs(found)},
-        charts=charts,
-        notes=found.sentences,
+        lines=lines,
+        charts={},
+        verdict=found.sentences,
+        viewer=viewer,
+        sections=sections,
     )
 
 

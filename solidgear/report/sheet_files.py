@@ -10,7 +10,7 @@ from typing import Any
 from solidgear.machine.whole_file import whole
 from solidgear.report.plot import WIDE, Make
 from solidgear.report.table import Table
-from solidgear.report.train_sheet import write_sheet
+from solidgear.report.train_sheet import Section, write_sheet
 
 
 def write_files(
@@ -26,6 +26,8 @@ def write_files(
     notes: Sequence[str] = (),
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
+    viewer: str = "",
+    sections: Sequence[Section] = (),
 ) -> list[Path]:
     """Write a page, the data it shows, tables for other programs, and charts.
 
@@ -33,7 +35,7 @@ def write_files(
     ----------
     name : str
         Of page and data.
-    title, lead, tables, notes, cautions, verdict
+    title, lead, tables, notes, cautions, verdict, viewer, sections
         Of the page.
     data : mapping
         In SI.
@@ -51,7 +53,8 @@ def write_files(
     files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]
     files.append(folder / f"{name}.json")
     write_json(files[-1], data)
-    for stem, make in charts.items():
+    drawn = [charts, *(section.charts for section in sections)]
+    for stem, make in (item for some in drawn for item in some.items()):
         files += write_charts(folder / stem, make)
     path = folder / f"{name}.html"
     write_sheet(
@@ -63,6 +66,8 @@ def write_files(
         notes=notes,
         cautions=cautions,
         verdict=verdict,
+        viewer=viewer,
+        sections=sections,
     )
     return [path, *files]
 

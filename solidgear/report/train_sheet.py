@@ -34,6 +34,14 @@ WORDS = {
         "How far each computed frequency is from the measured one; grey: two standard deviations of the "
         "measured and the bar of the computed one."
     ),
+    "mac": (
+        "MAC of every measured shape (rows) and every computed mode: the share of the measured shape "
+        "that is the mode's, on the measuring points."
+    ),
+    "overlay": (
+        "Measured (dark) and computed (green) responses at the same points; dots: resonances that were "
+        "found."
+    ),
     "designs": "The goal in every design that was solved, each with its error bar.",
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "receptance": "Amplitude and phase of the receptance of every model drawn.",

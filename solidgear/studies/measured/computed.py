@@ -129,6 +129,12 @@ def computed_like(before: Computed, scene: Scene) -> Computed:
     return replace(before, scene=scene, body=body, modes=tuple(listed), bars=told)
 
 
+@pinned
+def motions_up_to(computed: Computed, limit: float) -> list[Mode]:
+    """All modes up to a frequency, Hz, with the rigid motions that nothing holds."""
+    return list(_modes(computed.scene, computed.body, limit, 2 * len(computed.modes)).modes)
+
+
 def _barred(
     scene: Scene, body: Body, limit: float, settled: Settled | None
 ) -> tuple[list[Mode], list[float]]:

@@ -106,6 +106,9 @@ class Correlation(Displayed):
         Of every measured shape and every mode; None where no shapes were measured.
     names : tuple of str
         Of the modes.
+    measured : Measured
+    computed : Computed
+        What was held against each other.
     """
 
     shown: ClassVar[str] = "correlation"
@@ -118,8 +121,10 @@ class Correlation(Displayed):
     scatter: float
     mesh: str
     tolerance: float
-    mac: np.ndarray | None = None
-    names: tuple[str, ...] = ()
+    mac: np.ndarray | None
+    names: tuple[str, ...]
+    measured: Measured
+    computed: Computed
 
     @property
     def rms(self) -> float:
@@ -138,6 +143,14 @@ class Correlation(Displayed):
         """Conclusions."""
         return list(_sentences(self))
 
+    def _damping(self, number: int) -> dict[str, float]:
+        """Damping ratio of a resonance found in responses, and its deviation."""
+        found = self.measured.responses
+        if found is None:
+            return {}
+        ratio, deviation = found.fit.damping[number - 1], found.fit.deviations[1][number - 1]
+        return {"damping": float(ratio), "damping_deviation": float(deviation)}
+
     @property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, Hz."""
@@ -146,11 +159,12 @@ class Correlation(Displayed):
             "scene": self.scene,
             "measurement": self.title,
             "mesh": self.mesh,
-            "rms": self.rms,
+            "rms": None if self.worst is None else self.rms,
             "shift": self.shift,
             "scatter": self.scatter,
             "pairs": [
-                {
+                self._damping(pair.number)
+                | {
                     "number": pair.number,
                     "measured_hz": pair.measured.frequency,
                     "measured_deviation_hz": pair.measured.width_hz,
@@ -266,6 +280,8 @@ def _correlation(
         computed.tolerance,
         mac,
         tuple(mode.name for mode in barred),
+        measured,
+        computed,
     )
 
 

@@ -1,7 +1,8 @@
 """Measured resonances from a file: frequencies, how sure they are, and what is known of each.
 
 A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
-a universal file has shapes as well.
+a universal file has shapes as well, or frequency responses; a CSV file of those has the head
+``frequency [Hz], real, imaginary``.
 
     title = "Tap test, hung on two cords"
     uncertainty = "0.1 %"           # of all modes that say nothing else
@@ -20,13 +21,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.errors import SceneError, show
+from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
-from solidgear.studies.measured.universal import ENDINGS, Shapes, read_shapes
+from solidgear.studies.measured.responses import ResponseFit
+from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, read_universal
 
 #: resonances of a file
 MOST = 2000
@@ -105,11 +108,17 @@ class Measured(Model):
     uncertainty: Uncertainty | None = None
     mode: tuple[MeasuredMode, ...]
     _shapes: Shapes | None = PrivateAttr(None)
+    _responses: ResponseFit | None = PrivateAttr(None)
 
     @property
     def shapes(self) -> Shapes | None:
         """Shapes of all on measuring points; None for a list of frequencies."""
         return self._shapes
+
+    @property
+    def responses(self) -> ResponseFit | None:
+        """Responses that the resonances were found in; None for a list of them."""
+        return self._responses
 
     @model_validator(mode="after")
     def _ascending(self) -> Measured:
@@ -141,12 +150,13 @@ def load_measured(path: str | os.PathLike) -> Measured:
     Parameters
     ----------
     path : str or path
-        ``.toml``, ``.csv``, or a universal file ``.unv``, ``.uff`` of mode shapes.
+        ``.toml``, ``.csv``, or a universal file ``.unv``, ``.uff`` of mode shapes, or of frequency
+        responses, in which resonances are then found.
 
     Raises
     ------
     SceneError
-        The file, the entry, its value and what would be right.
+        The file, the entry, its value and what would be right; responses without a resonance.
 
     Examples
     --------
@@ -159,7 +169,10 @@ def load_measured(path: str | os.PathLike) -> Measured:
     where = os.fspath(path)
     if where.lower().endswith(ENDINGS):
         return _of_universal(where)
-    tables: Mapping[str, Any] = _of_csv(Path(path)) if where.endswith(".csv") else parse(where)
+    tables: Mapping[str, Any] | Responses
+    tables = _of_csv(Path(path)) if where.lower().endswith(".csv") else parse(where)
+    if isinstance(tables, Responses):
+        return of_responses(tables, where)
     try:
         return Measured(**tables)
     except SceneError as error:
@@ -167,17 +180,41 @@ def load_measured(path: str | os.PathLike) -> Measured:
 
 
 def _of_universal(where: str) -> Measured:
-    frequencies, shapes = read_shapes(where)
-    tables = {"mode": [{"frequency": one} for one in frequencies]}
-    try:
-        out = Measured(title=Path(where).stem, **tables)
-    except SceneError as error:
-        raise error.located(tables, where=where) from None
+    read = read_universal(where)
+    if isinstance(read, Responses):
+        return of_responses(read, where)
+    frequencies, shapes = read
+    out = _checked(where, {"mode": [{"frequency": one} for one in frequencies]})
     out._shapes = shapes
     return out
 
 
-def _of_csv(path: Path) -> dict[str, Any]:
+def of_responses(responses: Responses, where: str = "responses") -> Measured:
+    """Resonances that are found in responses; `where` is their file.
+
+    Raises
+    ------
+    SceneError
+        Where no resonance stands out of the noise.
+    """
+    try:
+        found = ResponseFit.of(responses)
+    except SolidgearError as error:
+        raise SceneError(str(error), where=where) from None
+    told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
+    out = _checked(where, {"mode": [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]})
+    out._shapes, out._responses = found.shapes, found
+    return out
+
+
+def _checked(where: str, tables: dict[str, Any]) -> Measured:
+    try:
+        return Measured(title=Path(where).stem, **tables)
+    except SceneError as error:
+        raise error.located(tables, where=where) from None
+
+
+def _of_csv(path: Path) -> dict[str, Any] | Responses:
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -188,10 +225,31 @@ def _of_csv(path: Path) -> dict[str, Any]:
             'holds no resonances; write a head such as "frequency [Hz]" and one a line',
             where=os.fspath(path),
         )
+    if any(head.split("[")[0].strip() == "real" for head in rows[0]):
+        return _columns(path, rows)
     heads = [_head(path, head) for head in rows[0]]
     if "frequency" not in [word for word, _ in heads]:
         raise SceneError('has no column "frequency [Hz]"', where=os.fspath(path))
     return {"mode": [_entry(heads, row) for row in rows[1:]]}
+
+
+def _columns(path: Path, rows: Sequence[Sequence[str]]) -> Responses:
+    """Responses of columns: the frequency, then real and imaginary parts in turn."""
+    words = [head.split("[")[0].strip() for head in rows[0]]
+    unit = _HEAD.fullmatch(rows[0][0])
+    told = words == ["frequency"] + ["real", "imaginary"] * (len(words) // 2)
+    if not told or unit is None or not unit["unit"]:
+        raise SceneError(
+            'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
+            "pairs of real and imaginary as there are responses",
+            where=os.fspath(path),
+        )
+    try:
+        numbers = np.array(rows[1:], float)
+    except ValueError:
+        raise SceneError("holds a line that is not all numbers", where=os.fspath(path)) from None
+    hertz = numbers[:, 0] * quantity(f"1 {unit['unit']}", "frequency")
+    return Responses(hertz, (numbers[:, 1::2] + 1j * numbers[:, 2::2]).T)
 
 
 def _head(path: Path, text: str) -> tuple[str, str]:

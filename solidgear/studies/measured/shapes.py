@@ -7,11 +7,12 @@ measurement is free).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from solidgear.body import Body
 from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError
 from solidgear.studies.measured.computed import Computed
@@ -23,6 +24,32 @@ OFF = 0.05
 NEAR = 4
 
 
+class OnPoints:
+    """Motions of a body's surface at measuring points.
+
+    Parameters
+    ----------
+    numbers : sequence of int
+        Of the points.
+    points : (p, 3) ndarray
+        m.
+
+    Raises
+    ------
+    SolidgearError
+        For a point that is off the surface.
+    """
+
+    def __init__(self, body: Body, numbers: Sequence[int], points: np.ndarray):
+        self.body = body
+        self.corners, self.weights = _places(body.surface({}), numbers, points)
+
+    def of(self, vector: Mapping[int, np.ndarray]) -> np.ndarray:
+        """(p, 3) displacements by unknowns of blocks."""
+        moved = self.body.surface(vector).displacement[self.corners]
+        return np.einsum("pc,pcx->px", self.weights, moved)
+
+
 def mac_of(measured: Shapes, computed: Computed) -> np.ndarray:
     """MAC of all measured shapes (rows) and all modes of a body.
 
@@ -31,19 +58,13 @@ def mac_of(measured: Shapes, computed: Computed) -> np.ndarray:
     SolidgearError
         For a point that is off the surface.
     """
-    body = computed.body
-    corners, weights = _places(body.surface({}), measured)
+    places = OnPoints(computed.body, measured.numbers.tolist(), measured.points)
     seen = np.any(measured.values != 0, axis=0)
     out = np.zeros((len(measured.values), len(computed.modes)))
-
-    def on_points(vector: Mapping[int, np.ndarray]) -> np.ndarray:
-        moved = body.surface(vector).displacement[corners]
-        return np.einsum("pc,pcx->px", weights, moved)[seen]
-
     rows = measured.values[:, seen]
     whole = np.sum(np.abs(rows) ** 2, axis=1)
     for j, mode in enumerate(computed.modes):
-        span = np.column_stack([on_points(vector) for vector in mode.vectors])
+        span = np.column_stack([places.of(vector)[seen] for vector in mode.vectors])
         left, size, _ = np.linalg.svd(span, full_matrices=False)
         # a mode that no point sees spans nothing
         left = left[:, size > 1e-6 * max(size[0], np.finfo(float).tiny)]
@@ -51,16 +72,18 @@ def mac_of(measured: Shapes, computed: Computed) -> np.ndarray:
     return out
 
 
-def _places(still: Surface, measured: Shapes) -> tuple[np.ndarray, np.ndarray]:
+def _places(
+    still: Surface, numbers: Sequence[int], points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Corners of the triangle that is nearest to every point, and their weights."""
     faces = still.faces
     triangles = np.concatenate(
         [np.reshape(part, (-1, 3)) for part in (faces[:, :3], faces[:, [0, 2, 3]], still.triangles)]
     )
-    near = cKDTree(still.points).query(measured.points, NEAR)[1]
+    near = cKDTree(still.points).query(points, NEAR)[1]
     radius = float(np.hypot(still.points[:, 0], still.points[:, 2]).max())
     corners, weights = [], []
-    for number, point, around in zip(measured.numbers, measured.points, near):
+    for number, point, around in zip(numbers, points, near):
         tried = triangles[np.any(np.isin(triangles, around), axis=1)]
         weight = np.array([_weights(still.points[one], point) for one in tried])
         there = np.einsum("tc,tcx->tx", weight, still.points[tried])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,8 @@ UNITS = {
 }
 #: dataset 58's kinds of data that carry a length (displacement, velocity, acceleration) or a force
 LENGTHS, FORCES = (8, 11, 12), (9, 13)
+#: its function that is a frequency response
+RESPONSE = 4
 #: dataset 55's analyses: normal modes; complex ones
 NORMAL, COMPLEX = 2, (3, 7)
 _MARK = re.compile(rb"^ {4}-1[ \t]*\r?$", re.MULTILINE)
@@ -55,37 +57,61 @@ class Shapes:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Measured functions over one axis of frequencies.
+    """Measured frequency responses over one axis of frequencies.
 
     Attributes
     ----------
     frequencies : (k,) ndarray
         Hz.
-    values : (n, k) ndarray
+    values : (n, k) ndarray of complex
         SI.
-    points : tuple of (int, int)
-        Number and direction of the point of each: 1, 2, 3 for x, y, z, negative backwards.
+    points, references : tuple of (int, int)
+        Number and direction of the point of each, and of where it was driven: 1, 2, 3 for x, y, z,
+        negative backwards; empty where nothing tells them.
+    places : mapping of int to (float, float, float)
+        Of points by their numbers, m; empty where nothing tells them.
+    derivatives : int or None
+        Times that the displacement is differentiated in what is over a force: 2 for an
+        acceleration; None where nothing tells it.
     """
 
     frequencies: np.ndarray
     values: np.ndarray
-    points: tuple[tuple[int, int], ...]
+    points: tuple[tuple[int, int], ...] = ()
+    references: tuple[tuple[int, int], ...] = ()
+    places: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
+    derivatives: int | None = None
 
 
-def read_shapes(path: str | os.PathLike) -> tuple[list[float], Shapes]:
-    """Frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset 55).
+def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes] | Responses:
+    """Frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset 55), or its
+    frequency responses (dataset 58) where it has no modes.
 
     Raises
     ------
     SceneError
-        For a file cut short, without modes, points or units.
+        For a file cut short, without units, with neither, with modes without points, and with
+        responses over more than one axis.
     """
     sets = _datasets(path)
     modes = [
         one for one in sets if one["type"] == 55 and one["analysis_type"] in (NORMAL, *COMPLEX)
     ]
-    if not modes:
-        raise _error(path, "holds no mode shapes (dataset 55 of normal or complex modes)")
+    if modes:
+        return _shapes(path, sets, modes)
+    found = [one for one in sets if one["type"] == 58 and one["func_type"] == RESPONSE]
+    if not found:
+        raise _error(
+            path,
+            "holds no mode shapes (dataset 55 of normal or complex modes) and no frequency responses "
+            "(dataset 58, function 4)",
+        )
+    return _responses(path, sets, found)
+
+
+def _shapes(
+    path: str | os.PathLike, sets: Sequence[Mapping[str, Any]], modes: Sequence[Mapping[str, Any]]
+) -> tuple[list[float], Shapes]:
     places = _points(path, sets)
     numbers = modes[0]["node_nums"]
     for one in modes:
@@ -108,20 +134,12 @@ def read_shapes(path: str | os.PathLike) -> tuple[list[float], Shapes]:
     return [hertz[k] for k in order], Shapes(np.asarray(numbers, int), points, values)
 
 
-def read_responses(path: str | os.PathLike) -> Responses:
-    """Responses of a universal file (dataset 58), all over one axis.
-
-    Raises
-    ------
-    SceneError
-        For a file cut short, without responses or units, or with more than one axis.
-    """
-    sets = _datasets(path)
-    found = [one for one in sets if one["type"] == 58]
-    if not found:
-        raise _error(path, "holds no responses (dataset 58)")
+def _responses(
+    path: str | os.PathLike, sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Any]]
+) -> Responses:
     length, force = _units(path, sets)
     axis = found[0]["x"]
+    kinds = found[0]["ordinate_spec_data_type"], found[0]["orddenom_spec_data_type"]
     for k, one in enumerate(found, start=1):
         if len(one["data"]) != one["num_pts"]:
             raise _error(
@@ -129,20 +147,23 @@ def read_responses(path: str | os.PathLike) -> Responses:
             )
         if not np.array_equal(one["x"], axis):
             raise _error(path, f"has other frequencies in response {k} than in the first")
+        if (one["ordinate_spec_data_type"], one["orddenom_spec_data_type"]) != kinds:
+            raise _error(path, f"has another kind of data in response {k} than in the first")
 
     def unit(kind: int) -> float:
         if kind in LENGTHS:
             return length
         return force if kind in FORCES else 1.0
 
-    values = np.array(
-        [
-            one["data"]
-            * (unit(one["ordinate_spec_data_type"]) / unit(one["orddenom_spec_data_type"]))
-            for one in found
-        ]
+    told = kinds[0] in LENGTHS and kinds[1] in FORCES
+    return Responses(
+        axis,
+        np.array([one["data"] for one in found], complex) * (unit(kinds[0]) / unit(kinds[1])),
+        tuple((one["rsp_node"], one["rsp_dir"]) for one in found),
+        tuple((one["ref_node"], one["ref_dir"]) for one in found),
+        _points(path, sets) if any(one["type"] in (15, 2411) for one in sets) else {},
+        LENGTHS.index(kinds[0]) if told else None,
     )
-    return Responses(axis, values, tuple((one["rsp_node"], one["rsp_dir"]) for one in found))
 
 
 def _datasets(path: str | os.PathLike) -> list[dict[str, Any]]:

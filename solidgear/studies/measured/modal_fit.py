@@ -1,0 +1,329 @@
+"""Resonances from measured responses, each with its damping, its shape and how sure they are.
+
+In a band of lines a response is a sum over modes, accelerance over s = i w,
+
+    H_o(s) = sum_r  A_or / (s - p_r) + A_or* / (s - p_r*)  + a polynomial of what lies outside,
+
+with poles p that all responses share. Poles are begun with by least squares in the complex frequency
+domain (Guillaume, Verboven et al. 2003, A poly-reference implementation of the least-squares complex
+frequency-domain estimator, IMAC 21), with the numerator left at its highest order so that one set of
+normal equations serves the denominators of all orders; what stays where it is over the orders is a
+mode. They are then brought to the least squares of the sum itself by Gauss and Newton, residues being
+eliminated (Golub and Pereyra 1973, SIAM J. Numer. Anal. 10, 413), each response weighed by its noise.
+Deviations are those of that fit, of the residuals as they are (White 1980, Econometrica 48, 817, in the
+form that leverage widens): noise that grows with the response counts as well as a floor does.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+
+#: lines of a band, and what of it is looked at from both sides by the next
+LINES, MARGIN = 512, 128
+#: lines below which nothing is fitted
+FEWEST = 32
+#: highest order of the denominator in a band, and the lowest that is looked at
+ORDERS = range(4, 41, 2)
+#: share of the unit circle that a band is put on; the rest takes what does not close (Verboven 2002)
+CIRCLE = 0.9
+#: a pole stays where it is within this share of its half width, over so many orders of those
+STAYS, STABLE = 0.5, 3
+#: largest damping of a mode
+DAMPED = 0.1
+#: degree of the polynomial, rounds of the fit, of which weights are of the first, and the change of
+#: the poles in half widths that ends it
+DEGREE, ROUNDS, WEIGHING, ENDS = 6, 25, 3, 1e-4
+#: power of a mode over that of the noise of as many unknowns from which on it is one
+SIGNIFICANT = 12.0
+#: half widths (of the wider) within which a second pole must stand out more, and how much more
+NEAR, STEEP = 1.25, 5
+#: lines over which noise is alike
+ABOUT = 9
+
+
+@dataclass(frozen=True, eq=False)
+class ModalFit:
+    """Poles of responses and their residues, by ascending frequency.
+
+    Attributes
+    ----------
+    poles : (n,) ndarray of complex
+        rad/s.
+    covariances : (n, 2, 2) ndarray
+        Of the real and imaginary part of each.
+    residues : (n, m) ndarray of complex
+        Of every response, as accelerance.
+    """
+
+    poles: np.ndarray
+    covariances: np.ndarray
+    residues: np.ndarray
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Undamped natural frequencies, Hz."""
+        return np.abs(self.poles) / (2 * np.pi)
+
+    @property
+    def damping(self) -> np.ndarray:
+        """Damping ratios."""
+        return -self.poles.real / np.abs(self.poles)
+
+    @property
+    def deviations(self) -> tuple[np.ndarray, np.ndarray]:
+        """Standard deviations of frequencies, Hz, and of damping ratios."""
+        size = np.abs(self.poles)
+        along = np.column_stack([self.poles.real, self.poles.imag]) / size[:, None]
+        across = np.column_stack([-self.poles.imag, self.poles.real]) / size[:, None]
+        # damping is the sine of the angle to the imaginary axis, the cosine of which is its slope
+        slope = np.abs(self.poles.imag) / size**2
+        spread = [np.einsum("ni,nij,nj->n", v, self.covariances, v) for v in (along, across)]
+        return np.sqrt(spread[0]) / (2 * np.pi), np.sqrt(spread[1]) * slope
+
+
+@pinned
+def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
+    """Find the modes of responses.
+
+    Parameters
+    ----------
+    hertz : (k,) ndarray
+        Ascending.
+    accelerance : (m, k) ndarray of complex
+        Acceleration over force, in any unit.
+
+    Raises
+    ------
+    SolidgearError
+        For fewer lines than a band needs, and where no mode stands out of the noise.
+
+    Examples
+    --------
+    >>> hertz = np.linspace(1.0, 400.0, 800)
+    >>> s, pole = 2j * np.pi * hertz, 2 * np.pi * (-2 + 150j)
+    >>> noise = 1e-4 * np.random.default_rng(1).standard_normal((2, 800, 2)) @ [1, 1j]
+    >>> found = fit_modes(hertz, s**2 / ((s - pole) * (s - pole.conjugate())) + noise)
+    >>> found.frequencies.round(1), found.damping.round(4)
+    (array([150.]), array([0.0133]))
+    """
+    ahead = hertz > 0
+    omega, data = 2 * np.pi * hertz[ahead], accelerance[:, ahead]
+    if len(omega) < FEWEST:
+        raise SolidgearError(f"responses have {len(omega)} lines; {FEWEST} at least are fitted")
+    moved = np.sqrt(np.mean(np.abs(data) ** 2, axis=1))
+    if not np.all(np.isfinite(data)) or not np.all(moved > 0):
+        raise SolidgearError("a response is zero everywhere, or holds what is no number")
+    found: list[tuple[complex, np.ndarray, np.ndarray]] = []
+    count = max(math.ceil((len(omega) - 2 * MARGIN) / (LINES - 2 * MARGIN)), 1)
+    edges = np.linspace(0, len(omega), count + 1).astype(int)
+    for first, last in zip(edges[:-1], edges[1:]):
+        lines = slice(max(first - MARGIN, 0), last + MARGIN)
+        band = _Band(omega[lines], data[:, lines])
+        low = omega[first] if first else -math.inf
+        high = omega[last] if last < len(omega) else math.inf
+        before = [other for other, *_ in found]
+        for one in band.modes():
+            # a mode on an edge is found from both sides
+            near = any(abs(one[0] - other) < -one[0].real / 2 for other in before)
+            slack = -one[0].real
+            if low - slack <= one[0].imag < high + slack and not near:
+                found.append(one)
+    if not found:
+        raise SolidgearError("no resonance stands out of the noise of these responses")
+    found.sort(key=lambda one: abs(one[0]))
+    poles, covariances, residues = (np.array(part) for part in zip(*found))
+    return ModalFit(poles, covariances, residues)
+
+
+class _Band:
+    """Responses over some lines, and the modes in them."""
+
+    def __init__(self, omega: np.ndarray, data: np.ndarray):
+        self.omega, self.step = omega, float(np.median(np.diff(omega)))
+        self.middle, self.half = (omega[0] + omega[-1]) / 2, (omega[-1] - omega[0]) / 2
+        # what does not go on from line to line is noise
+        jumps = np.median(np.abs(np.diff(data, 2, axis=1)), axis=1) / math.sqrt(6 * math.log(2))
+        rms = np.sqrt(np.mean(np.abs(data) ** 2, axis=1))
+        self.scale = np.maximum(jumps, 1e-9 * rms.max())
+        self.data = data / self.scale[:, None]
+        x = (omega - self.middle) / self.half
+        self.smooth = np.polynomial.legendre.legvander(x, DEGREE)
+
+    def modes(self) -> list[tuple[complex, np.ndarray, np.ndarray]]:
+        """Pole, covariance of it, and residues of every mode."""
+        poles = self.starts()
+        while len(poles):
+            poles = self.settled(poles)
+            power, covariance, residues = self.told(poles)
+            width = -poles.real
+            inside = self.inside(poles)
+            mode = (width > 0) & (width < DAMPED * abs(poles)) & (width < self.half)
+            # the nearer a stronger pole, the more a second one takes of noise that grows with peaks
+            apart = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
+            stronger = np.where(power > power[:, None], apart, np.inf).min(axis=1)
+            asked = SIGNIFICANT * np.maximum(1.0, NEAR / np.maximum(stronger, 1e-3)) ** STEEP
+            kept = mode & ((power > asked) | ~inside)
+            if kept.all():
+                at = np.flatnonzero(inside)
+                scaled = residues * self.scale[:, None]
+                return [(complex(poles[k]), covariance[k], scaled[:, k]) for k in at]
+            # the weakest goes, and the others are fitted without it
+            worst = int(np.where(kept, np.inf, np.where(mode, power, -1.0)).argmin())
+            poles = np.delete(poles, worst)
+        return []
+
+    def inside(self, poles: np.ndarray) -> np.ndarray:
+        """Tell which poles lie in the band."""
+        return np.abs(poles.imag - self.middle) <= self.half
+
+    def starts(self) -> np.ndarray:
+        """Poles that stay where they are over the orders."""
+        rate = CIRCLE * math.pi / self.half
+        most = min(ORDERS[-1], len(self.omega) // 4)
+        z = np.exp(1j * rate * (self.omega - self.middle))
+        powers = z[:, None] ** np.arange(most + 1)
+        numerator = np.linalg.qr(powers)[0].conj().T
+        normal = (powers.conj().T * np.sum(np.abs(self.data) ** 2, axis=0)) @ powers
+        for row in self.data:
+            seen = (numerator * row) @ powers
+            normal = normal - seen.conj().T @ seen
+        chains: list[list[complex]] = []
+        orders = [n for n in ORDERS if n <= most]
+        for n in orders:
+            # with the lowest coefficient held, what is no mode has its pole beyond the axis
+            higher = np.linalg.lstsq(
+                normal[1 : n + 1, 1 : n + 1], -normal[1 : n + 1, 0], rcond=None
+            )[0]
+            roots = np.roots(np.append(higher[::-1], 1.0))
+            poles = 1j * self.middle + np.log(roots) / rate
+            for pole in poles[(poles.real < 0) & (poles.imag > 0)]:
+                width = max(-pole.real, self.step)
+                near = [c for c in chains if abs(c[-1] - pole) < STAYS * width]
+                if near:
+                    min(near, key=lambda chain: abs(chain[-1] - pole)).append(complex(pole))
+                else:
+                    chains.append([complex(pole)])
+        return np.array([c[-1] for c in chains if len(c) >= STABLE], complex)
+
+    def settled(self, poles: np.ndarray) -> np.ndarray:
+        """Poles of least squares."""
+        weight = np.ones(len(self.data))
+        cost = math.inf
+        step = np.zeros_like(poles)
+        for turn in range(ROUNDS):
+            fit = _Fit(self, poles, weight)
+            if turn > WEIGHING and fit.cost > cost * (1 + 1e-9):
+                step = step / 2
+                poles = poles - step
+                continue
+            if turn < WEIGHING:
+                weight = fit.weight()
+            cost, step = fit.cost, fit.step()
+            far = np.abs(step) / np.maximum(-poles.real, self.step)
+            step = step / np.maximum(1.0, far)
+            poles = poles + step
+            # a pole across the axis is turned back
+            poles = -np.maximum(np.abs(poles.real), 1e-9 * np.abs(poles)) + 1j * poles.imag
+            moved = far[self.inside(poles)]
+            if turn >= WEIGHING and np.max(moved, initial=0.0) < ENDS:
+                break
+        return poles
+
+    def told(self, poles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Power of every mode over that of the noise, covariances of poles, and residues."""
+        fit = _Fit(self, poles, _Fit(self, poles, np.ones(len(self.data))).weight())
+        return fit.power(), fit.covariances(), fit.residues
+
+
+class _Fit:
+    """Residues, and the linear fit about some poles, in real numbers: lines are twice."""
+
+    def __init__(self, band: _Band, poles: np.ndarray, weight: np.ndarray):
+        self.poles, self.count = poles, len(poles)
+        s = 1j * band.omega[:, None]
+        one, other = 1 / (s - poles), 1 / (s - poles.conj())
+        # in units of the half width, for the condition
+        unit = np.maximum(-poles.real, band.step)
+        parts = [(one + other) * unit, 1j * (one - other) * unit, band.smooth, 1j * band.smooth]
+        self.basis = _real(np.hstack(parts))
+        self.data = _real((band.data * weight[:, None]).T)
+        self.left, upper = np.linalg.qr(self.basis)
+        self.inverse = np.linalg.pinv(upper, rcond=1e-12)
+        self.solved = self.inverse @ (self.left.T @ self.data)
+        self.rest = self.data - self.basis @ self.solved
+        self.cost = float(np.sum(self.rest**2))
+        #: (part, mode, response): factors of both columns of every mode
+        self.parts = self.solved[: 2 * self.count].reshape(2, self.count, -1)
+        scaled = (self.parts[0] + 1j * self.parts[1]) * unit[:, None]
+        self.residues = (scaled / weight).T
+        self.given = weight
+        fall, mirrored = unit * one**2, unit * other**2
+        along = (fall + mirrored, 1j * (fall - mirrored))
+        up = (1j * (fall - mirrored), -(fall + mirrored))
+        #: (real or imaginary part of the pole, part, mode, line)
+        self.slopes = np.array([[self._free(part).T for part in way] for way in (along, up)])
+
+    def _free(self, slopes: np.ndarray) -> np.ndarray:
+        """Slopes without what the residues take of them."""
+        real = _real(slopes)
+        return real - self.left @ (self.left.T @ real)
+
+    @property
+    def spare(self) -> float:
+        """Numbers of a response that are left for its noise."""
+        lines, unknowns = self.basis.shape
+        return max(lines - unknowns - 2 * self.count / self.data.shape[1], 1.0)
+
+    def weight(self) -> np.ndarray:
+        """Of every response, by the noise that is left of it."""
+        noise = np.sqrt(np.sum(self.rest**2, axis=0) / self.spare) / self.given
+        return 1 / np.maximum(noise, 1e-12 * max(float(noise.max()), 1e-300))
+
+    def step(self) -> np.ndarray:
+        """Change of the poles."""
+        flat = self.slopes.reshape(4 * self.count, -1)
+        gram = (flat @ flat.T).reshape(2 * self.slopes.shape[:3])
+        both = self.parts.reshape(2 * self.count, -1)
+        shared = (both @ both.T).reshape(2 * self.parts.shape[:2])
+        normal = np.einsum("acmbdn,cmdn->ambn", gram, shared).reshape(2 * (2 * self.count,))
+        seen = (flat @ self.rest).reshape(*self.slopes.shape[:3], -1)
+        right = np.sum(seen * self.parts, axis=(1, 3)).ravel()
+        move = np.linalg.lstsq(normal, right, rcond=1e-14)[0]
+        return move[: self.count] + 1j * move[self.count :]
+
+    def power(self) -> np.ndarray:
+        """What each mode explains, over the noise of as many unknowns where the mode is seen."""
+        # of the lines about: a pole may fit the noise of one line altogether
+        square = np.sum(self.rest.reshape(2, -1, self.rest.shape[1]) ** 2, axis=0) / 2
+        noise = np.tile(uniform_filter1d(square, ABOUT, axis=0, mode="nearest"), (2, 1))
+        taken = self.inverse @ self.left.T
+        out = np.zeros(self.count)
+        for k in range(self.count):
+            at = [k, k + self.count]
+            spread = np.einsum("il,lo,jl->oij", taken[at], noise, taken[at], optimize=True)
+            solved = np.linalg.solve(spread, self.solved[at].T[:, :, None])[:, :, 0]
+            out[k] = np.sum(self.solved[at].T * solved)
+        return out / (2 * self.data.shape[1] + 2)
+
+    def covariances(self) -> np.ndarray:
+        """Of the real and imaginary part of every pole."""
+        each = np.einsum("acml,cmo->olam", self.slopes, self.parts, optimize=True)
+        each = each.reshape(*each.shape[:2], 2 * self.count)
+        rows = each.reshape(-1, 2 * self.count)
+        bread = np.linalg.pinv(rows.T @ rows)
+        lever = np.sum(self.left**2, axis=1)[:, None] + np.einsum("oli,oli->lo", each @ bread, each)
+        rest = (self.rest / np.maximum(1 - lever, 0.1)).T.ravel()
+        whole = bread @ ((rows.T * rest**2) @ rows) @ bread
+        at = [[k, k + self.count] for k in range(self.count)]
+        return np.array([whole[np.ix_(pair, pair)] for pair in at])
+
+
+def _real(values: np.ndarray) -> np.ndarray:
+    return np.concatenate([values.real, values.imag])

@@ -1,0 +1,77 @@
+"""Measured responses with the modes that were found in them, and shapes of those."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.studies.measured.modal_fit import ModalFit, fit_modes
+from solidgear.studies.measured.universal import Responses, Shapes
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseFit:
+    """Responses, and their modes.
+
+    Attributes
+    ----------
+    responses : Responses
+    fit : ModalFit
+    shapes : Shapes or None
+        None where the file gives no places of its points.
+    """
+
+    responses: Responses
+    fit: ModalFit
+    shapes: Shapes | None
+
+    @classmethod
+    def of(cls, responses: Responses) -> ResponseFit:
+        """Find the modes of responses.
+
+        Raises
+        ------
+        SolidgearError
+            For an axis that does not ascend, and as of :func:`fit_modes`.
+        """
+        hertz = responses.frequencies
+        if not np.all(np.isfinite(hertz)) or not np.all(np.diff(hertz) > 0):
+            raise SolidgearError("has frequencies of responses that do not ascend")
+        # accelerance is a sum over poles and a polynomial; of a displacement rigid motions are not
+        missing = 2 - (2 if responses.derivatives is None else responses.derivatives)
+        fit = fit_modes(hertz, responses.values * (2j * np.pi * hertz) ** missing)
+        return cls(responses, fit, _shapes(responses, fit) if responses.places else None)
+
+
+def moving(responses: Responses) -> list[tuple[int, tuple[int, int]]]:
+    """Responses that tell one shape, each with the point and the direction of it: those to one
+    reference, or, where the hammer went round, those at one point.
+    """
+    fixed = [Counter(responses.references), Counter(responses.points)]
+    (one, count), (other, many) = (found.most_common(1)[0] for found in fixed)
+    if count >= many:
+        told = [(k, at) for k, at in enumerate(responses.points) if responses.references[k] == one]
+    else:
+        told = [
+            (k, at) for k, at in enumerate(responses.references) if responses.points[k] == other
+        ]
+    return [(k, at) for k, at in told if 1 <= abs(at[1]) <= 3]
+
+
+def _shapes(responses: Responses, fit: ModalFit) -> Shapes | None:
+    told = moving(responses)
+    if not told:
+        return None
+    numbers = sorted({number for _, (number, _) in told})
+    missing = [number for number in numbers if number not in responses.places]
+    if missing:
+        raise SolidgearError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
+    values = np.zeros((len(fit.poles), len(numbers), 3), complex)
+    for k, (number, direction) in told:
+        along = abs(direction) - 1
+        values[:, numbers.index(number), along] = np.sign(direction) * fit.residues[:, k]
+    places = np.array([responses.places[number] for number in numbers])
+    return Shapes(np.array(numbers), places, values)

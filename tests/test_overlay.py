@@ -1,0 +1,131 @@
+"""Measured responses beside those of a scene, and what is shown of them."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from solidgear.cli.app import app
+from solidgear.scene.file import load
+from solidgear.studies.measured.beside import turned_beside
+from solidgear.studies.measured.correlate import correlate
+from solidgear.studies.measured.data import load_measured
+from solidgear.studies.measured.overlay import overlay
+
+pyuff = pytest.importorskip("pyuff")
+
+#: a free slender rod of steel, m, kg, m/s
+LENGTH, RADIUS, E, DENSITY = 0.6, 0.004, 200e9, 7850.0
+MASS = DENSITY * math.pi * RADIUS**2 * LENGTH
+ROD = f"""
+material = {{ E = {E:g}, nu = 0.3, density = {DENSITY} }}
+segment = [{{ kind = "cylinder", name = "rod", length = {LENGTH}, diameter = {2 * RADIUS} }}]
+port = {{ at = "rod.middle", attach_to = "rod" }}
+"""
+#: measured across at so many places, driven at the first
+ALONG = np.linspace(0.0, LENGTH, 9)
+HERTZ = np.linspace(1.0, 1100.0, 1100)
+DAMPING = 0.01
+
+
+def bending(n):
+    """Shape and frequency of a free rod in bending (Blevins, Formulas, table 8-1), of unit mass."""
+    k = (4.73004, 7.85320, 10.99561, 14.13717, 17.27876, 20.42035)[n - 1]
+    sigma = (np.cosh(k) - np.cos(k)) / (np.sinh(k) - np.sin(k))
+    x = k * ALONG / LENGTH
+    shape = np.cosh(x) + np.cos(x) - sigma * (np.sinh(x) + np.sin(x))
+    speed = math.sqrt(E / DENSITY) * RADIUS / 2
+    return shape / math.sqrt(MASS), k**2 * speed / (2 * math.pi * LENGTH**2)
+
+
+def responses(noise=1e-3):
+    """Accelerances of the rod: rigid motions and six modes."""
+    omega = 2 * np.pi * HERTZ
+    tilt = (ALONG - LENGTH / 2) / math.sqrt(MASS * LENGTH**2 / 12)
+    rigid = 1 / MASS + tilt * tilt[0]
+    out = rigid[:, None] * np.ones_like(omega, complex)
+    for n in range(1, 7):
+        shape, hertz = bending(n)
+        own = 2 * np.pi * hertz
+        below = own**2 - omega**2 + 2j * DAMPING * own * omega
+        out += (shape * shape[0])[:, None] * -(omega**2) / below
+    drawn = np.random.default_rng(3).standard_normal((*out.shape, 2)) @ [1, 1j]
+    return out + noise * np.sqrt(np.mean(np.abs(out) ** 2)) * drawn
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("rod")
+    n = len(ALONG)
+    flat = {"def_cs": [0] * n, "disp_cs": [0] * n, "color": [1] * n}
+    places = {"x": RADIUS * np.ones(n), "y": ALONG, "z": np.zeros(n)}
+    si = {"units_code": 1, "units_description": "SI", "temp_mode": 1, "temp": 1.0}
+    si |= {"length": 1.0, "force": 1.0, "temp_offset": 0.0}
+    sets = [
+        {"type": 164, **si},
+        {"type": 2411, "node_nums": list(range(1, n + 1)), **places, **flat},
+    ]
+    kinds = {"ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13}
+    ends = {"rsp_dir": 1, "ref_node": 1, "ref_dir": 1, "abscissa_spec_data_type": 18}
+    for k, row in enumerate(responses(), start=1):
+        one = {"type": 58, "binary": 1, "func_type": 4, "rsp_node": k, "x": HERTZ, "data": row}
+        sets.append({**one, **ends, **kinds})
+    pyuff.UFF(str(folder / "rod.unv")).write_sets(sets, "overwrite")
+    (folder / "rod.toml").write_text(ROD)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def found(files):
+    return correlate(load(files / "rod.toml"), load_measured(files / "rod.unv"), 1e-3)
+
+
+def test_a_rod_answers_as_the_theory_of_rods_says(found):
+    """Shapes of unit mass of a free rod are 2 / sqrt(m) at its ends, and it follows a slow force there
+    as 4 / m.
+    """
+    names = [pair.computed.name for pair in found.pairs]
+    assert names == [f"bending {n}" for n in range(1, 5)]
+    assert all(pair.mac > 0.995 for pair in found.pairs)
+    both = overlay(found)
+    # rotation and shear of sections of a rod 75 diameters long take 0.4 % of bending 4; noise 0.1 %
+    assert all(size == pytest.approx(1.0, abs=0.01) for size in both.constants.values())
+    assert both.names[both.loudest] == "1x for 1x"
+    # at the foot of bending 2, which is 0.2 % off the closed form; noise there is 1 %
+    low = HERTZ < 230.0
+    assert np.median(np.abs(both.computed[:, low] / both.measured[:, low] - 1)) < 0.03
+    # damping is the measured one: peaks of bending 4, 18 lines wide, are as high
+    tops = [np.abs(part[0, HERTZ > 800.0]).max() for part in (both.computed, both.measured)]
+    assert tops[0] == pytest.approx(tops[1], rel=0.02)
+    slow = both.computed[0, np.searchsorted(HERTZ, 5.0)]
+    assert abs(slow) == pytest.approx(4 / MASS, rel=0.01)
+
+
+def test_measured_points_move_as_the_surface_beside_them(found):
+    points, surface = turned_beside(found)
+    assert [one.name for one in points.shapes] == [one.name for one in surface.shapes]
+    for one, its in zip(points.shapes, surface.shapes):
+        # at the end where it was driven both move across, and alike
+        near = np.abs(surface.mesh.points[:, 1]) < 1e-9
+        across = its.displacement[near, 0].mean()
+        assert one.displacement[0, 0] == pytest.approx(across, rel=0.05)
+    assert abs(points.shapes[0].frequency_hz - bending(1)[1]) < 0.1
+
+
+def test_the_page_shows_what_was_found(files, tmp_path):
+    out = tmp_path / "out"
+    told = CliRunner().invoke(
+        app, ["correlate", str(files / "rod.toml"), str(files / "rod.unv"), "-o", str(out)]
+    )
+    assert told.exit_code == 0, told.output
+    assert "Resonances of the responses" in told.output
+    page = (out / "correlation.html").read_text()
+    for words in ("1x for 1x", "Resonances of the responses", "MAC", "sg-turn"):
+        assert words in page
+    assert {"overlay.png", "mac.png", "off.png", "peaks.csv"} <= {p.name for p in out.iterdir()}
+    data = json.loads((out / "correlation.json").read_text())
+    assert data["pairs"][1]["damping"] == pytest.approx(DAMPING, rel=0.01)
