@@ -52,6 +52,8 @@ def entries(found: Any) -> Table:
         Column("in the file", lambda e: e.before, "{:.6g}".format, kind=NUMBER),
         Column("identified, SI", lambda e: e.value, "{:.6g}".format, kind=NUMBER),
         Column("deviation", lambda e: e.deviation, _unsigned, kind=NUMBER),
+        Column("95 %\nfrom", lambda e: e.low, "{:.6g}".format, kind=NUMBER),
+        Column("to", lambda e: e.high, "{:.6g}".format, kind=NUMBER),
     ]
     note = (
         "Deviation: one standard deviation, of the scatter of the data and the bars of the model."
