@@ -61,9 +61,9 @@ def test_shapes_come_back_as_written_in_si_by_ascending_frequency(tmp_path):
     )
     found = load_measured(path)
     assert [one.frequency for one in found.modes] == [250.0, 700.0]
-    assert found.shapes.points == pytest.approx(PLACES / 1e3)
+    assert found.on_points.points == pytest.approx(PLACES / 1e3)
     # the format keeps six digits
-    assert found.shapes.values == pytest.approx(shapes[::-1], rel=1e-5)
+    assert found.on_points.values == pytest.approx(shapes[::-1], rel=1e-5)
 
 
 def test_responses_come_back_in_si_over_one_axis(tmp_path):

@@ -14,7 +14,7 @@ from solidgear.report.panel import GREY, PERCENT, Axis, Panel, Series, readout
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import NUMBER, Column, Table, text
-from solidgear.report.words import hertz, percent
+from solidgear.report.words import DASH, hertz, percent
 
 #: looks of pairs by their verdict
 LOOKS = {"agrees": Series("#00805e"), "differs": Series("#b3305c"), "no band": Series("#0072b2")}
@@ -35,7 +35,7 @@ def pairs(found: Any) -> Table:
         text("", lambda p: p.verdict),
     ]
     if found.mac is not None:
-        columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format, kind=NUMBER))
+        columns.insert(-1, Column("MAC", lambda p: p.mac, _mac, kind=NUMBER))
     note = (
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
         "frequency and the bar of the computed one. Sure: probability of the pair."
@@ -86,6 +86,10 @@ def predicted(found: Any) -> Table:
     return Table("Predicted, not measured", columns, found.predicted, note, style="ruled")
 
 
+def _mac(value: float | None) -> str:
+    return DASH if value is None else f"{value:.2f}"
+
+
 def _unsigned(value: float) -> str:
     return percent(value, signed=False)
 
@@ -120,8 +124,9 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
 
 def mac_map(found: Any, width: float = WIDE) -> Chart:
     """MAC of every measured shape and every mode."""
-    rows = [f"{hertz(pair.measured.frequency)} Hz" for pair in found.pairs]
-    table = MacTable(rows=rows, columns=list(found.names), values=found.mac.tolist())
+    told = ~np.isnan(found.mac).any(axis=1)
+    rows = [f"{hertz(p.measured.frequency)} Hz" for p, shown in zip(found.pairs, told) if shown]
+    table = MacTable(rows=rows, columns=list(found.names), values=found.mac[told].tolist())
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 

@@ -14,9 +14,8 @@ from scipy.special import stdtrit
 from solidgear.errors import SolidgearError
 from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed
-from solidgear.studies.measured.correlate import DEVIATIONS, peaks_of
+from solidgear.studies.measured.correlate import DEVIATIONS, on_points_of, peaks_of
 from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.shapes import mac_of
 from solidgear.studies.measured.varied import Varied
 
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
@@ -51,9 +50,8 @@ class Fit:
         self.measured, self.computed, self.labels = measured, computed, [v.label for v in varied]
         self.low = np.array([one.low for one in varied]) - x
         self.high = np.array([one.high for one in varied]) - x
-        shapes = measured.shapes
-        mac = None if shapes is None else mac_of(shapes, computed)
-        found = align(*peaks_of(measured, computed), mac)
+        on_points = on_points_of(measured, computed)
+        found = align(*peaks_of(measured, computed), on_points.seen if on_points else None)
         likely = found.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
         self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]
