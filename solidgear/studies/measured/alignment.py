@@ -31,7 +31,7 @@ HALF, DOUBLE = 0.2, 0.02
 #: of a mode called by another family than the computed one
 RENAMED = 1e-3
 #: of shapes that are of no mode at all: points that were numbered otherwise
-OTHER = 0.01
+OTHER = 1e-4
 #: least of 1 - MAC that is told from none
 FINEST = 1e-6
 #: shifts of logarithms that are begun with, and the scatter: a modulus is 20 % off at most

@@ -53,7 +53,7 @@ class Identification(Case):
 def judged(seed: int) -> dict[str, list[Any]]:
     """Errors of what is identified beside their intervals."""
     rng = np.random.default_rng([seed, 4])
-    text, true = _shaft(rng)
+    text, true = shaft(rng)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "shaft.toml"
         path.write_text(text.format(*true), encoding="utf-8")
@@ -100,7 +100,7 @@ def judged(seed: int) -> dict[str, list[Any]]:
     return {"rows": rows, "failures": [], "problems": []}
 
 
-def _shaft(rng: np.random.Generator) -> tuple[str, tuple[float, float]]:
+def shaft(rng: np.random.Generator) -> tuple[str, tuple[float, float]]:
     """A file of a shaft on two bearings with both stiffnesses left open, and their true values."""
     d = float(rng.uniform(0.02, 0.08))
     count = int(rng.integers(3, 6))
