@@ -107,7 +107,7 @@ class Seen:
         known = (free > 0) & (self.spans > 0)
         free = np.where(known, free, 1)
         order = mean**2 / np.where(known, half_variance, 1.0) / 2
-        away = np.clip(1 - self.mac, FINEST, 1 - FINEST)
+        away = np.clip(1 - np.nan_to_num(self.mac), FINEST, 1 - FINEST)
         scale, a, b = mean / order, free / 2, self.spans / 2
         one = (order - 1) * np.log(away) - away / scale - gammaln(order) - order * np.log(scale)
         none = (a - 1) * np.log(away) + (b - 1) * np.log1p(-away) - betaln(a, b)

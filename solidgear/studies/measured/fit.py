@@ -73,10 +73,16 @@ class Fit:
         own = np.array([(m.width_hz or 0.0) / m.frequency for m in modes])
         mesh = np.array([min(computed.bars[j], 1.0) / DEVIATIONS for j in at])
         self.variance = own**2 + mesh**2
-        # the scatter that is left counts for all alike
-        spare = max(len(at) - unknowns, 1)
-        best = self.residual - self.rows @ np.linalg.lstsq(self.rows, self.residual, rcond=None)[0]
-        told, whole = float(self.variance.mean()), float(best @ best) / spare
+        # the scatter that is left counts for all alike, and what is known leaves more of it
+        told = float(self.variance.mean())
+        size = math.sqrt(told + TINY)
+        known = np.vstack([self.rows / size, np.diag(self.known)])
+        left, sizes, _ = np.linalg.svd(known, full_matrices=False)
+        left = left[:, sizes > 1e-9 * sizes[0]]
+        aim = np.concatenate([self.residual / size, self.known * self.middle])
+        best = size * (aim - left @ (left.T @ aim))[: len(at)]
+        spare = max(len(at) - float(np.sum(left[: len(at)] ** 2)), 1.0)
+        whole = float(best @ best) / spare
         self.scatter = math.sqrt(max(whole - told, 0.0))
         # degrees of freedom of what is told in part and estimated in part (Welch and Satterthwaite)
         freedom = spare * (max(whole, told) / max(self.scatter**2, 1e-6 * told, TINY)) ** 2

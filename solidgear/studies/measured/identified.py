@@ -18,6 +18,8 @@ EDGE = 1e-6
 #: a deviation that is more than this of the one beforehand is no news; and values this many
 #: deviations from what was known contradict it
 LITTLE, FAR = 0.9, 3.0
+#: of the fitted resonances: as many left out are few
+FEW = 0.3
 
 
 @dataclass(frozen=True)
@@ -177,6 +179,11 @@ def _sentences(found: Identification) -> Iterator[str]:
     if found.unpaired:
         told = ", ".join(f"{one:.6g}" for one in found.unpaired)
         yield f"Left out, since no mode is surely theirs: {told} Hz."
+        if len(found.unpaired) > FEW * len(found.fitted):
+            yield (
+                "So many left out may hide values that fit better: begin nearer, lower --tol, or "
+                "measure shapes."
+            )
     alike = np.abs(found.correlations - np.eye(len(found.entries)))
     if len(found.entries) > 1 and alike.max() > SURE:
         i, j = np.unravel_index(int(alike.argmax()), alike.shape)
