@@ -351,6 +351,7 @@ def test_two_bearings_that_may_have_changed_places_are_told(tmp_path):
         ([], "nothing is varied"),
         (["material.E=180 mm : 220 mm"], "is not a unit of pressure"),
         (["material.E=180 GPa"], "must be two ends"),
+        (["material.E=1 : 2"], "bounds must hold what the file says"),
         (["material.E=± 200 %"], "must be two ends above zero"),
         (["material.e"], "the file holds null"),
         (["material.E", "material.E"], "given twice"),

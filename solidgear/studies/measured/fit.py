@@ -61,7 +61,7 @@ class Fit:
         unknowns = int(np.count_nonzero(self.known == 0))
         if len(self.pairs) < max(unknowns, 1):
             raise SolidgearError(
-                f"identify: {len(self.pairs)} resonances have a sure mode, fewer than the {unknowns} "
+                f"identify: resonances with a sure mode: {len(self.pairs)}, fewer than the {unknowns} "
                 "entries that are to be found; vary fewer, or measure more"
             )
         modes = [measured.modes[i] for i, _ in self.pairs]

@@ -113,6 +113,11 @@ def _known(one: Varied, said: str, low: float, high: float) -> Varied:
     a, b, middle = (math.log(factor) for factor in (low, high, (low + high) / 2))
     if PLUS_MINUS.fullmatch(said):
         return Varied(one.keys, one.label, one.before, middle=middle, deviation=(b - a) / 2)
+    if not a <= 0 <= b:
+        raise SceneError(
+            f"bounds must hold what the file says, {one.before:.6g} in SI: the search begins there",
+            value=show(said),
+        )
     return Varied(one.keys, one.label, one.before, low=a, high=b)
 
 
