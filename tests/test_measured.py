@@ -17,12 +17,14 @@ from solidgear.scene.paths import changed, keys_of
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.alignment import Peak, align
+from solidgear.studies.measured.alignment import Peak, Seen, align
 from solidgear.studies.measured.computed import computed_up_to
 from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
+from solidgear.studies.measured.fit import Fit
 from solidgear.studies.measured.identify import identify
 from solidgear.studies.measured.sprung import Sprung
+from solidgear.studies.measured.varied import varied_of
 from solidgear.studies.sensitivity.derivatives import Derivatives
 
 ROD = """
@@ -100,6 +102,32 @@ def test_two_modes_that_changed_places_are_told_apart_by_multiplicity():
     ]
     pairs = align(measured, computed).pairs
     assert pairs[1].argmax() == 2 and pairs[2].argmax() == 1
+
+
+def shaped(x, components=30, noise=0.05, span=1):
+    """How like one shape is two modes, of which it is `x` short of the first and 0.99 of the other."""
+    mac = np.array([[1 - x, 0.01]])
+    return Seen(mac, components, np.array([span, span]), noise)
+
+
+def test_a_shape_is_its_modes_as_far_as_its_noise_says():
+    near = [Peak(0.0, 1e-4, 1, "bending"), Peak(0.003, 1e-4, 1, "bending")]
+
+    def logs(*about, modes=near, scatter=1e-6):
+        return shaped(*about).log_likelihoods(modes, scatter)[0]
+
+    # noise leaves 1 - MAC = 0.05^2 of a shape: there it speaks for the mode, and less where noise
+    # cannot explain it, of a clean measurement sooner
+    assert logs(0.0025)[0] > 30
+    assert logs(0.02)[0] < logs(0.0025)[0] and logs(0.02, 30, 0.02)[0] < logs(0.02, 30, 0.1)[0]
+    # another mode is worse than none, but points may be numbered otherwise
+    assert math.log(1.1e-4) > logs(0.0025)[1] >= math.log(1e-4)
+    # two components of three are a pair's by chance
+    assert logs(0.0025, 3, 0.05, 2)[0] < 7
+    # near neighbours of a family mix by what scatters frequencies, and no others do
+    assert logs(0.2, scatter=1e-3)[0] > logs(0.2)[0] + 5
+    other = [near[0], replace(near[1], family="torsion")]
+    assert logs(0.2, modes=other, scatter=1e-3)[0] == logs(0.2)[0]
 
 
 def test_probabilities_add_up():
@@ -248,10 +276,101 @@ def test_what_the_data_do_not_tell_is_refused_with_its_direction(rod):
         identify(rod, peaks, paths)
 
 
+PEAKS = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in (254.4, 699.1, 1363.7)])
+
+
+def test_bounds_hold_a_value_and_say_so(rod):
+    found = identify(rod, PEAKS, ["material.E=180 GPa : 205 GPa"], tol=1e-3)
+    one = found["material.E"]
+    # the data ask for 210 GPa
+    assert one.value == pytest.approx(205e9) and one.high == pytest.approx(205e9)
+    assert any("held by its bound" in sentence for sentence in found.sentences)
+    free = identify(rod, PEAKS, ["material.E=180 GPa : 220 GPa"], tol=1e-3)["material.E"]
+    assert free.low < 210e9 < free.high and not free.at_bound
+
+
+def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
+    """E over density is all that a free body tells."""
+    found = identify(rod, PEAKS, ["material.E", "material.density=7700 kg/m^3 ± 0.5 %"], tol=1e-3)
+    density, modulus = found["material.density"], found["material.E"]
+    assert density.value == pytest.approx(7700, rel=1e-4)
+    assert density.deviation == pytest.approx(0.005, rel=0.01)
+    alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
+    assert modulus.value == pytest.approx(alone.value * 7700 / 7850, rel=1e-3)
+    assert modulus.deviation == pytest.approx(math.hypot(alone.deviation, 0.005), rel=0.05)
+    assert any("do not tell material.density" in sentence for sentence in found.sentences)
+
+
+def test_data_and_what_was_known_are_weighed_by_their_deviations(rod):
+    alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
+    rod.write_text(ROD + '[uncertain]\n"material.E" = "200 GPa ± 2 %"\n')
+    both = identify(rod, PEAKS, ["material.E"], tol=1e-3, priors=True)["material.E"]
+    weights = 1 / alone.deviation**2, 1 / 0.02**2
+    mean = np.average(np.log([alone.value, 200e9]), weights=weights)
+    # to second order in what is between them
+    assert math.log(both.value) == pytest.approx(mean, abs=1e-4)
+    assert both.deviation == pytest.approx(sum(weights) ** -0.5, rel=0.02)
+
+
+#: bearings that are nearly alike; kzz of each is to be found
+ALIKE = """
+material = { E = "207 GPa", nu = 0.3, density = "7850 kg/m^3" }
+segment = [
+  { kind = "cylinder", name = "a", length = 0.0846, diameter = 0.0635 },
+  { kind = "cylinder", name = "b", length = 0.1477, diameter = 0.0518 },
+  { kind = "cylinder", name = "c", length = 0.1114, diameter = 0.0661 },
+  { kind = "cylinder", name = "d", length = 0.1143, diameter = 0.0462 },
+]
+bearing = [
+  { name = "A", position = 0, from = "a.middle", seat_width = 0.02, stiffness = { kxx = 4.5e7, kyy = 2e8, kzz = %g } },
+  { name = "B", position = 0, from = "d.middle", seat_width = 0.02, stiffness = { kxx = 6.2e8, kyy = 2e8, kzz = %g } },
+]
+port = { at = "b.middle", attach_to = "b" }
+"""
+
+
+def test_modes_may_have_changed_places_where_entries_can_move_them_so(rod):
+    computed = computed_up_to(sg.load(rod), 1400.0, 1e-2)
+    hertz = [mode.frequency_hz for mode in computed.modes[:3]]
+    measured = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in hertz])
+    x, keys = np.zeros(2), ("material.E", "material.density")
+    springs = varied_of(keys, parse(str(rod)))
+    # each of two entries moves one mode: bending 2 and 3
+    rows = np.array([[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]] + [[0.0, 0.0]] * 9)
+    exchanged = Fit(measured, springs, x, computed, rows[: len(computed.modes)], 0.9).exchanges()
+    gap = math.log(hertz[2] / hertz[1])
+    assert len(exchanged) == 1 and exchanged[0] == pytest.approx([gap / 0.4, -gap / 0.4])
+    # a modulus moves all alike
+    rows = np.full((len(computed.modes), 1), 0.5)
+    assert not Fit(measured, springs[:1], x[:1], computed, rows, 0.9).exchanges()
+
+
+@pytest.mark.long
+def test_two_bearings_that_may_have_changed_places_are_told(tmp_path):
+    """Each bearing has a mode of its own near 3.2 kHz; either may be the lower one."""
+    true, path = (9.8e8, 8.7e8), tmp_path / "shaft.toml"
+    path.write_text(ALIKE % true)
+    scene = sg.load(path)
+    modes = sg.modes(sg.build(scene, "harmonic", order=4), scene, n=12).modes
+    listed = [{"frequency": m.frequency_hz, "multiplicity": 1} for m in modes if m.frequency_hz > 0]
+    path.write_text(ALIKE % (8.5e8, 8.1e8))
+    keys = [f"bearing.{name}.stiffness.kzz" for name in "AB"]
+    # of a measurement that is not careful both fit
+    found = identify(path, Measured(uncertainty=2e-3, mode=listed), keys, tol=1e-3)
+    answers = [[one.value for one in found.entries], *found.alike]
+    nearest = min(answers, key=lambda one: abs(one[0] - true[0]))
+    assert nearest == pytest.approx(true, rel=2e-3)
+    assert len(answers) > 1 and any("Not the only answer" in one for one in found.sentences)
+
+
 @pytest.mark.parametrize(
     ("vary", "said"),
     [
         ([], "nothing is varied"),
+        (["material.E=180 mm : 220 mm"], "is not a unit of pressure"),
+        (["material.E=180 GPa"], "must be two ends"),
+        (["material.E=1 : 2"], "bounds must hold what the file says"),
+        (["material.E=± 200 %"], "must be two ends above zero"),
         (["material.e"], "the file holds null"),
         (["material.E", "material.E"], "given twice"),
         (["port.at"], "the file holds .rod.middle"),
@@ -290,3 +409,21 @@ def test_a_mode_has_one_name_whatever_solid_finds_it():
         modes = sg.modes(sg.build(scene, model, **options), scene, n=44).modes
         found.append([str(m.name) for m in modes if m.waves == 0 and m.frequency_hz > 0][:5])
     assert found[0] == found[1] == ["torsion 1", "axial 1", "breathing 1", "axial 2", "breathing 2"]
+
+
+def test_the_default_solid_lies_above_the_harmonic_one_by_what_its_cells_around_leave():
+    """Both are Ritz methods on the same body: frequencies come from above, the coarser mesh's more.
+    Twelve cells around are three to a wave of n = 4, twenty-four are six.
+    """
+    scene = sg.load("validation/experiments/steel_cylinder.toml")
+
+    def listed(model, **options):
+        modes = sg.modes(sg.build(scene, model, **options), scene, n=40).modes
+        each = [[m.frequency_hz] * m.multiplicity for m in modes if m.frequency_hz > 0]
+        return np.sort(np.concatenate(each))[:38]
+
+    exact = listed("harmonic", order=7)
+    coarse, fine = (listed("solid", **one) / exact - 1 for one in ({}, {"around": 24}))
+    assert np.all(coarse > 0) and np.all(fine > 0)
+    # measured 1.6 and 0.4 %; as quadratic cells a quarter to a sixteenth
+    assert 0.01 < coarse.max() < 0.02 and fine.max() < coarse.max() / 3

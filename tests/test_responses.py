@@ -132,12 +132,12 @@ def test_a_file_of_responses_is_read_as_its_resonances_with_shapes(tmp_path):
     assert [one.frequency for one in found.modes] == pytest.approx([f for f, _ in MODES], abs=0.05)
     assert all(0 < one.width_hz < 0.05 for one in found.modes)
     # point 1 moved along x, point 2 was measured backwards along z
-    fit, shapes = found.responses.fit, found.shapes
+    fit, shapes = found.responses.fit, found.on_points
     assert shapes.values[:, 0, 0] == pytest.approx(fit.residues[:, 0])
     assert shapes.values[:, 1, 2] == pytest.approx(-fit.residues[:, 1])
     assert not shapes.values[:, 0, 1:].any()
     bare = load_measured(written(tmp_path / "b.uff", values=values, places=False))
-    assert bare.shapes is None and bare.mode == found.mode
+    assert bare.on_points is None and bare.mode == found.mode
 
 
 def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
@@ -145,7 +145,7 @@ def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
     round_about, fixed = ((1, 1), (2, -3), (3, 2)), ((1, 1),) * 3
     places = {k: (float(k), 0.0, 0.0) for k in (1, 2, 3)}
     sensor, hammer = (
-        of_responses(Responses(HERTZ, values, *ends, places, 2)).shapes
+        of_responses(Responses(HERTZ, values, *ends, places, 2)).on_points
         for ends in ((round_about, fixed), (fixed, round_about))
     )
     assert np.array_equal(sensor.values, hammer.values) and sensor.values[:, 1, 2].all()

@@ -10,7 +10,8 @@ from solidgear.errors import SceneError, SolidgearError
 from solidgear.studies.measured.computed import computed_up_to
 from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.universal import read_universal
+from solidgear.studies.measured.shapes import OnPoints
+from solidgear.studies.measured.universal import Shapes, read_universal
 
 pyuff = pytest.importorskip("pyuff")
 
@@ -61,9 +62,9 @@ def test_shapes_come_back_as_written_in_si_by_ascending_frequency(tmp_path):
     )
     found = load_measured(path)
     assert [one.frequency for one in found.modes] == [250.0, 700.0]
-    assert found.shapes.points == pytest.approx(PLACES / 1e3)
+    assert found.on_points.points == pytest.approx(PLACES / 1e3)
     # the format keeps six digits
-    assert found.shapes.values == pytest.approx(shapes[::-1], rel=1e-5)
+    assert found.on_points.values == pytest.approx(shapes[::-1], rel=1e-5)
 
 
 def test_responses_come_back_in_si_over_one_axis(tmp_path):
@@ -141,6 +142,56 @@ def test_two_near_modes_that_changed_places_are_told_by_their_shapes(tmp_path):
     # a slender rod's closed forms; shear and the rod's own turning change bending 4 by a little
     assert all(pair.mac > 0.97 for pair in found.pairs)
     assert all(pair.probability > 0.95 for pair in found.pairs)
+
+
+def test_some_resonances_have_shapes_and_others_none(tmp_path):
+    """Bending 4 and torsion 1, 1 % apart, in the places of each other: only one has a shape."""
+    sets = [mode(k, hertz, bent(n)) for k, hertz, n in ((1, 345.0, 1), (2, 3200.0, 4))]
+    written(tmp_path / "rod.unv", units(), nodes(1e3 * ON), *sets)
+    at = {str(m.name): m.frequency_hz for m in computed_up_to(rod_scene(), 3300.0, 0.02).modes}
+    lower, upper = sorted((at["bending 4"], at["torsion 1"]))
+    # the shape of bending 4 at the frequency of torsion 1
+    first = at["bending 4"] < at["torsion 1"]
+    listed = [(at["bending 1"], 1), (at["bending 2"], 0), (at["bending 3"], 0)]
+    listed += [(lower, 0 if first else 2), (upper, 2 if first else 0)]
+    lines = ", ".join(
+        f"{{ frequency = {hertz:.6g}{f', shape = {k}' if k else ''} }}" for hertz, k in listed
+    )
+    path = tmp_path / "peaks.toml"
+    path.write_text(f'shapes = "rod.unv"\nnoise = "3 %"\nuncertainty = "0.1 %"\nmode = [{lines}]')
+    found = correlate(rod_scene(), load_measured(path), tol=0.02)
+    assert [pair.mac is not None for pair in found.pairs] == [bool(shape) for _, shape in listed]
+    last = ["torsion 1", "bending 4"] if first else ["bending 4", "torsion 1"]
+    assert [str(pair.computed.name) for pair in found.pairs[3:]] == last
+    path.write_text(path.read_text().replace("shape = 2", "shape = 3"))
+    with pytest.raises(SceneError, match=r"rod.unv holds 2 shapes"):
+        load_measured(path)
+    path.write_text(path.read_text().replace('shapes = "rod.unv"', ""))
+    with pytest.raises(SceneError, match="shapes of what file"):
+        load_measured(path)
+
+
+def test_points_that_do_not_tell_modes_apart_are_named_with_one_that_would(tmp_path):
+    """Three points at one station see of every bending mode the same: that it moves across."""
+    few = 3
+    at = [k for k, y in enumerate(ON[:, 1]) if abs(y - ON[3, 1]) < 1e-9][:few]
+    sets = [
+        {**mode(k, hertz, bent(n)[at]), "node_nums": [1, 2, 3]}
+        for k, (hertz, n) in enumerate(((430.0, 1), (1180.0, 2)), start=1)
+    ]
+    written(tmp_path / "few.unv", units(), nodes(1e3 * ON[at]), *sets)
+    measured = load_measured(tmp_path / "few.unv")
+    computed = computed_up_to(rod_scene(), 1200.0, 0.02)
+    points = OnPoints(measured.on_points, 0.05, computed)
+    one = points.confused(2)[0]
+    assert (one.first, one.second) == (0, 1) and one.mac > 0.9 and one.then < 0.1
+    found = correlate(rod_scene(), measured, tol=0.02)
+    told = [s for s in found.sentences if "do not tell bending 1 from bending 2" in s]
+    assert told and "one more at x, y, z" in told[0]
+    # the point that is named does what is said
+    more = Shapes(np.arange(few + 1), np.vstack([ON[at], one.place]), np.ones((2, few + 1, 3)))
+    again = OnPoints(more, 0.05, computed)
+    assert not [c for c in again.confused(2) if c.mac > one.then + 0.01]
 
 
 def test_a_point_off_the_surface_is_named(tmp_path):

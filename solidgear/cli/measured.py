@@ -68,12 +68,17 @@ def identify(
         list[str] | None,
         typer.Option(
             "--vary",
-            help="Entry that is to be found, such as material.E or bearing.A.stiffness.kxx; repeatable.",
+            help="Entry that is to be found, such as bearing.A.stiffness.kxx; with bounds, "
+            '"material.E=180 GPa : 220 GPa", or known to a standard deviation, '
+            '"material.E=206 GPa ± 3 %"; repeatable.',
         ),
     ] = None,
     predict: Annotated[
         int, typer.Option("--predict", help="Modes beyond the measured ones to predict.")
     ] = 0,
+    priors: Annotated[
+        bool, typer.Option("--priors", help="Ranges of the scene's [uncertain] hold as well.")
+    ] = False,
     tol: Tolerance = TOLERANCE,
     out: Out = None,
     run: Run,
@@ -91,7 +96,15 @@ def identify(
 
     data = load_measured(measured)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = identified(scene, data, vary or (), tol=tol, predict=predict, progress=progress)
+        found = identified(
+            scene,
+            data,
+            vary or (),
+            tol=tol,
+            predict=predict,
+            progress=progress,
+            priors=priors,
+        )
         files = write_identification(out, found) if out else []
     tables = [entries(found), fitted(found)] + [predicted(found)] * bool(found.predicted)
     _tell(found, tables, files, run)

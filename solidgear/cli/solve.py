@@ -254,6 +254,8 @@ def modes(
 
         say(completeness(e, body.fidelity), soft_wrap=False)
     lines = bar_lines(settled)
+    if settled is None:
+        lines.append("No bars: the model was given, and its mesh with it; -f auto has them.")
     if bars:
         lines += unjudged(without_bar(found, bars), body.fidelity)
     lines += beyond(bars, settled)

@@ -16,7 +16,7 @@ from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import NUMBER, Column, Table, text
 from solidgear.report.train_sheet import Section
-from solidgear.report.words import hertz, percent
+from solidgear.report.words import DASH, hertz, percent
 
 #: looks of pairs by their verdict
 BOTH = {"measured": Series(INK), "computed": Series("#00805e")}
@@ -38,7 +38,7 @@ def pairs(found: Any) -> Table:
         text("", lambda p: p.verdict),
     ]
     if found.mac is not None:
-        columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format, kind=NUMBER))
+        columns.insert(-1, Column("MAC", lambda p: p.mac, _mac, kind=NUMBER))
     note = (
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
         "frequency and the bar of the computed one. Sure: probability of the pair."
@@ -55,6 +55,8 @@ def entries(found: Any) -> Table:
         Column("in the file", lambda e: e.before, "{:.6g}".format, kind=NUMBER),
         Column("identified, SI", lambda e: e.value, "{:.6g}".format, kind=NUMBER),
         Column("deviation", lambda e: e.deviation, _unsigned, kind=NUMBER),
+        Column("95 %\nfrom", lambda e: e.low, "{:.6g}".format, kind=NUMBER),
+        Column("to", lambda e: e.high, "{:.6g}".format, kind=NUMBER),
     ]
     note = (
         "Deviation: one standard deviation, of the scatter of the data and the bars of the model."
@@ -85,6 +87,10 @@ def predicted(found: Any) -> Table:
     ]
     note = "Deviation: one standard deviation, of the entries, the scatter of the fit and the mesh."
     return Table("Predicted, not measured", columns, found.predicted, note, style="ruled")
+
+
+def _mac(value: float | None) -> str:
+    return DASH if value is None else f"{value:.2f}"
 
 
 def _unsigned(value: float) -> str:
@@ -121,8 +127,9 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
 
 def mac_map(found: Any, width: float = WIDE) -> Chart:
     """MAC of every measured shape and every mode."""
-    rows = [f"{hertz(pair.measured.frequency)} Hz" for pair in found.pairs]
-    table = MacTable(rows=rows, columns=list(found.names), values=found.mac.tolist())
+    told = ~np.isnan(found.mac).any(axis=1)
+    rows = [f"{hertz(p.measured.frequency)} Hz" for p, shown in zip(found.pairs, told) if shown]
+    table = MacTable(rows=rows, columns=list(found.names), values=found.mac[told].tolist())
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 

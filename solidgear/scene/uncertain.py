@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 ASSUMED = "0.5 : 2"
 #: entries that are multiplied as a whole, and are no numbers with a unit
 FACTOR = "dimensionless"
-_PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
+PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
 _KNOWN = (
     "a range may have material.E, material.density, load, load.z, housing, bearing.NAME.stiffness, "
     "bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
@@ -153,7 +153,7 @@ def _read(scene: Scene, path: str, text: Any) -> Uncertain:
     value, dimension = _entry(scene, path)
     if not isinstance(text, str):
         raise SceneError('must be a text such as "± 3 %" or "0.5 : 2"', value=show(text))
-    low, high = sorted(end / value for end in _ends(text, value, dimension))
+    low, high = sorted(end / value for end in ends(text, value, dimension))
     if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
         what = "1" if dimension == FACTOR else f"{value:.6g} in SI"
         raise SceneError(
@@ -193,8 +193,8 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
     return value, dimension
 
 
-def _ends(text: str, value: float, dimension: str) -> tuple[float, float]:
-    """Ends of a range, SI."""
+def ends(text: str, value: float, dimension: str) -> tuple[float, float]:
+    """Ends of a range about a value, SI."""
 
     def number(word: str) -> float:
         word = word.strip()
@@ -203,7 +203,7 @@ def _ends(text: str, value: float, dimension: str) -> tuple[float, float]:
         except ValueError:
             return quantity(word, dimension)
 
-    if found := _PLUS_MINUS.fullmatch(text):
+    if found := PLUS_MINUS.fullmatch(text):
         middle = number(found[1]) if found[1].strip() else value
         part = found[2].strip()
         share = part.endswith("%")

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from scipy.special import betaln, gammaln
 
 #: how likely steps are before any frequency is looked at: one of each, a pair measured split, two
 #: computed modes under one peak, a peak or a mode alone
@@ -29,9 +30,10 @@ CROSSED = SAME**2
 HALF, DOUBLE = 0.2, 0.02
 #: of a mode called by another family than the computed one
 RENAMED = 1e-3
-#: what a MAC less than one by the first costs, as a likelihood, and the least it is brought to: noise
-#: and a plane a little off leave 0.9 of a shape, another mode less than a half
-UNLIKE, OTHER = 0.05, 1e-4
+#: of shapes that are of no mode at all: points that were numbered otherwise
+OTHER = 1e-4
+#: least of 1 - MAC that is told from none
+FINEST = 1e-6
 #: shifts of logarithms that are begun with, and the scatter: a modulus is 20 % off at most
 SHIFTS, SCATTER = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 0.02
 #: least scatter; rounding of printed frequencies
@@ -64,6 +66,56 @@ class Peak:
 
 
 @dataclass(frozen=True, eq=False)
+class Seen:
+    """How like measured shapes are computed ones.
+
+    Attributes
+    ----------
+    mac : (n, m) ndarray
+        Not a number where no shape was measured.
+    components : int
+        Real numbers of a shape.
+    spans : (m,) ndarray of int
+        Of those the shapes of a mode fit whatever they are.
+    noise : float
+        Standard deviation of a component, relative to the root mean square of the shape.
+    """
+
+    mac: np.ndarray
+    components: int
+    spans: np.ndarray
+    noise: float
+
+    def log_likelihoods(self, modes: Sequence[Peak], scatter: float) -> np.ndarray:
+        """(n, m) logarithms of how much likelier a shape is if it is a mode than if it is none.
+
+        Of a mode, 1 - MAC is the noise outside its span, ``s^2 chi^2(n - d) / n``, and what is mixed
+        into it of others of its family by the changes that scatter frequencies, to first order
+        ``scatter / sinh(ln f_j / f_k)`` of each; the sum has one chi-square of the same mean and
+        variance (Satterthwaite). Of a shape that is none 1 - MAC has a beta distribution.
+        """
+        n, free = self.components, self.components - self.spans
+        logs = np.array([one.log_frequency for one in modes])
+        family = np.array([one.family for one in modes])
+        apart = np.sinh(np.abs(np.subtract.outer(logs, logs)))
+        mixed = scatter / np.maximum(apart, 1e-12)
+        # of two alone: square of the sine of the angle by which they turn
+        mixed = (1 - 1 / np.sqrt(1 + 4 * mixed**2)) / 2
+        mixed[(family[:, None] != family) | np.eye(len(modes), dtype=bool)] = 0.0
+        mean = self.noise**2 * free / n + mixed.sum(axis=1)
+        half_variance = self.noise**4 * free / n**2 + (mixed**2).sum(axis=1)
+        known = (free > 0) & (self.spans > 0)
+        free = np.where(known, free, 1)
+        order = mean**2 / np.where(known, half_variance, 1.0) / 2
+        away = np.clip(1 - np.nan_to_num(self.mac), FINEST, 1 - FINEST)
+        scale, a, b = mean / order, free / 2, self.spans / 2
+        one = (order - 1) * np.log(away) - away / scale - gammaln(order) - order * np.log(scale)
+        none = (a - 1) * np.log(away) + (b - 1) * np.log1p(-away) - betaln(a, b)
+        out = np.logaddexp(math.log1p(-OTHER) + one - none, math.log(OTHER))
+        return np.where(known & np.isfinite(self.mac), out, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
 class Alignment:
     """Probabilities of pairs.
 
@@ -91,10 +143,10 @@ _Step = tuple[int, int, float, tuple[tuple[int, int], ...]]
 
 
 def align(
-    measured: Sequence[Peak], computed: Sequence[Peak], mac: np.ndarray | None = None
+    measured: Sequence[Peak], computed: Sequence[Peak], seen: Seen | None = None
 ) -> Alignment:
-    """Lay measured resonances beside computed modes, both by ascending frequency, with the MAC of
-    every measured shape (rows) and every mode where there is one.
+    """Lay measured resonances beside computed modes, both by ascending frequency, and by shapes
+    where they were measured.
 
     Examples
     --------
@@ -105,20 +157,20 @@ def align(
     ([0, 1, 3], True)
     """
     starts = sorted(
-        SHIFTS, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, mac).total
+        SHIFTS, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, seen).total
     )
-    ends = [_settled(measured, computed, shift, mac) for shift in starts[:TRIED]]
+    ends = [_settled(measured, computed, shift, seen) for shift in starts[:TRIED]]
     return max(ends, key=lambda lattice: lattice.total).alignment()
 
 
 def _settled(
-    measured: Sequence[Peak], computed: Sequence[Peak], shift: float, mac: np.ndarray | None
+    measured: Sequence[Peak], computed: Sequence[Peak], shift: float, seen: Seen | None
 ) -> _Lattice:
     """Sums once shift and scatter have settled from a start."""
     apart = np.subtract.outer(
         [one.log_frequency for one in measured], [one.log_frequency for one in computed]
     )
-    lattice = _Lattice(measured, computed, shift, SCATTER, mac)
+    lattice = _Lattice(measured, computed, shift, SCATTER, seen)
     for _ in range(ROUNDS):
         pairs = lattice.alignment().pairs
         weight = float(pairs.sum())
@@ -129,7 +181,7 @@ def _settled(
         square = float((pairs * (apart - shift) ** 2).sum()) + SCATTER**2 / 10
         scatter = max(math.sqrt(square / (weight + 0.1)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
-        lattice = _Lattice(measured, computed, shift, scatter, mac)
+        lattice = _Lattice(measured, computed, shift, scatter, seen)
         if moved < 1e-3 * scatter:
             break
     return lattice
@@ -144,19 +196,16 @@ class _Lattice:
         computed: Sequence[Peak],
         shift: float,
         scatter: float,
-        mac: np.ndarray | None,
+        seen: Seen | None,
     ):
         self.measured, self.computed, self.shift, self.scatter = measured, computed, shift, scatter
         n, m = len(measured), len(computed)
         logs = [one.log_frequency for one in (*measured, *computed)]
         # a peak that is nothing is anywhere in the range
         self.alone = math.log(SPURIOUS / max(max(logs) - min(logs), scatter))
-        shaped = np.zeros((n, m)) if mac is None else (mac - 1) / UNLIKE
-        shaped = np.maximum(shaped, math.log(OTHER)).tolist()
-        self.like = [
-            [self._like(one, mode) + like for mode, like in zip(computed, row)]
-            for one, row in zip(measured, shaped)
-        ]
+        self.like = [[self._like(one, mode) for mode in computed] for one in measured]
+        shaped = np.zeros((n, m)) if seen is None else seen.log_likelihoods(computed, scatter)
+        self.shaped = shaped.tolist()
         self.steps = {at: self._steps(*at) for at in product(range(n + 1), range(m + 1))}
         self.forward = np.full((n + 1, m + 1), -np.inf).tolist()
         self.backward = np.full((n + 1, m + 1), -np.inf).tolist()
@@ -192,22 +241,26 @@ class _Lattice:
             out.append((0, 1, math.log(MISSED), ()))
         if i == n or j == m:
             return out
-        like, here, mode = self.like, self.measured[i], self.computed[j]
-        if like[i][j] > -math.inf:
-            out.append((1, 1, like[i][j] + math.log(SAME * _alike(here, mode)), ((i, j),)))
+        like, shaped = self.like, self.shaped
+        here, mode = self.measured[i], self.computed[j]
+        log = like[i][j] + shaped[i][j] + math.log(SAME * _alike(here, mode))
+        out.append((1, 1, log, ((i, j),)))
         if (
             i + 1 < n
             and mode.multiplicity == 2
             and 2 not in (here.multiplicity, self.measured[i + 1].multiplicity)
         ):
-            log = like[i][j] + like[i + 1][j] + math.log(SPLIT)
+            log = like[i][j] + like[i + 1][j] + shaped[i][j] + shaped[i + 1][j] + math.log(SPLIT)
             out.append((2, 1, log, ((i, j), (i + 1, j))))
         if j + 1 < m:
-            log = like[i][j] + like[i][j + 1] + math.log(MERGED)
+            # the one shape that was measured there is one of both, or lies between them
+            one = max(shaped[i][j], shaped[i][j + 1])
+            log = like[i][j] + like[i][j + 1] + one + math.log(MERGED)
             out.append((1, 2, log, ((i, j), (i, j + 1))))
         if i + 1 < n and j + 1 < m:
             alike = _alike(here, self.computed[j + 1]) * _alike(self.measured[i + 1], mode)
             log = like[i][j + 1] + like[i + 1][j] + math.log(CROSSED * alike)
+            log += shaped[i][j + 1] + shaped[i + 1][j]
             out.append((2, 2, log, ((i, j + 1), (i + 1, j))))
         return [step for step in out if step[2] > -math.inf]
 

@@ -11,7 +11,7 @@ from scipy.spatial import distance_matrix
 from solidgear.report.packing import Mesh
 from solidgear.report.turning import Member, Turned, together
 from solidgear.studies.measured.correlate import Correlation
-from solidgear.studies.measured.shapes import OnPoints
+from solidgear.studies.measured.shapes import SurfacePoints
 
 #: modes that a page has room for
 MOST = 16
@@ -33,13 +33,19 @@ def turned_beside(found: Correlation) -> tuple[Turned, ...]:
     """Measured points and the computed surface in all modes that have a partner, in one scale and of
     one sign; of a pair of shapes the combination that was measured. Empty without measured shapes.
     """
-    measured, computed = found.measured.shapes, found.computed
-    # of two resonances that are one mode the first
-    numbers = {p.computed.name: p.number - 1 for p in found.pairs[::-1] if p.computed is not None}
-    modes = [mode for mode in computed.modes if str(mode.name) in numbers][:MOST]
-    if measured is None or not modes:
+    measured, computed = found.measured.on_points, found.computed
+    if measured is None:
         return ()
-    places = OnPoints(computed.body, measured.numbers.tolist(), measured.points)
+    # of two resonances that are one mode the first; not every resonance has a shape
+    numbers = {
+        pair.computed.name: pair.number - 1
+        for pair in found.pairs[::-1]
+        if pair.computed is not None and measured.values[pair.number - 1].any()
+    }
+    modes = [mode for mode in computed.modes if str(mode.name) in numbers][:MOST]
+    if not modes:
+        return ()
+    places = SurfacePoints(computed.body, measured.numbers.tolist(), measured.points)
     seen = np.any(measured.values != 0, axis=0)
     moved = [_real(measured.values[numbers[str(mode.name)]]) for mode in modes]
     vectors = []

@@ -5,7 +5,7 @@ they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -14,16 +14,19 @@ import numpy as np
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
 from solidgear.scene import Scene
+from solidgear.solve.modes import Mode
 from solidgear.studies.change import BarredMode
 from solidgear.studies.measured.alignment import Alignment, Peak, align
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
-from solidgear.studies.measured.shapes import mac_of
+from solidgear.studies.measured.shapes import ALIKE, OnPoints
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
 SURE, POSSIBLE = 0.95, 0.05
 #: standard deviations of a measured frequency that count as its bar
 DEVIATIONS = 2.0
+#: pairs of modes that are named which the measuring points do not tell apart
+NAMED = 3
 #: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing
 UNTOLD = 1e-4
 
@@ -109,6 +112,8 @@ class Correlation(Displayed):
     measured : Measured
     computed : Computed
         What was held against each other.
+    of_points : tuple of str
+        Sentences on modes that the measuring points do not tell apart.
     """
 
     shown: ClassVar[str] = "correlation"
@@ -125,6 +130,7 @@ class Correlation(Displayed):
     names: tuple[str, ...]
     measured: Measured
     computed: Computed
+    of_points: tuple[str, ...] = ()
 
     @property
     def rms(self) -> float:
@@ -179,7 +185,7 @@ class Correlation(Displayed):
                 }
                 for pair in self.pairs
             ],
-            "mac": None if self.mac is None else self.mac.tolist(),
+            "mac": None if self.mac is None else [_plain(row) for row in self.mac],
             "modes": list(self.names),
             "not_measured": [
                 {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
@@ -226,9 +232,15 @@ def correlate(
     peaks = measured.modes
     tol = scene.ask.tolerance / 10 if tol is None else tol
     computed = computed_up_to(scene, peaks[-1].frequency, tol, progress)
-    mac = None if measured.shapes is None else mac_of(measured.shapes, computed)
-    found = align(*peaks_of(measured, computed), mac)
-    return _correlation(scene, measured, computed, found, mac)
+    on_points = on_points_of(measured, computed)
+    found = align(*peaks_of(measured, computed), on_points.seen if on_points else None)
+    return _correlation(scene, measured, computed, found, on_points)
+
+
+def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
+    """Modes on the measuring points; None without measured shapes."""
+    shapes = measured.on_points
+    return None if shapes is None else OnPoints(shapes, measured.noise[0], computed)
 
 
 def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[Peak]]:
@@ -250,9 +262,14 @@ def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[P
 
 
 def _correlation(
-    scene: Scene, measured: Measured, computed: Computed, found: Alignment, mac: np.ndarray | None
+    scene: Scene,
+    measured: Measured,
+    computed: Computed,
+    found: Alignment,
+    on_points: OnPoints | None,
 ) -> Correlation:
     barred = computed.barred
+    mac = None if on_points is None else on_points.seen.mac
     pairs = []
     for k, one in enumerate(measured.modes):
         likely = [int(j) for j in np.argsort(-found.pairs[k]) if found.pairs[k, j] > POSSIBLE]
@@ -260,7 +277,7 @@ def _correlation(
         if likely and found.pairs[k, likely[0]] >= found.spurious[k]:
             first, *likely = likely
             mode, share = barred[first], float(found.pairs[k, first])
-            like = None if mac is None else float(mac[k, first])
+            like = None if mac is None or np.isnan(mac[k, first]) else float(mac[k, first])
         others = tuple((barred[j], float(found.pairs[k, j])) for j in likely)
         pairs.append(Pair(k + 1, one, mode, share, others, like))
     highest = measured.modes[-1].frequency * math.exp(-found.shift)
@@ -282,7 +299,36 @@ def _correlation(
         tuple(mode.name for mode in barred),
         measured,
         computed,
+        _of_points(on_points, [mode for mode in computed.modes if mode.frequency_hz <= highest]),
     )
+
+
+def _of_points(found: OnPoints | None, modes: Sequence[Mode]) -> tuple[str, ...]:
+    """Sentences on modes that the measuring points do not tell apart."""
+    if found is None:
+        return ()
+    out = []
+    names = [str(mode.name) for mode in modes]
+    shapes = sum(mode.multiplicity for mode in modes)
+    if shapes > found.seen.components:
+        out.append(
+            f"{found.seen.components} measured components tell at most as many shapes apart, and {shapes} "
+            "are computed up to the highest resonance: MAC is high by chance; measure "
+            f"{shapes - found.seen.components} more at least."
+        )
+    confused = found.confused(len(modes))
+    for one in confused[:NAMED]:
+        place = ", ".join(f"{x:.4g}" for x in one.place)
+        out.append(
+            f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their MAC "
+            f"on them is {one.mac:.2f}); one more at x, y, z = {place} m would (MAC {one.then:.2f})."
+            if one.then <= ALIKE
+            else f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their "
+            f"MAC on them is {one.mac:.2f}), nor do they with any one more."
+        )
+    if len(confused) > NAMED:
+        out.append(f"They do not tell {len(confused) - NAMED} further pairs of modes.")
+    return tuple(out)
 
 
 def _sentences(found: Correlation) -> Iterator[str]:
@@ -311,6 +357,12 @@ def _sentences(found: Correlation) -> Iterator[str]:
             yield f"{pair.measured.frequency:.6g} Hz is {own}" + (
                 f", or with it {names}." if names else "."
             )
+    yield from found.of_points
     if found.missed:
         named = ", ".join(f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in found.missed)
         yield f"Computed and not measured: {named}."
+
+
+def _plain(row: np.ndarray) -> list[float] | None:
+    """A row of MAC; None of a resonance without a shape."""
+    return None if np.isnan(row).any() else row.tolist()

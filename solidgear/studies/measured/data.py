@@ -1,15 +1,17 @@
 """Measured resonances from a file: frequencies, how sure they are, and what is known of each.
 
 A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
-a universal file has shapes as well, or frequency responses; a CSV file of those has the head
-``frequency [Hz], real, imaginary``.
+a universal file has shapes as well, which a TOML file may join to its resonances, or frequency
+responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``.
 
     title = "Tap test, hung on two cords"
     uncertainty = "0.1 %"           # of all modes that say nothing else
     mode = [
         { frequency = "98.459 kHz", multiplicity = 2 },
-        { frequency = "121.2 kHz", uncertainty = "0.2 kHz", name = "torsion 1" },
+        { frequency = "121.2 kHz", uncertainty = "0.2 kHz", name = "torsion 1", shape = 2 },
     ]
+    shapes = "tap.unv"              # shape 2: its second mode by frequency
+    noise = "5 %"                   # of a component of a shape
 """
 
 from __future__ import annotations
@@ -33,6 +35,9 @@ from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, rea
 
 #: resonances of a file
 MOST = 2000
+#: standard deviation of a component of a shape of which nothing is said, relative to the root mean
+#: square of the shape: of careful modal tests
+NOISE = (0.05, "relative")
 #: head of a column: a word, and its unit in brackets
 _HEAD = re.compile(r"\s*(?P<word>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
 
@@ -57,6 +62,12 @@ def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
     return value
 
 
+def _share(value: tuple[float, str]) -> tuple[float, str]:
+    if value[1] != "relative":
+        raise SceneError('must be a share of the root mean square of a shape, such as "5 %"')
+    return value
+
+
 Uncertainty = Annotated[
     tuple[float, str], BeforeValidator(_uncertainty), AfterValidator(_above_zero)
 ]
@@ -75,12 +86,15 @@ class MeasuredMode(Model):
         1 for a single resonance, 2 for a pair at one frequency; None where nobody looked.
     name : str
         Of the mode where it is known, such as ``bending 1``, or only its family: ``bending``.
+    shape : int or None
+        Number of its shape among those of the file of shapes, by ascending frequency, from one.
     """
 
     frequency: Frequency
     uncertainty: Uncertainty | None = None
     multiplicity: Annotated[int, Field(strict=True, ge=1, le=2)] | None = None
     name: str = ""
+    shape: Annotated[int, Field(strict=True, ge=1)] | None = None
 
     @property
     def width_hz(self) -> float | None:
@@ -99,6 +113,10 @@ class Measured(Model):
     title, source : str
     uncertainty : (float, {'relative', 'Hz'}) or None
         Of all that say nothing else.
+    shapes : str
+        Universal file of shapes, beside this one.
+    noise : (float, 'relative')
+        Standard deviation of a component of a shape, relative to the root mean square of the shape.
     mode : tuple of MeasuredMode
         By ascending frequency.
     """
@@ -106,14 +124,16 @@ class Measured(Model):
     title: str = ""
     source: str = ""
     uncertainty: Uncertainty | None = None
+    shapes: str = ""
+    noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
     mode: tuple[MeasuredMode, ...]
-    _shapes: Shapes | None = PrivateAttr(None)
+    _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)
 
     @property
-    def shapes(self) -> Shapes | None:
-        """Shapes of all on measuring points; None for a list of frequencies."""
-        return self._shapes
+    def on_points(self) -> Shapes | None:
+        """Shapes on measuring points, zero of a resonance without one; None where none has."""
+        return self._on_points
 
     @property
     def responses(self) -> ResponseFit | None:
@@ -174,9 +194,39 @@ def load_measured(path: str | os.PathLike) -> Measured:
     if isinstance(tables, Responses):
         return of_responses(tables, where)
     try:
-        return Measured(**tables)
+        out = Measured(**tables)
+        if out.shapes or any(one.shape for one in out.mode):
+            out._on_points = _joined(out, Path(where).parent)
     except SceneError as error:
         raise error.located(tables, where=where) from None
+    return out
+
+
+def _joined(measured: Measured, folder: Path) -> Shapes:
+    """Shapes of all resonances, from the file that is named; zero of those without."""
+    if not measured.shapes:
+        raise SceneError('shapes of what file? write shapes = "test.unv"', path=("shapes",))
+    read = read_universal(folder / measured.shapes)
+    if isinstance(read, Responses):
+        raise SceneError(
+            f"{measured.shapes} holds responses: give it in place of this file", path=("shapes",)
+        )
+    _, found = read
+    values = np.zeros((len(measured.mode), *found.values.shape[1:]), found.values.dtype)
+    for k, one in enumerate(measured.mode):
+        if one.shape is not None and one.shape > len(found.values):
+            raise SceneError(
+                f"{measured.shapes} holds {len(found.values)} shapes",
+                path=("mode", k, "shape"),
+                value=str(one.shape),
+            )
+        if one.shape is not None:
+            values[k] = found.values[one.shape - 1]
+    if not values.any():
+        raise SceneError(
+            "no mode names one of its shapes; write for example shape = 1", path=("shapes",)
+        )
+    return Shapes(found.numbers, found.points, values)
 
 
 def _of_universal(where: str) -> Measured:
@@ -185,7 +235,7 @@ def _of_universal(where: str) -> Measured:
         return of_responses(read, where)
     frequencies, shapes = read
     out = _checked(where, {"mode": [{"frequency": one} for one in frequencies]})
-    out._shapes = shapes
+    out._on_points = shapes
     return out
 
 
@@ -203,7 +253,7 @@ def of_responses(responses: Responses, where: str = "responses") -> Measured:
         raise SceneError(str(error), where=where) from None
     told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
     out = _checked(where, {"mode": [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]})
-    out._shapes, out._responses = found.shapes, found
+    out._on_points, out._responses = found.shapes, found
     return out
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -11,6 +12,14 @@ import numpy as np
 from solidgear.display import Displayed
 from solidgear.scene.paths import Tables
 from solidgear.studies.measured.correlate import SURE
+
+#: relative; at a bound
+EDGE = 1e-6
+#: a deviation that is more than this of the one beforehand is no news; and values this many
+#: deviations from what was known contradict it
+LITTLE, FAR = 0.9, 3.0
+#: of the fitted resonances: as many left out are few
+FEW = 0.3
 
 
 @dataclass(frozen=True)
@@ -24,12 +33,29 @@ class Identified:
         SI; as in the file, and what the data say.
     deviation : float
         Standard deviation of its logarithm.
+    low, high : float
+        Ends of the interval of 95 %, cut off at bounds.
+    prior : (float, float) or None
+        What was known beforehand: value, and standard deviation of its logarithm.
     """
 
     path: str
     before: float
     value: float
     deviation: float
+    low: float
+    high: float
+    prior: tuple[float, float] | None = None
+
+    @property
+    def at_bound(self) -> bool:
+        """Tell whether a bound holds it where it is."""
+        return self.value <= self.low * (1 + EDGE) or self.value >= self.high * (1 - EDGE)
+
+    @property
+    def untold(self) -> bool:
+        """Tell whether the data add nothing to what was known beforehand."""
+        return self.prior is not None and self.deviation > LITTLE * self.prior[1]
 
 
 @dataclass(frozen=True)
@@ -83,6 +109,8 @@ class Identification(Displayed):
     predicted : tuple of Predicted
     tables : mapping
         Of the scene file with the values put in.
+    alike : tuple of tuple of float
+        Other values of all entries, SI, that fit as well.
     """
 
     shown: ClassVar[str] = "identification"
@@ -98,6 +126,7 @@ class Identification(Displayed):
     predicted: tuple[Predicted, ...]
     mesh: str
     tables: Tables
+    alike: tuple[tuple[float, ...], ...] = ()
 
     def __getitem__(self, path: str) -> Identified:
         return next(one for one in self.entries if one.path == path)
@@ -116,6 +145,7 @@ class Identification(Displayed):
             "measurement": self.title,
             "mesh": self.mesh,
             "entries": [vars(one) for one in self.entries],
+            "fit_alike": [list(one) for one in self.alike],
             "correlations": self.correlations.tolist(),
             "fitted": [vars(one) for one in self.fitted],
             "unpaired_hz": list(self.unpaired),
@@ -132,6 +162,16 @@ def _sentences(found: Identification) -> Iterator[str]:
             f"{one.path} = {one.value:.6g} (SI), standard deviation {100 * one.deviation:.2g} %; "
             f"the file has {one.before:.6g}."
         )
+        if one.at_bound:
+            yield f"{one.path} is held by its bound: the data ask for a value beyond it."
+        if one.prior is not None:
+            yield from _beside_prior(one, *one.prior)
+    for values in found.alike:
+        told = ", ".join(f"{e.path} = {v:.6g}" for e, v in zip(found.entries, values))
+        yield (
+            f"Not the only answer: {told} (SI) fits these resonances as well; measure shapes, or "
+            "further modes, to tell which."
+        )
     yield (
         f"{len(found.fitted)} resonances fitted: {100 * found.rms:.2g} % rms; each predicted from the "
         f"others: {100 * found.rms_left_out:.2g} % rms."
@@ -139,6 +179,11 @@ def _sentences(found: Identification) -> Iterator[str]:
     if found.unpaired:
         told = ", ".join(f"{one:.6g}" for one in found.unpaired)
         yield f"Left out, since no mode is surely theirs: {told} Hz."
+        if len(found.unpaired) > FEW * len(found.fitted):
+            yield (
+                "So many left out may hide values that fit better: begin nearer, lower --tol, or "
+                "measure shapes."
+            )
     alike = np.abs(found.correlations - np.eye(len(found.entries)))
     if len(found.entries) > 1 and alike.max() > SURE:
         i, j = np.unravel_index(int(alike.argmax()), alike.shape)
@@ -147,3 +192,12 @@ def _sentences(found: Identification) -> Iterator[str]:
             f"(correlation {found.correlations[i, j]:+.2f}): their ratio is known worse than either "
             "with the other held."
         )
+
+
+def _beside_prior(one: Identified, middle: float, deviation: float) -> Iterator[str]:
+    known = f"{middle:.6g}, known to {100 * deviation:.2g} % beforehand"
+    if one.untold:
+        yield f"The data do not tell {one.path}: it is as it was, {known}."
+    away = abs(math.log(one.value / middle)) / deviation
+    if away > FAR:
+        yield f"{one.path} lies {away:.2g} standard deviations from {known}: one of both is wrong."

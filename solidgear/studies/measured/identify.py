@@ -11,22 +11,21 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from solidgear.body import as_supports
-from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.errors import SolidgearError
 from solidgear.scene import Scene
-from solidgear.scene.paths import Keys, Tables, changed, entry, keys_of, label_of
+from solidgear.scene.paths import Tables, changed
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
-from solidgear.studies.measured.correlate import DEVIATIONS, SURE, peaks_of
+from solidgear.studies.measured.correlate import DEVIATIONS, SURE
 from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.fit import ALIKE, SAME, End, Fit, best_of
 from solidgear.studies.measured.identified import Fitted, Identification, Identified, Predicted
-from solidgear.studies.measured.shapes import mac_of
 from solidgear.studies.measured.sprung import Sprung
+from solidgear.studies.measured.varied import varied_of
 from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sweep.bench import surface
-from solidgear.studies.sweep.entries import in_si
 
 Progress = Callable[[str], None]
 #: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none
@@ -35,14 +34,10 @@ ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
 NEARER = 1e-5
 #: rounds in which pairs count from a lower probability on
 EARLY, LIKELY = 2, 0.5
-#: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
-UNDETERMINED = math.log(2.0)
 #: of the logarithm of an entry, to either side, for derivatives
 STEP = 1e-4
 #: of the logarithm of entries, along what is not told where it begins
 NUDGE = 0.03
-#: share of the direction that is not determined from which on an entry belongs to it
-SHARE = 0.3
 #: frequencies beyond the measured ones are looked for in steps of this factor
 WIDER = 1.15
 
@@ -55,24 +50,30 @@ def identify(
     tol: float = 2e-4,
     predict: int = 0,
     progress: Progress = lambda _: None,
+    priors: bool = False,
 ) -> Identification:
     """Find entries of a scene file from measured resonances, by least squares of the logarithms of
     frequencies (Gauss and Newton, with exact derivatives).
 
     Resonances are paired with modes anew in every round; those whose mode is not sure are left out
     and told. Each weighs by its own uncertainty and the bar of its mode; the scatter that is left
-    widens all deviations where it is larger.
+    widens all deviations where it is larger. Pairs that may have changed places are tried, and values
+    elsewhere that fit as well are told.
 
     Parameters
     ----------
     scene : path
         Of the scene file.
     vary : iterable of str
-        Paths of entries that leave the shape as it is: of materials, springs, masses.
+        Paths of entries that leave the shape as it is: of materials, springs, masses; with bounds as
+        in ``"material.E=180 GPa : 220 GPa"``, or with what is known beforehand, to one standard
+        deviation, as in ``"material.E=206 GPa ± 3 %"``.
     tol : float
         Relative, that bars of modes are brought to.
     predict : int
         Modes beyond the highest measured resonance that are predicted.
+    priors : bool
+        Take ranges of the scene's ``[uncertain]`` for entries that have none here.
 
     Raises
     ------
@@ -92,7 +93,7 @@ def identify(
     >>> round(found["material.E"].value / 1e9), found.rms < 2e-3
     (210, True)
     """
-    study = _Study(os.fspath(scene), measured, tuple(vary), tol, progress)
+    study = _Study(os.fspath(scene), measured, tuple(vary), tol, progress, priors)
     return study.found(predict)
 
 
@@ -106,38 +107,25 @@ class _Study:
         vary: Sequence[str],
         tol: float,
         progress: Progress,
+        priors: bool,
     ):
         self.path, self.measured, self.tol, self.progress = path, measured, tol, progress
-        self.tables = parse(path)
-        self.keys = [self._keys(one) for one in vary]
-        if not self.keys:
-            raise SolidgearError('nothing is varied; give for example --vary "material.E"')
-        if len(set(self.keys)) < len(self.keys):
-            raise SolidgearError("--vary: the same entry is given twice")
-        self.labels = [label_of(keys, self.tables) for keys in self.keys]
-        self.before = np.array([self._number(keys) for keys in self.keys])
-        self.x = np.zeros(len(self.keys))
+        tables = parse(path)
+        ranges = scene_of(tables, path).uncertain if priors else None
+        # what is found may lie beside the ranges that the file states
+        self.tables = {key: table for key, table in tables.items() if key != "uncertain"}
+        self.varied = varied_of(vary, self.tables, ranges)
+        self.keys = [one.keys for one in self.varied]
+        self.labels = [one.label for one in self.varied]
+        self.before = np.array([one.before for one in self.varied])
+        self.low = np.array([one.low for one in self.varied])
+        self.high = np.array([one.high for one in self.varied])
+        self.x = np.array([one.begin for one in self.varied])
         here = surface(self.scene_at(self.x))
         #: whether all that is varied leaves the body as it is
         self.on_springs = all(
-            surface(self.scene_at(own)) == here for own in STEP * np.eye(len(self.keys))
+            surface(self.scene_at(self.x + own)) == here for own in STEP * np.eye(len(self.x))
         )
-
-    def _keys(self, path: str) -> Keys:
-        try:
-            return keys_of(path, self.tables)
-        except SceneError as error:
-            raise SolidgearError(f"--vary {path}: {error}") from None
-
-    def _number(self, keys: Keys) -> float:
-        value = in_si(entry(keys, self.tables))
-        if value is None or not value > 0:
-            raise SolidgearError(
-                f"--vary {label_of(keys, self.tables)}: the file holds "
-                f"{show(entry(keys, self.tables), 40)}, and what is identified begins at a number "
-                "above zero"
-            )
-        return value
 
     def tables_at(self, x: np.ndarray) -> Tables:
         """Tables with the logarithms of entries moved by `x`."""
@@ -149,9 +137,14 @@ class _Study:
     def scene_at(self, x: np.ndarray) -> Scene:
         return scene_of(self.tables_at(x), self.path)
 
-    def found(self, predict: int) -> Identification:
+    def settled(
+        self, x: np.ndarray, computed: Computed | None = None, known: Sequence[End] = ()
+    ) -> End:
+        """Values that a search from `x` ends at, or the known end that it comes to; on the mesh of
+        what was computed before.
+        """
         highest = self.measured.modes[-1].frequency
-        computed: Computed | None = None
+        self.x = x
         for turn in range(ROUNDS):
             scene = self.scene_at(self.x)
             if computed is None:
@@ -160,27 +153,68 @@ class _Study:
                 self.progress(f"round {turn + 1}")
                 computed = computed_like(computed, scene)
             # far from the data pairs are doubtful, and the likelier half of them leads there
-            fit = _Fit(self, computed, LIKELY if turn < EARLY else SURE)
+            sure = LIKELY if turn < EARLY else SURE
+            slopes = self.derivatives(computed)
+            fit = Fit(self.measured, self.varied, self.x, computed, slopes, sure)
             if turn == 0 and not fit.determined:
                 # where planes are alike to first order no frequency tells them apart; a little off it
                 # may
-                self.x = self.x + NUDGE * fit.right[-1]
+                self.x = np.clip(self.x + NUDGE * fit.right[-1], self.low, self.high)
                 continue
-            step = fit.step(fit.rows, fit.residual)
+            step = fit.step()
+            for end in known:
+                if fit.apart(self.x + step - end.x) < SAME:
+                    return end
             if turn >= EARLY and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
                 self.x = self.x + step
-                break
-            self.x = self.x + (self._nearer(fit, computed) if self.on_springs else _short(step))
-        else:
-            raise SolidgearError(
-                f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
-                f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
-            )
-        assert computed is not None  # there is a round at least
-        values = self.before * np.exp(self.x)
+                return End(self.x, fit, step)
+            self.x = self.x + (self._nearer(fit) if self.on_springs else _short(step))
+        raise SolidgearError(
+            f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
+            f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
+        )
+
+    def exchanged(self, best: End, known: list[End]) -> list[End]:
+        """Ends that are known, and those that other pairs than the best one's lead to."""
+        for change in best.fit.exchanges():
+            start = np.clip(best.x + change, self.low, self.high)
+            try:
+                end = self.settled(start, best.fit.computed, known)
+            except SolidgearError:
+                continue
+            if end not in known:
+                known = [*known, end]
+        return known
+
+    def found(self, predict: int) -> Identification:
+        first = self.settled(self.x)
+        first.fit.refuse_undetermined()
+        ends = self.exchanged(first, [first])
+        if (end := best_of(ends)) is not first:
+            ends = self.exchanged(end, ends)
+            end = best_of(ends)
+        self.x, computed, fit, step = end.x, end.fit.computed, end.fit, end.step
         fit.refuse_undetermined()
+        alike = tuple(
+            tuple((self.before * np.exp(one.x)).tolist())
+            for one in ends
+            if one is not end and one.misfit(fit.scatter) < end.misfit(fit.scatter) + ALIKE
+        )
+        values = self.before * np.exp(self.x)
+        reach = np.exp(fit.students * fit.deviations())
         entries = tuple(
-            map(Identified, self.labels, self.before.tolist(), values.tolist(), fit.deviations())
+            Identified(
+                one.label,
+                one.before,
+                value,
+                deviation,
+                max(value / far, one.before * math.exp(one.low)),
+                min(value * far, one.before * math.exp(one.high)),
+                one.prior,
+            )
+            for one, value, deviation, far in zip(
+                self.varied, values.tolist(), fit.deviations().tolist(), reach.tolist()
+            )
         )
         left = fit.residual - fit.rows @ step
         leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.covariance, fit.rows) * fit.weight**2
@@ -192,7 +226,7 @@ class _Study:
                 float(f * math.exp(-a)),
                 float(f * math.exp(-b)),
             )
-            for (_, j), f, a, b in zip(fit.pairs, fit.measured, left, out)
+            for (_, j), f, a, b in zip(fit.pairs, fit.frequencies, left, out)
         )
         used = {i for i, _ in fit.pairs}
         return Identification(
@@ -207,13 +241,15 @@ class _Study:
             self._predicted(predict, fit, computed) if predict else (),
             computed.mesh,
             self.tables_at(self.x),
+            alike,
         )
 
-    def _nearer(self, fit: _Fit, computed: Computed) -> np.ndarray:
+    def _nearer(self, fit: Fit) -> np.ndarray:
         """Change of the logarithms of entries that no mesh hangs on, to the least squares of a body that
         is not solved again.
         """
-        sprung, x = Sprung(computed), self.x
+        sprung, x = Sprung(fit.computed), self.x
+        paired = [j for _, j in fit.pairs]
         for _ in range(ROUNDS):
             at = sprung.at(as_supports(self.scene_at(x)))
             sides = [
@@ -221,13 +257,14 @@ class _Study:
                 for own in STEP * np.eye(len(x))
             ]
             rows = np.column_stack([sprung.slopes(at, *ends) for ends in sides]) / (2 * STEP)
-            step = _short(fit.step(rows[fit.at], np.log(fit.measured / at[0][fit.at])))
+            residual = np.log(fit.frequencies / at[0][paired])
+            step = _short(fit.step(residual, rows[paired], x - self.x))
             x = x + step
             if abs(step).max() < NEARER:
                 break
         return x - self.x
 
-    def _predicted(self, count: int, fit: _Fit, before: Computed) -> tuple[Predicted, ...]:
+    def _predicted(self, count: int, fit: Fit, before: Computed) -> tuple[Predicted, ...]:
         """Modes beyond the highest that was measured."""
         highest = max(before.modes[j].frequency_hz for _, j in fit.pairs)
         scene, limit = self.scene_at(self.x), highest
@@ -270,96 +307,6 @@ class _Study:
         return np.column_stack(columns) / frequencies[:, None]
 
 
-class _Fit:
-    """A linear fit about one scene."""
-
-    def __init__(self, study: _Study, computed: Computed, sure: float):
-        self.study = study
-        shapes = study.measured.shapes
-        mac = None if shapes is None else mac_of(shapes, computed)
-        found = align(*peaks_of(study.measured, computed), mac)
-        likely = found.pairs.argmax(axis=1)
-        #: resonance and mode of each pair that is sure enough to be fitted
-        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]
-        unknowns = len(study.keys)
-        if len(self.pairs) < unknowns:
-            raise SolidgearError(
-                f"identify: {len(self.pairs)} resonances have a sure mode, fewer than the {unknowns} "
-                "entries that are to be found; vary fewer, or measure more"
-            )
-        every = study.derivatives(computed)
-        modes = [study.measured.modes[i] for i, _ in self.pairs]
-        self.at = at = [j for _, j in self.pairs]
-        self.rows = every[at]
-        #: (pairs,) frequencies, Hz
-        self.measured = np.array([m.frequency for m in modes])
-        self.residual = np.log(self.measured / [computed.modes[j].frequency_hz for j in at])
-        own = np.array([(m.width_hz or 0.0) / m.frequency for m in modes])
-        mesh = np.array([min(computed.bars[j], 1.0) / DEVIATIONS for j in at])
-        variance = own**2 + mesh**2
-        # the scatter that is left counts for all alike
-        spare = max(len(at) - unknowns, 1)
-        best = self.residual - self.rows @ np.linalg.lstsq(self.rows, self.residual, rcond=None)[0]
-        self.scatter = math.sqrt(max(float(best @ best) / spare - float(variance.mean()), 0.0))
-        self.weight = 1 / np.sqrt(variance + self.scatter**2 + 1e-24)
-        _, sizes, right = np.linalg.svd(self.rows * self.weight[:, None], full_matrices=False)
-        self.sizes, self.right = sizes, right
-        kept = np.maximum(sizes, 1e-30)
-        #: of the logarithms of entries
-        self.covariance = (right.T / kept**2) @ right
-
-    def step(self, rows: np.ndarray, residual: np.ndarray) -> np.ndarray:
-        """Change of the logarithms of entries from (pairs, entries) derivatives and (pairs,) residuals;
-        none along what the data do not tell.
-        """
-        left, sizes, right = np.linalg.svd(rows * self.weight[:, None], full_matrices=False)
-        told = sizes > 1 / UNDETERMINED
-        return ((left.T @ (residual * self.weight))[told] / sizes[told]) @ right[told]
-
-    def deviations(self) -> np.ndarray:
-        """(entries,) standard deviations of logarithms."""
-        return np.sqrt(np.diag(self.covariance))
-
-    def correlations(self) -> np.ndarray:
-        """(entries, entries) correlations."""
-        size = self.deviations()
-        return self.covariance / np.outer(size, size)
-
-    @property
-    def determined(self) -> bool:
-        """Tell whether no direction is left open."""
-        return len(self.sizes) == len(self.study.keys) and self.sizes[-1] * UNDETERMINED >= 1
-
-    def refuse_undetermined(self) -> None:
-        """Refuse entries of which a direction is not told by the data."""
-        if self.determined:
-            return
-        deviation = 1 / max(float(self.sizes[-1]), 1e-30)
-        direction = self.right[-1]
-        among = [
-            f"{label} {'up' if part > 0 else 'down'}"
-            for label, part in zip(
-                self.study.labels, direction * np.sign(direction[abs(direction).argmax()])
-            )
-            if abs(part) >= SHARE * abs(direction).max()
-        ]
-        what = " with ".join(among)
-        raise SolidgearError(
-            f"identify: these resonances do not tell {what}: any change that way moves them by less "
-            f"than their scatter ({_factor(deviation)}); "
-            "leave one of them out, or measure a mode that it moves"
-        )
-
-
 def _short(step: np.ndarray) -> np.ndarray:
-    """A step, no longer than what one round may go."""
+    """A step that is no longer than one may be."""
     return step * min(1.0, LONGEST / max(float(abs(step).max()), 1e-300))
-
-
-def _factor(deviation: float) -> str:
-    """Standard deviation of a logarithm in words."""
-    return (
-        "without any bound"
-        if deviation > 10
-        else f"standard deviation: a factor of {math.exp(deviation):.3g}"
-    )

@@ -11,7 +11,7 @@ import numpy as np
 from solidgear.studies.measured.computed import motions_up_to
 from solidgear.studies.measured.correlate import Correlation
 from solidgear.studies.measured.responses import ResponseFit
-from solidgear.studies.measured.shapes import OnPoints
+from solidgear.studies.measured.shapes import SurfacePoints
 
 #: of the highest measured frequency: modes up to there count
 BEYOND = 2.0
@@ -92,7 +92,7 @@ def overlay(found: Correlation) -> Overlay | None:
     if not kept:
         return None
     numbers = sorted({at for k in kept for at, _ in ends[k]})
-    places = OnPoints(computed.body, numbers, np.array([responses.places[n] for n in numbers]))
+    places = SurfacePoints(computed.body, numbers, np.array([responses.places[n] for n in numbers]))
     limit = BEYOND * found.pairs[-1].measured.frequency
     ahead = responses.frequencies > 0
     hertz = responses.frequencies[ahead]

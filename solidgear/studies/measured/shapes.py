@@ -8,6 +8,7 @@ measurement is free).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,6 +16,7 @@ from scipy.spatial import cKDTree
 from solidgear.body import Body
 from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError
+from solidgear.studies.measured.alignment import Seen
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.universal import Shapes
 
@@ -22,9 +24,13 @@ from solidgear.studies.measured.universal import Shapes
 OFF = 0.05
 #: nearest points of the surface whose triangles are tried
 NEAR = 4
+#: MAC of two computed modes on the measuring points from which on these do not tell them apart
+ALIKE = 0.1
+#: places of the surface that are tried for one more point
+TRIED = 300
 
 
-class OnPoints:
+class SurfacePoints:
     """Motions of a body's surface at measuring points.
 
     Parameters
@@ -50,26 +56,101 @@ class OnPoints:
         return np.einsum("pc,pcx->px", self.weights, moved)
 
 
-def mac_of(measured: Shapes, computed: Computed) -> np.ndarray:
-    """MAC of all measured shapes (rows) and all modes of a body.
+@dataclass(frozen=True)
+class Confused:
+    """Two modes that the measuring points do not tell apart.
 
-    Raises
-    ------
-    SolidgearError
-        For a point that is off the surface.
+    Attributes
+    ----------
+    first, second : int
+        Modes.
+    mac : float
+        Of both on the points.
+    place : (float, float, float)
+        x, y, z of the point that would tell them best, m.
+    then : float
+        MAC with it.
     """
-    places = OnPoints(computed.body, measured.numbers.tolist(), measured.points)
-    seen = np.any(measured.values != 0, axis=0)
-    out = np.zeros((len(measured.values), len(computed.modes)))
-    rows = measured.values[:, seen]
-    whole = np.sum(np.abs(rows) ** 2, axis=1)
-    for j, mode in enumerate(computed.modes):
-        span = np.column_stack([places.of(vector)[seen] for vector in mode.vectors])
-        left, size, _ = np.linalg.svd(span, full_matrices=False)
-        # a mode that no point sees spans nothing
-        left = left[:, size > 1e-6 * max(size[0], np.finfo(float).tiny)]
-        out[:, j] = np.sum(np.abs(rows @ left) ** 2, axis=1) / whole
-    return out
+
+    first: int
+    second: int
+    mac: float
+    place: tuple[float, float, float]
+    then: float
+
+
+class OnPoints:
+    """Shapes of modes on measuring points.
+
+    Attributes
+    ----------
+    seen : Seen
+        How like measured shapes are computed ones.
+    """
+
+    def __init__(self, measured: Shapes, noise: float, computed: Computed):
+        body = computed.body
+        still = body.surface({})
+        corners, weights = _places(still, measured.numbers.tolist(), measured.points)
+        seen = np.any(measured.values != 0, axis=0)
+        tried = np.unique(np.linspace(0, len(still.points) - 1, TRIED).astype(int))
+        self.tried = still.points[tried]
+        #: shapes of every mode on the points, and on those that may be added, by columns
+        self.shapes: list[np.ndarray] = []
+        self.more: list[np.ndarray] = []
+
+        def moved(vector: Mapping[int, np.ndarray]) -> np.ndarray:
+            return body.surface(vector).displacement
+
+        for mode in computed.modes:
+            all_ = [moved(vector) for vector in mode.vectors]
+            on = [np.einsum("pc,pcx->px", weights, u[corners])[seen] for u in all_]
+            self.shapes.append(np.column_stack(on))
+            self.more.append(np.stack([u[tried] for u in all_], axis=-1))
+        spans = [_basis(one) for one in self.shapes]
+        rows = measured.values[:, seen]
+        whole = np.sum(np.abs(rows) ** 2, axis=1)
+        share = [np.sum(np.abs(rows @ span) ** 2, axis=1) for span in spans]
+        mac = np.column_stack(share) / np.where(whole > 0, whole, np.nan)[:, None]
+        parts = 2 if np.any(np.imag(rows)) else 1
+        free = parts * np.array([span.shape[1] for span in spans])
+        self.seen = Seen(mac, parts * rows.shape[1], free, noise)
+        self._bases = spans
+
+    def confused(self, count: int) -> list[Confused]:
+        """Pairs of the first `count` modes that look alike on the points, nearest ones first."""
+        out = []
+        for j in range(count):
+            for k in range(j):
+                like = _like(self._bases[j], self._bases[k])
+                if like > ALIKE:
+                    out.append((j - k, k, j, like))
+        return [Confused(k, j, like, *self._told_by(k, j)) for _, k, j, like in sorted(out)]
+
+    def _told_by(self, j: int, k: int) -> tuple[tuple[float, float, float], float]:
+        """Place of one more point that tells two modes best, and their MAC with it."""
+        likes = [
+            _like(
+                _basis(np.vstack([self.shapes[j], self.more[j][p]])),
+                _basis(np.vstack([self.shapes[k], self.more[k][p]])),
+            )
+            for p in range(len(self.tried))
+        ]
+        best = int(np.argmin(likes))
+        x, y, z = self.tried[best].tolist()
+        return (x, y, z), likes[best]
+
+
+def _basis(columns: np.ndarray) -> np.ndarray:
+    """Orthonormal columns of the same span; a mode that no point sees spans nothing."""
+    left, size, _ = np.linalg.svd(columns, full_matrices=False)
+    return left[:, size > 1e-6 * max(size[0], np.finfo(float).tiny)]
+
+
+def _like(one: np.ndarray, other: np.ndarray) -> float:
+    """MAC of two spans, of a shape of either with all of the other: the larger of both."""
+    least = min(one.shape[1], other.shape[1])
+    return float(np.sum((one.T @ other) ** 2)) / least if least else 0.0
 
 
 def _places(

@@ -6,6 +6,7 @@ from validation.campaign.cases.features import Features
 from validation.campaign.cases.fillets import Fillets
 from validation.campaign.cases.identification import Identification
 from validation.campaign.cases.modes import Modes
+from validation.campaign.cases.pairing import Pairing
 from validation.campaign.cases.pairs import Pairs
 from validation.campaign.cases.points import Points
 from validation.campaign.cases.shafts import Shafts
@@ -20,5 +21,6 @@ DRAWN = (
     Modes(),
     Fillets(),
     Identification(),
+    Pairing(),
 )
 CASES = {case.name: case for case in DRAWN}

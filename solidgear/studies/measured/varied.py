@@ -1,0 +1,134 @@
+"""Entries that are to be found: where they begin, their bounds, and what is known beforehand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.scene.paths import Keys, Tables, entry, keys_of, label_of
+from solidgear.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, ends
+from solidgear.scene.units import DIMENSIONS, quantity
+from solidgear.studies.sweep.entries import in_si
+
+
+@dataclass(frozen=True)
+class Varied:
+    """An entry of a scene file; logarithms are of its value over that of the file.
+
+    Attributes
+    ----------
+    label : str
+        Its path.
+    before : float
+        In the file, SI.
+    low, high : float
+        Bounds of the logarithm.
+    middle, deviation : float
+        Of the logarithm, as it is known beforehand; an infinite deviation where it is not.
+    """
+
+    keys: Keys
+    label: str
+    before: float
+    low: float = -math.inf
+    high: float = math.inf
+    middle: float = 0.0
+    deviation: float = math.inf
+
+    @property
+    def begin(self) -> float:
+        """Logarithm at which a search begins."""
+        return min(max(self.middle, self.low), self.high)
+
+    @property
+    def prior(self) -> tuple[float, float] | None:
+        """Value that is known beforehand, and the deviation of its logarithm."""
+        if math.isinf(self.deviation):
+            return None
+        return self.before * math.exp(self.middle), self.deviation
+
+
+def varied_of(
+    texts: Iterable[str], tables: Tables, ranges: Sequence[Uncertain] | None = None
+) -> tuple[Varied, ...]:
+    """Entries of ``PATH``, ``PATH=180 GPa : 220 GPa`` (bounds) and ``PATH=206 GPa ± 3 %`` (a value
+    that is known to one standard deviation).
+
+    Parameters
+    ----------
+    ranges : sequence of Uncertain, optional
+        Of the scene; those of the same entries hold where a text gives none.
+
+    Raises
+    ------
+    SolidgearError
+        For a path that names no positive number, a range that is none, and an entry given twice.
+    """
+    found = [_varied(text, tables, ranges or ()) for text in texts]
+    if not found:
+        raise SolidgearError('nothing is varied; give for example --vary "material.E"')
+    if len({one.keys for one in found}) < len(found):
+        raise SolidgearError("--vary: the same entry is given twice")
+    known = any(math.isfinite(one.high) or math.isfinite(one.deviation) for one in found)
+    if ranges is not None and not known:
+        raise SolidgearError("--priors: [uncertain] of the file has a range of none that is varied")
+    return tuple(found)
+
+
+def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
+    path, equals, said = (part.strip() for part in text.partition("="))
+    try:
+        keys = keys_of(path, tables)
+        there = entry(keys, tables)
+        before = in_si(there)
+        if before is None or not before > 0:
+            raise SceneError(
+                f"the file holds {show(there, 40)}, and what is identified begins at a number above "
+                "zero"
+            )
+        label = label_of(keys, tables)
+        if equals:
+            low, high = sorted(ends(said, before, _dimension(there, said)))
+            return _known(Varied(keys, label, before), said, low / before, high / before)
+    except SceneError as error:
+        raise SolidgearError(f"--vary {text}: {error}") from None
+    out = Varied(keys, label, before)
+    for one in ranges:
+        # a range of all of a bearing's stiffness is one of each entry
+        if f"{label}.".startswith(f"{one.path}."):
+            return _known(out, one.said, one.low, one.high)
+    return out
+
+
+def _known(one: Varied, said: str, low: float, high: float) -> Varied:
+    """The entry with a range, times what the file says."""
+    if not 0 < low < high:
+        raise SceneError(
+            'must be two ends above zero such as "180 GPa : 220 GPa", or a value and its standard '
+            'deviation, which is less than the value, such as "206 GPa ± 3 %"',
+            value=show(said),
+        )
+    a, b, middle = (math.log(factor) for factor in (low, high, (low + high) / 2))
+    if PLUS_MINUS.fullmatch(said):
+        return Varied(one.keys, one.label, one.before, middle=middle, deviation=(b - a) / 2)
+    if not a <= 0 <= b:
+        raise SceneError(
+            f"bounds must hold what the file says, {one.before:.6g} in SI: the search begins there",
+            value=show(said),
+        )
+    return Varied(one.keys, one.label, one.before, low=a, high=b)
+
+
+def _dimension(there: object, said: str) -> str:
+    """Dimension of an entry, by its own unit or, where the file has a plain number, a range's."""
+    for word in (there, *PLUS_MINUS.sub(r"\1:\2", said).split(":")):
+        for name in DIMENSIONS if isinstance(word, str) else ():
+            try:
+                quantity(word, name)
+            except SceneError:
+                continue
+            if name != FACTOR:
+                return name
+    return FACTOR

@@ -1,0 +1,156 @@
+"""Is a pair right as often as its probability says? Random shafts with other springs and modulus
+than those that are computed, few points, noisy shapes, and lists that have a slip.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+from typing import Any
+
+import numpy as np
+
+import solidgear as sg
+from solidgear.scene.file import scene_of
+from solidgear.studies.measured.alignment import align
+from solidgear.studies.measured.computed import Computed
+from solidgear.studies.measured.correlate import peaks_of
+from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.shapes import OnPoints
+from solidgear.studies.measured.universal import Shapes
+from validation.campaign.case import Case, Run
+from validation.campaign.cases.identification import NOISE, SHAPES, shaft
+from validation.campaign.rows import CLAIM, Found, Row
+
+#: of logarithms: what springs and modulus are off by
+SPRINGS, MODULUS = 0.2, 0.03
+#: of shapes, and points that are measured
+NOISES, POINTS = (0.02, 0.05, 0.1), (3, 16)
+SLIPS = ("none", "two changed places", "a mode is missing", "a peak is none", "a pair is split")
+#: sets of points and noise for each shaft and slip
+SETS = 2
+#: points that say which mode is which
+MANY = 200
+#: least MAC on many points of modes that are the same one; below, nobody can say which it is
+SAME, MIXED = 0.7, -1
+#: probabilities that are told together
+BINS = (0.05, 0.5, 0.8, 0.95, 0.99, 1.0)
+
+
+class Pairing(Case):
+    """A pair that is told counts as held where it is right."""
+
+    name, question = "pairing", "probabilities of pairs of measured and computed modes"
+    parts = ((), ("stated",), ("slip",))
+    details = (("noise",), ("slip", "stated"))
+    widths = False
+    seeds = (1, 50)
+
+    def judge(self, run: Run, seed: int) -> Found:
+        found, problem = run.call(judged, seed)
+        if problem:
+            return Found(problems=[f"seed {seed}: {problem}"])
+        rows = [Row(body=f"seed {seed}", bar=0.5, rule=CLAIM, **row) for row in found]
+        return Found(rows)
+
+
+def judged(seed: int) -> list[dict[str, Any]]:
+    """Pairs that are told, right (0) or wrong (1)."""
+    rng = np.random.default_rng([seed, 5])
+    text, springs = shaft(rng)
+    moved = [k * math.exp(rng.uniform(-SPRINGS, SPRINGS)) for k in springs]
+    true, computed = _solved(text, springs), _solved(text, moved)
+    shift = math.exp(MODULUS * rng.standard_normal())
+    count = len(computed.body.surface({}).points)
+    many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
+    everywhere = OnPoints(many, NOISES[0], computed)
+    partner = [int(row.argmax()) if row.max() > SAME else MIXED for row in everywhere.seen.mac]
+    rows = []
+    for slip, _ in product(SLIPS, range(SETS)):
+        noise = float(rng.choice(NOISES))
+        at = rng.choice(count, int(rng.integers(*POINTS)), replace=False)
+        shapes = _shapes(rng, true, at, noise)
+        peaks = [
+            _Peak(
+                math.log(shift * mode.frequency_hz) + NOISE * float(rng.standard_normal()),
+                min(mode.multiplicity, 2),
+                shape,
+                right,
+            )
+            for mode, shape, right in zip(true.modes, shapes.values, partner)
+        ]
+        slipped = _slipped(rng, slip, peaks)
+        for p, right in _told(slipped, shapes, noise, computed):
+            stated = next(f"{a:.0%} to {b:.0%}" for a, b in zip(BINS, BINS[1:]) if p <= b + 1e-6)
+            how = f"p {p:.4f}, {len(at)} points"
+            tags = {"stated": stated, "slip": slip, "noise": f"{noise:.0%}"}
+            rows.append({"quantity": "pair", "tags": tags, "error": float(not right), "how": how})
+    return rows
+
+
+@dataclass(frozen=True)
+class _Peak:
+    """A measured resonance and the mode it is; None for a peak that is none."""
+
+    log: float
+    multiplicity: int
+    shape: np.ndarray
+    right: int | None
+
+
+def _slipped(rng: np.random.Generator, slip: str, peaks: list[_Peak]) -> list[_Peak]:
+    """A list with a slip, by ascending frequency."""
+    out = list(peaks)
+    k = int(rng.integers(1, len(out) - 2))
+    one, other = out[k : k + 2]
+    if slip == "two changed places":
+        # neighbours, of the nearer half
+        gaps = [b.log - a.log for a, b in pairwise(out)]
+        k = int(rng.choice(np.argsort(gaps)[: len(gaps) // 2]))
+        one, other = out[k : k + 2]
+        out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
+    elif slip == "a mode is missing":
+        del out[k]
+    elif slip == "a peak is none":
+        where = rng.uniform(out[0].log, out[-1].log)
+        out.append(_Peak(float(where), 1, rng.standard_normal(one.shape.shape), None))
+    elif slip == "a pair is split" and (pairs := [p for p in out if p.multiplicity == 2]):
+        one = replace(pairs[int(rng.integers(len(pairs)))], multiplicity=1)
+        out = [one if p.right == one.right else p for p in out]
+        out.append(replace(one, log=one.log + 2 * NOISE))
+    return sorted(out, key=lambda peak: peak.log)
+
+
+def _told(
+    peaks: list[_Peak], shapes: Shapes, noise: float, computed: Computed
+) -> Iterator[tuple[float, bool]]:
+    """Probabilities of pairs, and whether each is right."""
+    modes = [{"frequency": math.exp(p.log), "multiplicity": p.multiplicity} for p in peaks]
+    measured = Measured(uncertainty=NOISE, noise=noise, mode=modes)
+    values = np.array([peak.shape for peak in peaks])
+    seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
+    found = align(*peaks_of(measured, computed), seen)
+    for peak, row in zip(peaks, found.pairs):
+        for j in np.flatnonzero(row > BINS[0]) if peak.right != MIXED else ():
+            yield float(row[j]), int(j) == peak.right
+
+
+def _solved(text: str, springs: Sequence[float]) -> Computed:
+    scene = scene_of(tomllib.loads(text.format(*springs)), "shaft.toml")
+    body = sg.build(scene, "harmonic", order=3)
+    modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
+    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {})
+
+
+def _shapes(rng: np.random.Generator, true: Computed, at: np.ndarray, noise: float) -> Shapes:
+    """Shapes on points of the surface, of a pair in any plane, with noise in every component."""
+    surface = true.body.surface
+    values = []
+    for mode in true.modes:
+        shape = sum(rng.standard_normal() * surface(v).displacement[at] for v in mode.vectors)
+        size = np.sqrt(np.mean(np.square(shape)))
+        values.append(shape + noise * size * rng.standard_normal(shape.shape))
+    return Shapes(np.arange(len(at)), surface({}).points[at], np.array(values))
