@@ -22,6 +22,7 @@ What there is, each with an example in its help:
     trains       load_train, Train
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
+    planetary    PlanetaryStage, CentralMember, Planet
     errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
@@ -61,6 +62,9 @@ _WHERE = {
     "BearingSpring": "solidgear.system",
     "RowSpring": "solidgear.system",
     "PortInertia": "solidgear.system",
+    "PlanetaryStage": "solidgear.system",
+    "CentralMember": "solidgear.system",
+    "Planet": "solidgear.system",
     "MeshVector": "solidgear.system",
     "grounded": "solidgear.system",
     "mesh_spring": "solidgear.system",
@@ -84,12 +88,15 @@ __all__ = [
     "Bearing",
     "BearingSpring",
     "Body",
+    "CentralMember",
     "Housing",
     "Lubrication",
     "Inertia",
     "Material",
     "MeshVector",
     "Placed",
+    "Planet",
+    "PlanetaryStage",
     "PointMass",
     "Port",
     "PortInertia",
@@ -157,9 +164,12 @@ if TYPE_CHECKING:
     from solidgear.studies.sweep.table import sweep
     from solidgear.system import (
         BearingSpring,
+        CentralMember,
         Inertia,
         MeshVector,
         Placed,
+        Planet,
+        PlanetaryStage,
         PortInertia,
         RigidBody,
         RowSpring,

@@ -14,7 +14,8 @@ from solidgear.system.links import (
     torsion_spring,
 )
 from solidgear.system.modes import SystemModes
-from solidgear.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
+from solidgear.system.planetary import CentralMember, Planet, PlanetaryMode, PlanetaryStage
 from solidgear.system.system import System
 
 __all__ = [
@@ -24,6 +25,11 @@ __all__ = [
     "Link",
     "MeshVector",
     "Part",
+    "CentralMember",
+    "PlanarBody",
+    "Planet",
+    "PlanetaryMode",
+    "PlanetaryStage",
     "Placed",
     "PortInertia",
     "RigidBody",
