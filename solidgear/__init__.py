@@ -22,7 +22,8 @@ What there is, each with an example in its help:
     trains       load_train, Train
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
-    planetary    PlanetaryStage, CentralMember, Planet
+    planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
+                 PlanetError
     errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
@@ -63,7 +64,11 @@ _WHERE = {
     "RowSpring": "solidgear.system",
     "PortInertia": "solidgear.system",
     "PlanetaryStage": "solidgear.system",
+    "PlanetaryTeeth": "solidgear.system",
     "CentralMember": "solidgear.system",
+    "FixedSupport": "solidgear.system",
+    "PlanetError": "solidgear.system",
+    "carrier_turn": "solidgear.system",
     "Planet": "solidgear.system",
     "MeshVector": "solidgear.system",
     "grounded": "solidgear.system",
@@ -89,6 +94,10 @@ __all__ = [
     "BearingSpring",
     "Body",
     "CentralMember",
+    "FixedSupport",
+    "PlanetError",
+    "PlanetaryTeeth",
+    "carrier_turn",
     "Housing",
     "Lubrication",
     "Inertia",
@@ -165,15 +174,19 @@ if TYPE_CHECKING:
     from solidgear.system import (
         BearingSpring,
         CentralMember,
+        FixedSupport,
         Inertia,
         MeshVector,
         Placed,
         Planet,
         PlanetaryStage,
+        PlanetaryTeeth,
+        PlanetError,
         PortInertia,
         RigidBody,
         RowSpring,
         System,
+        carrier_turn,
         grounded,
         mesh_spring,
         torsion_spring,

@@ -247,11 +247,26 @@ class PlanetaryStage:
         a torque out of nothing.  The data of Lin and Parker (1999) are 8.5 and 7.0 mm off.
         """
         sun, ring = self.angles
-        pins, planet = self.carrier.radius, self.planets[0].radius
-        return (
-            self.sun.radius + planet - pins * cos(sun),
-            self.ring.radius - planet - pins * cos(ring),
-        )
+        pins = self.carrier.radius
+        with_sun = [self.sun.radius + p.radius - pins * cos(sun) for p in self.planets]
+        with_ring = [self.ring.radius - p.radius - pins * cos(ring) for p in self.planets]
+        return max(with_sun, key=abs), max(with_ring, key=abs)
+
+    @property
+    def path_stiffness(self) -> np.ndarray:
+        """(N,) stiffness along the line of action from the sun through each planet to ring and
+        carrier that stand still, N/m.
+
+        Both tooth forces of a planet are equal, and its pin carries their sum:
+        ``1 / k = 1 / k_sun + 1 / k_ring + (2 + 2 cos(a_sun + a_ring)) / k_pin``.
+        """
+        pins = 2 + 2 * cos(sum(self.angles))
+        with np.errstate(divide="ignore"):
+            give = [
+                1 / np.float64(p.sun_mesh) + 1 / np.float64(p.ring_mesh) + pins / p.pin
+                for p in self.planets
+            ]
+        return 1 / np.array(give)
 
     def meshes(self, planet: int) -> dict[str, tuple[MeshVector, MeshVector]]:
         """Mesh vectors of sun and ring, each in its axes, with those of a planet in the planet's."""
