@@ -86,6 +86,13 @@ class PlanetError:
         Of the pin, away from the sun and forward.
     sun_tooth, ring_tooth : float
         Thickness along the line of action in the mesh with sun and ring; more presses.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> late = sg.PlanetError(pin=(0.0, -20e-6))     # presses against the sun first
+    >>> late.sun_tooth
+    0.0
     """
 
     pin: Sequence[float] = (0.0, 0.0)
@@ -166,7 +173,7 @@ def carrier_turn(
     >>> turn = sg.carrier_turn(stage, 20.0, {"sun": sg.FixedSupport(1e7, (10e-6, 0))})
     >>> k_e = stage.path_stiffness[0]
     >>> closed = k_e * 10e-6 * 1e7 / (1e7 + 3 * k_e / 2)
-    >>> round(closed, 3), round(float(np.ptp(turn.sun_mesh[:, 0])) / 2, 3)
+    >>> round(float(closed), 3), round(float(np.ptp(turn.sun_mesh[:, 0])) / 2, 3)
     (56.82, 56.82)
     """
     _fits(stage)
