@@ -128,6 +128,17 @@ class CarrierTurn:
     support: Mapping[str, np.ndarray] = field(repr=False)
     torque: Mapping[str, np.ndarray] = field(repr=False)
 
+    def amplitude(self, order: int) -> np.ndarray:
+        """(N,) amplitude of every mesh force with the sun at a multiple of the carrier's frequency,
+        from 1 to below half the positions, N.
+        """
+        if not 0 < order < len(self.angle) / 2:
+            raise SolidgearError(
+                f"order {order} is not among those of {len(self.angle)} positions: "
+                "from 1 to below half of them"
+            )
+        return 2 * np.abs(np.fft.rfft(self.sun_mesh, axis=0)[order]) / len(self.angle)
+
 
 def carrier_turn(
     stage: PlanetaryStage,
@@ -173,7 +184,7 @@ def carrier_turn(
     >>> turn = sg.carrier_turn(stage, 20.0, {"sun": sg.FixedSupport(1e7, (10e-6, 0))})
     >>> k_e = stage.path_stiffness[0]
     >>> closed = k_e * 10e-6 * 1e7 / (1e7 + 3 * k_e / 2)
-    >>> round(float(closed), 3), round(float(np.ptp(turn.sun_mesh[:, 0])) / 2, 3)
+    >>> round(float(closed), 3), round(float(turn.amplitude(1)[0]), 3)
     (56.82, 56.82)
     """
     _fits(stage)
