@@ -99,6 +99,10 @@ class PlanetError:
     sun_tooth: float = 0.0
     ring_tooth: float = 0.0
 
+    def __post_init__(self):
+        frozen("the error of a pin", self.pin, (2,))
+        frozen("the error of teeth at a planet", (self.sun_tooth, self.ring_tooth), (2,))
+
 
 @dataclass(frozen=True, eq=False)
 class CarrierTurn:
@@ -188,6 +192,7 @@ def carrier_turn(
     (56.82, 56.82)
     """
     _fits(stage)
+    frozen("the torque on the sun", torque, ())
     supports = supports or {}
     unknown = supports.keys() - set(CENTRAL)
     if unknown:
