@@ -174,3 +174,8 @@ def test_two_planets_at_one_angle_are_refused():
     planets = (*stage.planets, replace(stage.planets[0], azimuth=2 * np.pi))
     with pytest.raises(SolidgearError, match="planet 1 and planet 4 are at one angle"):
         replace(stage, planets=planets)
+
+
+def test_three_pressure_angles_are_refused():
+    with pytest.raises(SolidgearError, match="give one, or that of the meshes with the sun"):
+        replace(published(), pressure_angle=(0.4, 0.4, 0.4))

@@ -215,7 +215,13 @@ class PlanetaryStage:
                 f"{self._names[one]} and {self._names[other]} are at one angle; "
                 "give each an azimuth of its own"
             )
-        self.meshes(0)
+        if np.shape(self.pressure_angle) not in ((), (2,)):
+            raise SolidgearError(
+                f"pressure_angle is {self.pressure_angle}; give one, or that of the meshes with the "
+                "sun and that of those with the ring, in rad"
+            )
+        for k in range(len(self.planets)):
+            self.meshes(k)
 
     def _checked(self, name: str, member, may_be_zero: tuple[str, ...]) -> None:
         for one in fields(member):
