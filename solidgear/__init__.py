@@ -22,6 +22,8 @@ What there is, each with an example in its help:
     trains       load_train, Train
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
+    planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
+                 PlanetError
     errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
@@ -61,6 +63,13 @@ _WHERE = {
     "BearingSpring": "solidgear.system",
     "RowSpring": "solidgear.system",
     "PortInertia": "solidgear.system",
+    "PlanetaryStage": "solidgear.system",
+    "PlanetaryTeeth": "solidgear.system",
+    "CentralMember": "solidgear.system",
+    "FixedSupport": "solidgear.system",
+    "PlanetError": "solidgear.system",
+    "carrier_turn": "solidgear.system",
+    "Planet": "solidgear.system",
     "MeshVector": "solidgear.system",
     "grounded": "solidgear.system",
     "mesh_spring": "solidgear.system",
@@ -84,12 +93,19 @@ __all__ = [
     "Bearing",
     "BearingSpring",
     "Body",
+    "CentralMember",
+    "FixedSupport",
+    "PlanetError",
+    "PlanetaryTeeth",
+    "carrier_turn",
     "Housing",
     "Lubrication",
     "Inertia",
     "Material",
     "MeshVector",
     "Placed",
+    "Planet",
+    "PlanetaryStage",
     "PointMass",
     "Port",
     "PortInertia",
@@ -157,13 +173,20 @@ if TYPE_CHECKING:
     from solidgear.studies.sweep.table import sweep
     from solidgear.system import (
         BearingSpring,
+        CentralMember,
+        FixedSupport,
         Inertia,
         MeshVector,
         Placed,
+        Planet,
+        PlanetaryStage,
+        PlanetaryTeeth,
+        PlanetError,
         PortInertia,
         RigidBody,
         RowSpring,
         System,
+        carrier_turn,
         grounded,
         mesh_spring,
         torsion_spring,

@@ -28,6 +28,7 @@ PICTURES = (
     "real_toothed.png",
     "real_step.png",
     "pinion_bending_1.png",
+    "reducer.png",
 )
 
 

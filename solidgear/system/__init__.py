@@ -2,6 +2,7 @@
 source leaves out.
 """
 
+from solidgear.system.carrier_turn import CarrierTurn, FixedSupport, PlanetError, carrier_turn
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import (
     BearingSpring,
@@ -14,16 +15,28 @@ from solidgear.system.links import (
     torsion_spring,
 )
 from solidgear.system.modes import SystemModes
-from solidgear.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
+from solidgear.system.planetary import CentralMember, Planet, PlanetaryMode, PlanetaryStage
+from solidgear.system.planetary_teeth import PlanetaryTeeth
 from solidgear.system.system import System
 
 __all__ = [
+    "CarrierTurn",
+    "FixedSupport",
+    "PlanetError",
+    "PlanetaryTeeth",
+    "carrier_turn",
     "BearingSpring",
     "HousedSprings",
     "Inertia",
     "Link",
     "MeshVector",
     "Part",
+    "CentralMember",
+    "PlanarBody",
+    "Planet",
+    "PlanetaryMode",
+    "PlanetaryStage",
     "Placed",
     "PortInertia",
     "RigidBody",

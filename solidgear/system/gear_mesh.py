@@ -1,4 +1,5 @@
-r"""Line of action, mesh point and mesh vector of a bevel gear pair.
+r"""Line of action, mesh point and mesh vector of a bevel gear pair, and of spur gears, one of which
+may be a ring.
 
 Each member has its own frame, right-handed, y along its shaft from the pitch apex towards its back,
 z up for both. Seen from above, z towards the reader, crossing axes at 90 degrees, O the pitch
@@ -36,6 +37,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
 
 # A line of action typed with six digits has this error; anything worse is a slip that would scale
 # k_m.
@@ -298,6 +300,62 @@ class MeshVector:
     def lever(self) -> float:
         """Fifth component, m: line-of-action displacement per rad about the shaft."""
         return float(self.vector[4])
+
+
+def spur_mesh(
+    radius: float,
+    mate_radius: float,
+    pressure_angle: float,
+    azimuth: float = 0.0,
+    *,
+    internal: bool = False,
+) -> tuple[MeshVector, MeshVector]:
+    """Mesh vectors of two spur gears on parallel axes, of one physical direction.
+
+    Their line of action is the one of a gear that drives its mate about +y; each point is its foot
+    from the gear's own axis.
+
+    Parameters
+    ----------
+    radius, mate_radius : float
+        Of the base circles, m.
+    pressure_angle : float
+        At work, 0 to below pi/2, rad.
+    azimuth : float
+        Of the mate's axis as seen from the gear's, right-handed about y from x, rad.
+    internal : bool
+        For a ring, whose mate turns inside it.
+
+    Returns
+    -------
+    tuple of MeshVector
+        Of the gear and of its mate, in axes that both share.
+
+    Raises
+    ------
+    SolidgearError
+        For a radius that is not positive, an angle out of range, or a mate as large as its ring.
+
+    Examples
+    --------
+    An internal mesh turns both gears the same way:
+
+    >>> ring, planet = spur_mesh(0.06, 0.02, np.radians(20), internal=True)
+    >>> round(ring.lever, 12), round(planet.lever, 12)
+    (0.06, 0.02)
+    """
+    _angle("pressure_angle", pressure_angle)
+    if not 0 < mate_radius < (radius if internal else np.inf):
+        raise SolidgearError(
+            f"a base circle of {mate_radius} m does not mesh with one of {radius} m; "
+            "radii are positive, and a ring is larger than what turns in it"
+        )
+    leans = -pressure_angle if internal else pressure_angle
+    turn = rotation(1, azimuth)[:3, :3]
+    normal = turn @ [sin(leans), 0.0, -cos(leans)]
+    foot = turn @ [cos(leans), 0.0, sin(leans)]
+    other = mate_radius if internal else -mate_radius
+    return MeshVector(normal, radius * foot), MeshVector(normal, other * foot)
 
 
 def _angle(name: str, value: float, closed: bool = False) -> None:

@@ -133,6 +133,46 @@ class Inertia:
 
 
 @dataclass(frozen=True, eq=False)
+class PlanarBody:
+    """A rigid body that moves across its axis and turns about it: x, z and thy.
+
+    Attributes
+    ----------
+    mass : (3, 3) array_like
+        Symmetric positive definite, at the origin of the part, order x z thy, kg and kg m^2.
+    points : mapping of str to (3,) array_like
+        Ports and where they are, m; by default one, ``centre``, on the axis.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> carrier = PlanarBody(np.diag([5.0, 5.0, 0.05]), {"pin": (0.1, 0, 0)})
+    >>> carrier.ports["pin"].rows[2] + 0.0     # z of the pin
+    array([ 0. ,  1. , -0.1])
+    """
+
+    mass: np.ndarray
+    points: Mapping[str, ArrayLike] = field(default_factory=lambda: {"centre": (0.0, 0.0, 0.0)})
+
+    def __post_init__(self):
+        object.__setattr__(self, "mass", frozen("the mass of a planar body", self.mass, (3, 3)))
+
+    @property
+    def strain(self) -> np.ndarray:
+        """(0, 3): nothing gives."""
+        return np.zeros((0, 3))
+
+    @cached_property
+    def ports(self) -> Mapping[str, PortMotion]:
+        """Of all points, in the axes of the part."""
+        whole = RigidBody(np.eye(6), self.points).ports
+        return {
+            name: PortMotion(port.rows[:, [0, 2, 4]], port.point, port.axes)
+            for name, port in whole.items()
+        }
+
+
+@dataclass(frozen=True, eq=False)
 class Placed:
     """A part somewhere else: turned, then moved.
 

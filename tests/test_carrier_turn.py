@@ -1,0 +1,156 @@
+"""A planetary stage at rest over a turn of its carrier: closed forms of load sharing."""
+
+from dataclasses import replace
+from math import cos, pi
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.errors import SolidgearError
+
+TORQUE, SHIFT = 20.0, 10e-6
+#: N/m, N m/rad: members that stand still give by 1e-12 of what teeth give
+STILL = 1e20
+# a dozen unknowns beside springs 1e12 times as stiff
+ROUNDING = 1e-10
+TEETH = sg.PlanetaryTeeth(17, 34, 85, module=2.5e-3)
+PATH = 5.15e7
+
+
+def stage(planets=3, pin=2e8, sun_mesh=2e8, ring_mesh=3e8, sun=0.0):
+    s, p, r = TEETH.base_radii
+    return sg.PlanetaryStage(
+        sg.CentralMember(0.2, 3e-5, s, bearing=sun),
+        sg.CentralMember(2.0, 0.02, r, bearing=STILL, turning=STILL),
+        sg.CentralMember(1.5, 5e-3, TEETH.pin_radius, bearing=STILL),
+        sg.Planet(0.6, 5e-4, p, pin, sun_mesh, ring_mesh).spaced(planets),
+        TEETH.pressure_angle,
+    )
+
+
+def test_ideal_bearings_share_the_load_at_every_position_and_torques_balance():
+    turn = sg.carrier_turn(stage(), TORQUE)
+    mean = TORQUE / (3 * TEETH.base_radii[0])
+    assert turn.sun_mesh.shape == (72, 3)
+    assert turn.sun_mesh == pytest.approx(mean, rel=ROUNDING)
+    assert turn.ring_mesh == pytest.approx(mean, rel=ROUNDING)
+    assert sum(turn.torque.values()) == pytest.approx(0, abs=ROUNDING * TORQUE)
+    assert turn.torque["sun"] == pytest.approx(-TORQUE, rel=ROUNDING)
+    assert turn.torque["carrier"] == pytest.approx(TEETH.speed_ratio * TORQUE, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("planets", [3, 4, 5])
+@pytest.mark.parametrize("support", [1e7, 1e8])
+def test_a_shifted_support_modulates_every_mesh_at_the_carrier_frequency(planets, support):
+    own = stage(planets)
+    path = own.path_stiffness[0]
+    turn = sg.carrier_turn(own, TORQUE, {"sun": sg.FixedSupport(support, (0, SHIFT))})
+    closed = path * SHIFT * support / (support + planets * path / 2)
+    order = np.fft.rfft(turn.sun_mesh, axis=0) / 36
+    assert turn.amplitude(1) == pytest.approx(closed, rel=ROUNDING)
+    assert abs(order[2:]).max() < ROUNDING * closed
+    behind = np.angle(order[1] / np.roll(order[1], 1))
+    assert np.abs(behind) == pytest.approx(2 * pi / planets)
+    assert turn.sun_mesh.sum(axis=1) == pytest.approx(TORQUE / TEETH.base_radii[0], rel=ROUNDING)
+    assert turn.ring_mesh == pytest.approx(turn.sun_mesh, rel=ROUNDING)
+
+
+def test_one_stiffness_through_the_planets_gives_both_figures_of_the_prototype():
+    # 20 N m on a base circle of 20 mm: 333 N; 10 um off: 59 N on 1e7 N/m, 291 N on 1e8 N/m
+    base = replace(stage(pin=STILL, sun_mesh=2 * PATH, ring_mesh=2 * PATH))
+    torque = TORQUE * TEETH.base_radii[0] / 20e-3
+    for support, wanted in ((1e7, 59), (1e8, 291)):
+        turn = sg.carrier_turn(base, torque, {"sun": sg.FixedSupport(support, (SHIFT, 0))})
+        assert round(float(turn.sun_mesh.mean())) == 333
+        assert round(float(np.ptp(turn.sun_mesh[:, 0])) / 2) == wanted
+
+
+def test_a_support_of_two_stiffnesses_is_that_of_a_stage_built_at_every_position():
+    matrix, shift = np.array([[4e7, 1e7], [1e7, 9e6]]), np.array([7e-6, -4e-6])
+    own = stage()
+    uneven = replace(own, planets=(replace(own.planets[0], sun_mesh=5e7), *own.planets[1:]))
+    turn = sg.carrier_turn(uneven, TORQUE, {"sun": sg.FixedSupport(matrix, shift)}, positions=5)
+    for k, angle in enumerate(turn.angle):
+        back = np.array([[cos(angle), -np.sin(angle)], [np.sin(angle), cos(angle)]])
+        seen = np.zeros((6, 6))
+        seen[np.ix_([0, 2], [0, 2])] = back @ matrix @ back.T
+        built = sg.System(
+            uneven.parts, {**uneven.links, "support": sg.BearingSpring("sun.centre", seen)}
+        )
+        push = back @ matrix @ shift
+        load = built.load(
+            {
+                "sun.centre": [push[0], 0, push[1], 0, TORQUE, 0],
+                "carrier.centre": [0, 0, 0, 0, -TORQUE * TEETH.speed_ratio, 0],
+            }
+        )
+        rows, where = built.strains
+        for planet, one in enumerate(uneven.planets, 1):
+            stretch = (rows[where[f"planet {planet} sun mesh"]] @ built.static(load))[0]
+            assert turn.sun_mesh[k, planet - 1] == pytest.approx(
+                np.sqrt(one.sun_mesh) * stretch, rel=1e-8
+            )
+    assert np.ptp(turn.shift["sun"][:, 0]) > 1e-8  # the sun does not stand still
+
+
+def test_a_floating_sun_gives_three_planets_one_share_whatever_the_pins():
+    errors = [sg.PlanetError((5e-6, 40e-6)), sg.PlanetError(sun_tooth=8e-6), sg.PlanetError()]
+    turn = sg.carrier_turn(stage(), TORQUE, errors=errors, positions=1)
+    assert turn.sun_mesh == pytest.approx(TORQUE / (3 * TEETH.base_radii[0]), rel=1e-9)
+
+
+@pytest.mark.parametrize("error, thicker", [("pin", 2 * cos(pi / 9)), ("sun_tooth", 1.0)])
+def test_errors_share_out_as_rank_says(error, thicker):
+    # turning takes the mean of a stretch along the line of action, floating the first harmonic: of
+    # one planet in four, a floating sun leaves 1/4 with changing sign, a held one 3/4 and -1/4
+    size = 6e-6
+    value = (0.0, -size) if error == "pin" else size
+    errors = [sg.PlanetError(**{error: value}), *[sg.PlanetError()] * 3]
+    mean = TORQUE / (4 * TEETH.base_radii[0])
+    for sun, pattern in ((0.0, [1, -1, 1, -1]), (STILL, [3, -1, -1, -1])):
+        own = stage(4, sun=sun)
+        change = own.path_stiffness[0] * size * thicker * np.array(pattern) / 4
+        turn = sg.carrier_turn(own, TORQUE, errors=errors, positions=1)
+        assert turn.sun_mesh[0] - mean == pytest.approx(change, rel=1e-7)
+
+
+def test_a_stage_whose_circles_do_not_fit_is_refused():
+    own = stage()
+    own = replace(own, carrier=replace(own.carrier, radius=1.01 * TEETH.pin_radius))
+    with pytest.raises(SolidgearError, match=r"lines of action that should be one are 0\.\d+ mm"):
+        sg.carrier_turn(own, TORQUE)
+
+
+def test_what_is_no_support_or_error_is_told():
+    with pytest.raises(SolidgearError, match="'planet 1' has no support; sun, ring, carrier may"):
+        sg.carrier_turn(stage(), TORQUE, {"planet 1": sg.FixedSupport(1e7)})
+    with pytest.raises(SolidgearError, match="2 errors for 3 planets; give each its own"):
+        sg.carrier_turn(stage(), TORQUE, errors=[sg.PlanetError()] * 2)
+    with pytest.raises(SolidgearError, match="a support of -1.0 N/m is no spring"):
+        sg.FixedSupport(-1.0)
+    with pytest.raises(SolidgearError, match="the torque on the sun contains NaN or infinity"):
+        sg.carrier_turn(stage(), np.nan)
+    with pytest.raises(SolidgearError, match="order 36 is not among those of 72 positions"):
+        sg.carrier_turn(stage(), TORQUE).amplitude(36)
+
+
+@pytest.mark.parametrize(
+    "teeth, more, words",
+    [
+        ((17, 34, 86), {}, "a ring of 86 teeth does not fit .* around one axis it has 85"),
+        ((17, 34, 85), {"planets": 4}, r"17 \+ 85 teeth are no multiple of 4; 2, 3, 6 would"),
+        ((17, 34, 85), {"planets": (0, 2, 4)}, "planet 2 does not assemble at 114.592 deg; the "),
+        ((17, 34, 85), {"planets": 6}, "planets 60 deg apart overlap: their axes are"),
+        ((17, 34, 85), {"ratio": 5.9}, r"a ratio of 5.9 is not .*: 1 \+ 85/17 = 6"),
+        ((17, 34.5, 86), {}, "planet has 34.5 teeth; give a whole number"),
+    ],
+)
+def test_teeth_that_do_not_fit_are_told_in_one_sentence(teeth, more, words):
+    with pytest.raises(SolidgearError, match=words):
+        sg.PlanetaryTeeth(*teeth, module=1e-3, **more)
+
+
+def test_unequal_angles_that_assemble_are_taken():
+    tooth = 2 * pi / (17 + 85)
+    assert len(sg.PlanetaryTeeth(17, 34, 85, 1e-3, (0, 35 * tooth, 69 * tooth)).azimuths) == 3
