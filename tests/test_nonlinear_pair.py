@@ -9,7 +9,8 @@ from solidgear.errors import SolidgearError
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import sweep
+from solidgear.nonlinear.motion import Run, settled, sweep
+from solidgear.nonlinear.stability import multipliers, stable
 from solidgear.system import Inertia, RowSpring, System
 from solidgear.system.law import Gap
 
@@ -71,6 +72,48 @@ def test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns(loud):
     np.testing.assert_allclose([one.rms[0] for one in falling[:-1]], upper, rtol=2e-4)
     assert rising[-1].rms[0] > 2 * rising[-2].rms[0]
     assert falling[-1].rms[0] < falling[-2].rms[0] / 5
+
+
+def test_what_lies_between_the_turning_points_is_unstable_and_nothing_else(loud):
+    first, second = loud.turning
+    found = [bool(stable(point)) for point in loud.points]
+    inner = [first < k < second for k in range(len(found))]
+    edge = {first - 1, first, first + 1, second - 1, second, second + 1}
+    assert [a for k, a in enumerate(found) if k not in edge] == [
+        not b for k, b in enumerate(inner) if k not in edge
+    ]
+    # at a turning point one multiplier is one: within what few harmonics leave of it
+    for k in loud.turning:
+        assert abs(multipliers(loud.points[k])[0]) == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    "law", [Gap(1.0, 1.0), Gap(1.0, 1.0, damper=0.2)], ids=["elastic", "damped in contact"]
+)
+def test_multipliers_are_how_a_disturbed_motion_fades(law):
+    own = pair(0.05, law)
+    point = follow(own, 1.3, 0.5).at(0.9)[-1]
+    found, period = multipliers(point)[0], 2 * np.pi / point.omega
+    run = Run(own, point.omega)
+    steady = settled(own, point.omega, _state(point), steady=1e-10).state
+    moved = steady + np.array([1e-5, 0.0])
+    left = [moved - steady]
+    for _ in range(6):
+        moved = run.period(moved)[0]
+        left.append(moved - steady)
+    # differences obey d_(n+2) = trace d_(n+1) - det d_n, with the sum and product of a pair
+    sums, product = 2 * found.real, abs(found) ** 2
+    found = np.array(left)
+    np.testing.assert_allclose(
+        found[2:], sums * found[1:-1] - product * found[:-2], atol=2e-2 * np.abs(found).max()
+    )
+    assert product < np.exp(-2 * ZETA * period) * (1 + 1e-9)
+
+
+def _state(point):
+    """State (omega q, q') of a pair at the beginning of a period: its mass moves by s + e."""
+    s, v = (wave[0, 0] for wave in point.waves())
+    return np.array([s - MEAN + 0.05, v])
 
 
 def test_a_branch_does_not_depend_on_its_direction(loud):

@@ -106,10 +106,20 @@ class Branch:
         for before, after in zip(self.points, self.points[1:]):
             low, high = sorted((before.omega, after.omega))
             if low <= omega < high or (omega == high and after is self.points[-1]):
-                out.append(self._between(before, after, omega))
+                out.append(self._between(before, after, lambda point: point.omega - omega))
         return out
 
-    def _between(self, before: Point, after: Point, omega: float) -> Point:
+    def crossings(self, value: Callable[[Point], float]) -> list[Point]:
+        """Motions at which a value of a motion changes its sign, in order."""
+        out = []
+        values = [value(point) for point in self.points]
+        for k, (before, after) in enumerate(zip(values, values[1:])):
+            if before * after < 0:
+                out.append(self._between(self.points[k], self.points[k + 1], value))
+        return out
+
+    def _between(self, before: Point, after: Point, value: Callable[[Point], float]) -> Point:
+        """Where a value changes its sign between two neighbours."""
         walk = _Follower(before.balance, *self.scale)
         if after.balance.count > before.balance.count:
             before = walk.refit(before, after.balance.count)
@@ -117,7 +127,7 @@ class Branch:
         away = np.append(
             (end - before.motion) / walk.size, (after.omega - before.omega) / walk.width
         )
-        found = walk.where(before, float(away @ before.tangent), lambda p: p.omega - omega)
+        found = walk.where(before, float(away @ before.tangent), value)
         return before if found is None else found
 
 

@@ -105,6 +105,17 @@ class Remainder:
         w = np.diag(self.omega)
         return np.block([[np.zeros_like(w), w], [-w, -self.losses]])
 
+    def generator(self, more: np.ndarray, drag: np.ndarray) -> np.ndarray:
+        """(..., 2r, 2r) matrix of small motions where the tangents of p are (..., m, m), over the
+        stretches and over their rates.
+        """
+        r = len(self.omega)
+        still = np.linalg.inv(np.eye(self.rows) - self.flexible @ more) @ self.seen
+        out = np.broadcast_to(self.state, (*more.shape[:-2], 2 * r, 2 * r)).copy()
+        out[..., r:, :r] += self.seen.T @ more @ still / self.omega
+        out[..., r:, r:] += self.seen.T @ drag @ still
+        return out
+
     @cached_property
     def _poles(self) -> tuple[np.ndarray, np.ndarray]:
         """Poles (2r,), rad/s, and residues (2r, m, m) of the receptance."""
