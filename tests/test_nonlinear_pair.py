@@ -57,7 +57,8 @@ def test_three_motions_live_at_one_speed(loud):
     lower, middle, upper = (point.rms[0] for point in loud.at(0.75))
     assert lower == pytest.approx(linear_rms(0.05, 0.75), rel=1e-9)
     assert middle == pytest.approx(0.1715, abs=5e-5)
-    assert upper == pytest.approx(0.22472, abs=1e-5)
+    # sampled between the kinks: a part in ten thousand
+    assert upper == pytest.approx(0.22472, abs=2e-5)
 
 
 def test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns(loud):
@@ -95,7 +96,7 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
     point = follow(own, 1.3, 0.5).at(0.9)[-1]
     found, period = multipliers(point)[0], 2 * np.pi / point.omega
     run = Run(own, point.omega)
-    steady = settled(own, point.omega, _state(point), steady=1e-10).state
+    steady = settled(own, point.omega, point.state(), steady=1e-10).state
     moved = steady + np.array([1e-5, 0.0])
     left = [moved - steady]
     for _ in range(6):
@@ -108,12 +109,6 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
         found[2:], sums * found[1:-1] - product * found[:-2], atol=2e-2 * np.abs(found).max()
     )
     assert product < np.exp(-2 * ZETA * period) * (1 + 1e-9)
-
-
-def _state(point):
-    """State (omega q, q') of a pair at the beginning of a period: its mass moves by s + e."""
-    s, v = (wave[0, 0] for wave in point.waves())
-    return np.array([s - MEAN + 0.05, v])
 
 
 def test_a_branch_does_not_depend_on_its_direction(loud):

@@ -18,10 +18,11 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.nonlinear.model import Remainder
+from solidgear.system.law import Force
 
-#: instants a harmonic: with two, turning points of a law of pieces were 2 % off, four left false folds
-INSTANTS = 32
-LEAST_INSTANTS = 512
+#: instants a harmonic, and of a period at least: with two, turning points of a law of pieces were 2 % off
+INSTANTS = 16
+LEAST_INSTANTS = 256
 #: change of the unknowns, relative to the largest stretch, at which Newton's method has arrived
 ARRIVED = 1e-11
 ITERATIONS = 12
@@ -136,27 +137,50 @@ class Balance:
         make, slope, read = self._series
         s, v = self.stretch(motion, omega)
         excess, held = own.excess(s, v)
-        parts = read @ excess.value
-        by = _over_parts(read, excess.by_stretch, make)
+        parts, by = self._parts(excess, s)
         h = np.arange(self.count + 1)
         receptance, change = own.receptance(h * omega)
         linear, linear_change = own.linear(omega, self.count)
         changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
+        still, soft = parts, by
         if own.drags:
-            by += omega * _over_parts(read, excess.by_rate, slope)
+            if own.flexible.any():
+                still, soft = self._parts(own.excess(s, np.zeros_like(v))[0], s)
+            by = by + omega * _over_parts(read, excess.by_rate, slope)
             by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
             changed = changed + _applied(receptance, by_omega)
-        moved = _applied(receptance, parts)
-        jacobian = np.eye(motion.size) - _applied(receptance, by.reshape(len(parts), -1)).reshape(
-            (motion.size,) * 2
-        )
+        moved = _applied(receptance, parts) + still @ own.flexible
+        taken = _applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
         if own.flexible.any():
-            still = own.excess(s, np.zeros_like(v))[0] if own.drags else excess
-            moved = moved + read @ still.value @ own.flexible
-            soft = _over_parts(read, own.flexible @ still.by_stretch, make)
-            jacobian -= soft.reshape((motion.size,) * 2)
+            taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
+        jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
         value = motion - (as_real(linear) + moved).ravel()
         return Residual(value, jacobian, -changed.ravel(), held)
+
+    def _parts(self, excess: Force, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by those of
+        the stretch.
+
+        Between two instants on both sides of a kink of a law a sampled sum takes a straight line
+        for a bent one; what lies between is added, exact for a straight stretch.  Without it the
+        error jumps as kinks pass from one interval to the next, and a branch has false folds.
+        """
+        make, _, read = self._series
+        parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
+        for law, at in self.remainder.laws:
+            for edge, jump in law.kinks:
+                for row in range(at.start, at.stop):
+                    gap = s[:, row] - edge
+                    first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
+                    after = (first + 1) % len(gap)
+                    u, v = np.abs(gap[first]), np.abs(gap[after])
+                    weight = jump / 4 * (read[:, first] + read[:, after])
+                    parts[:, row] += weight @ (u * v / (u + v))
+                    slope = np.sign(gap[first]) * (v / (u + v)) ** 2
+                    other = np.sign(gap[after]) * (u / (u + v)) ** 2
+                    bent = slope[:, None] * make[first] + other[:, None] * make[after]
+                    by[:, row, :, row] += weight @ bent
+        return parts, by
 
     def solve(self, motion: np.ndarray, omega: float) -> np.ndarray:
         """Motion (n,) at a frequency by Newton's method, from a guess.

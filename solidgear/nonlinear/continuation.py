@@ -25,6 +25,8 @@ CLOSE = 1e-9
 EASY, STRAIGHT = 4, 0.9
 #: steps: shortest relative to longest; how a step grows
 SHORTEST, GROWTH = 1e-6, 1.4
+#: times that steps are halved for a branch that came back the way it went
+SHORTER = 6
 #: points of a branch at most
 MOST_POINTS = 5_000
 #: the highest harmonics over the largest above which there are more, and far below which fewer
@@ -71,6 +73,21 @@ class Point:
     def rms(self) -> np.ndarray:
         """(m,) root mean square of the stretches about their mean."""
         return np.sqrt((np.abs(self.harmonics[1:]) ** 2).sum(axis=0) / 2)
+
+    def state(self) -> np.ndarray:
+        """(2r,) modal state ``(omega q, q')`` at the beginning of a period, where time can begin."""
+        own, count = self.balance.remainder, self.balance.count
+        excess, _ = own.excess(*self.waves())
+        push = np.fft.rfft(excess.value, axis=0)[: count + 1] / len(excess.value)
+        push[1:] *= 2
+        n = 1j * self.omega * np.arange(count + 1)
+        orders = min(count, len(own.error))
+        error = own.error[:orders]
+        push[1 : orders + 1] += error @ own.stiffness + n[1 : orders + 1, None] * (error @ own.drag)
+        stiff = np.diag(own.omega**2) + n[:, None, None] * own.losses
+        stiff = stiff + n[:, None, None] ** 2 * np.eye(len(own.omega))
+        q = np.linalg.solve(stiff, (push @ own.seen)[..., None])[..., 0]
+        return np.concatenate([own.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real])
 
     def forces(self) -> np.ndarray:
         """(T, m) forces of the laws over a period."""
@@ -216,7 +233,6 @@ def follow(
     *,
     harmonics: int | None = None,
     step: float = 0.05,
-    told: Callable[[float], None] | None = None,
 ) -> Branch:
     """The branch of periodic motions from one speed to another.
 
@@ -225,11 +241,9 @@ def follow(
     begin, end : float
         Frequencies of the excitation, rad/s, either one the larger.
     harmonics : int, optional
-        Fixed number; chosen by the decay of the highest without it.
+        Fixed number; as many as the decay of the highest asks for without it.
     step : float
         Longest step, in shares of the range of speeds and of the largest linear motion.
-    told : callable, optional
-        Called with every frequency.
 
     Raises
     ------
@@ -258,8 +272,8 @@ def follow(
             f"speeds from {begin:g} to {end:g} rad/s; give two different ones above zero"
         )
     count = harmonics or LEAST_HARMONICS
-    for _ in range(6):
-        found = _followed(remainder, begin, end, count, harmonics is None, step, told)
+    for _ in range(SHORTER):
+        found = _followed(remainder, begin, end, count, harmonics is None, step)
         if found is not None:
             return found
         step /= 2
@@ -282,7 +296,7 @@ def _begun(remainder: Remainder, count: int, omega: float) -> tuple[Balance, np.
     return balance, motion
 
 
-def _followed(remainder, begin, end, count, adaptive, longest, told) -> Branch | None:
+def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
     """The branch, or None where it came back the way it went."""
     balance, motion = _begun(remainder, count, begin)
     low, high = min(begin, end), max(begin, end)
@@ -319,8 +333,6 @@ def _followed(remainder, begin, end, count, adaptive, longest, told) -> Branch |
                 turning.append(len(points))
                 points.append(turn)
         points.append(new)
-        if told:
-            told(new.omega)
         if not low <= new.omega <= high:
             return _ended(points, turning, walk, begin, end, low, high)
         if iterations <= EASY:

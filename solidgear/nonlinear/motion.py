@@ -5,7 +5,7 @@ Nothing of harmonic balance is used but the force laws and what is linear.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ LOOKS = 128
 #: what is left of a transient, relative, when a motion is steady
 STEADY = 1e-5
 #: periods of the excitation after which a motion is called unsteady, and that may make one of its own
-MOST_PERIODS, LONGEST_CYCLE = 2_000, 8
+MOST_PERIODS, LONGEST_CYCLE = 4_000, 8
 #: periods over which changes must fade to be judged
 FADING = 8
 #: a change from period to period above which a motion of several periods is one, in tolerances
@@ -250,8 +250,9 @@ def sweep(
     remainder: Remainder,
     omegas: Sequence[float],
     *,
+    state: np.ndarray | None = None,
     most: int = MOST_PERIODS,
-    told: Callable[[float], None] | None = None,
+    steady: float = STEADY,
 ) -> list[Steady]:
     """Steady motions one after the other, each begun where the last one ended.
 
@@ -259,6 +260,8 @@ def sweep(
     ----------
     omegas : sequence of float
         rad/s, in the order in which they are run through.
+    state : (2r,) ndarray, optional
+        To begin at; rest at the linear mean without it.
 
     Examples
     --------
@@ -274,10 +277,7 @@ def sweep(
     0.225
     """
     out: list[Steady] = []
-    state = None
     for omega in omegas:
-        out.append(settled(remainder, float(omega), state, most=most))
+        out.append(settled(remainder, float(omega), state, most=most, steady=steady))
         state = out[-1].state
-        if told:
-            told(float(omega))
     return out

@@ -244,6 +244,8 @@ class Mesh(Model):
         Static transmission error under the load of the cells and without it, m.
     transmission_error : ErrorTable
         A single number is a constant amplitude, m.
+    backlash : float or None
+        Width of the gap between both flanks along the line of action, m; of nonlinear motion alone.
     local_harmonics : tuple of int
         Harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
         tooth pitch of the lumped point's seat; by default none, the mean of the seat alone.
@@ -264,6 +266,7 @@ class Mesh(Model):
     unloaded_error: Thickness | None = None
     transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
     transmission_error_status: Status = "assumed"
+    backlash: Thickness | None = None
     local_harmonics: tuple[Harmonic, ...] = ()
 
     @model_validator(mode="after")

@@ -39,6 +39,10 @@ class Law(Protocol):
     def drags(self) -> bool:
         """Whether the force depends on the rate."""
 
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """Stretches at which the slope jumps, each row by itself, and by how much, N/m."""
+
     def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
         """Force at T instants, from stretches and rates (T, r)."""
 
@@ -120,6 +124,14 @@ class Gap:
     def drags(self) -> bool:
         """Whether it has a damper."""
         return self.damper > 0
+
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """Both ends of the gap of straight sides; a curved one sets in without a jump."""
+        if self.exponent > 1 or self.rounding:
+            return ()
+        coast = self.drive if self.coast is None else self.coast
+        return (-self.half_gap, -coast), (self.half_gap, self.drive)
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -217,6 +229,11 @@ class RadialGap:
     def drags(self) -> bool:
         """Not at all."""
         return False
+
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """None that a single row tells."""
+        return ()
 
     @property
     def edges(self) -> tuple[float, ...]:
