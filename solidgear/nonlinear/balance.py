@@ -111,6 +111,12 @@ class Balance:
     def _series(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return series(self.count, self.samples)
 
+    @cached_property
+    def factor(self) -> np.ndarray | None:
+        """(T, m) what forces are multiplied by at every instant; None where nothing varies."""
+        angle = 2 * np.pi * np.arange(self.samples) / self.samples
+        return self.remainder.factor(angle) if self.remainder.varies else None
+
     def linear(self, omega: float) -> np.ndarray:
         """(n,) motion of the linear system, whose rest is where its forces are none."""
         return as_real(self.remainder.linear(omega, self.count)[0]).ravel()
@@ -136,7 +142,7 @@ class Balance:
         own = self.remainder
         make, slope, read = self._series
         s, v = self.stretch(motion, omega)
-        excess, held = own.excess(s, v)
+        excess, held = own.excess(s, v, self.factor)
         parts, by = self._parts(excess, s)
         h = np.arange(self.count + 1)
         receptance, change = own.receptance(h * omega)
@@ -145,7 +151,7 @@ class Balance:
         still, soft = parts, by
         if own.drags:
             if own.flexible.any():
-                still, soft = self._parts(own.excess(s, np.zeros_like(v))[0], s)
+                still, soft = self._parts(own.excess(s, np.zeros_like(v), self.factor)[0], s)
             by = by + omega * _over_parts(read, excess.by_rate, slope)
             by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
             changed = changed + _applied(receptance, by_omega)
@@ -175,6 +181,8 @@ class Balance:
                     after = (first + 1) % len(gap)
                     u, v = np.abs(gap[first]), np.abs(gap[after])
                     weight = jump / 4 * (read[:, first] + read[:, after])
+                    if self.factor is not None:
+                        weight = weight * (self.factor[first, row] + self.factor[after, row]) / 2
                     parts[:, row] += weight @ (u * v / (u + v))
                     slope = np.sign(gap[first]) * (v / (u + v)) ** 2
                     other = np.sign(gap[after]) * (u / (u + v)) ** 2

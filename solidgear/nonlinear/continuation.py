@@ -77,7 +77,7 @@ class Point:
     def state(self) -> np.ndarray:
         """(2r,) modal state ``(omega q, q')`` at the beginning of a period, where time can begin."""
         own, count = self.balance.remainder, self.balance.count
-        excess, _ = own.excess(*self.waves())
+        excess, _ = own.excess(*self.waves(), self.balance.factor)
         push = np.fft.rfft(excess.value, axis=0)[: count + 1] / len(excess.value)
         push[1:] *= 2
         n = 1j * self.omega * np.arange(count + 1)
@@ -91,7 +91,7 @@ class Point:
 
     def forces(self) -> np.ndarray:
         """(T, m) forces of the laws over a period."""
-        return self.balance.remainder.forces(*self.waves()).value
+        return self.balance.remainder.forces(*self.waves(), self.balance.factor).value
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,6 +55,8 @@ class Remainder:
         And their rows.
     error : (o, m) complex ndarray
         Transmission error e of each row, by orders from 1, m.
+    cycle : (o, m) complex ndarray
+        How the force of each row varies with the angle of the excitation: one, and these orders.
     """
 
     omega: np.ndarray
@@ -67,14 +69,31 @@ class Remainder:
     drag: np.ndarray
     laws: tuple[tuple[Law, slice], ...]
     error: np.ndarray = field(repr=False)
+    cycle: np.ndarray = field(repr=False)
 
     @property
     def rows(self) -> int:
         """Number m of stretches."""
         return len(self.mean)
 
-    def forces(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
-        """Forces of all laws, from stretches and rates (T, m)."""
+    @property
+    def varies(self) -> bool:
+        """Whether a law varies over the cycle of the excitation."""
+        return bool(self.cycle.any())
+
+    def factor(self, angle: np.ndarray) -> np.ndarray:
+        """(T, m) what forces are multiplied by at angles (T,) of the excitation."""
+        n = np.arange(1, len(self.cycle) + 1)
+        return 1 + (np.exp(1j * np.asarray(angle)[:, None] * n) @ self.cycle).real
+
+    def forces(
+        self, stretch: np.ndarray, rate: np.ndarray, factor: np.ndarray | None = None
+    ) -> Force:
+        """Forces of all laws, from stretches and rates (T, m), and what they are multiplied by."""
+        if factor is not None:
+            own = self.forces(stretch, rate)
+            each = factor[..., None]
+            return Force(factor * own.value, each * own.by_stretch, each * own.by_rate)
         t, m = stretch.shape
         if len(self.laws) == 1:
             return self.laws[0][0].force(stretch, rate)
@@ -90,9 +109,11 @@ class Remainder:
         """Whether a force depends on a rate."""
         return any(law.drags for law, _ in self.laws)
 
-    def excess(self, stretch: np.ndarray, rate: np.ndarray) -> tuple[Force, bool]:
-        """p and its tangents, from stretches and rates (T, m), and whether there is any force."""
-        own = self.forces(stretch, rate)
+    def excess(
+        self, stretch: np.ndarray, rate: np.ndarray, factor: np.ndarray | None = None
+    ) -> tuple[Force, bool]:
+        """p and its tangents, as :meth:`forces`, and whether there is any force."""
+        own = self.forces(stretch, rate, factor)
         value = stretch @ self.stiffness - own.value
         if self.drags:
             value = value + rate @ self.damper
@@ -165,8 +186,8 @@ class Remainder:
         return out, slope
 
     def scaled(self, share: float) -> Remainder:
-        """The same under a share of its excitation."""
-        return replace(self, error=share * self.error)
+        """The same under a share of its excitation and of what varies."""
+        return replace(self, error=share * self.error, cycle=share * self.cycle)
 
 
 def remainder(
@@ -177,6 +198,7 @@ def remainder(
     matched_hz: float = 0.0,
     load: np.ndarray | None = None,
     errors: Mapping[str, Sequence[complex]] | None = None,
+    cycles: Mapping[str, Sequence[complex]] | None = None,
     highest_hz: float = np.inf,
 ) -> Remainder:
     """The remainder of a system whose links with a law are :class:`solidgear.system.RowSpring`.
@@ -194,6 +216,8 @@ def remainder(
         Constant, such as torques of both ends of a train.
     errors : mapping of str to sequence of complex
         Transmission error of links by orders from 1, m: ``Re(e exp(i n w t))``.
+    cycles : mapping of str to sequence of complex
+        How links vary by orders from 1: forces are multiplied by ``1 + sum Re(c exp(i n w t))``.
     highest_hz : float
         Modes above it are flexibility.
 
@@ -233,7 +257,7 @@ def remainder(
     damper, drag = np.zeros_like(stiffness), np.zeros_like(stiffness)
     held = system.static(load)
     loss = dict(loss or {})
-    error = np.zeros((max([1, *(len(e) for e in (errors or {}).values())]), len(rows)), complex)
+    error, cycle = (_orders(given or {}, len(rows)) for given in (errors, cycles))
     for (name, link), (law, at) in zip(links, laws):
         k = link.stiffness
         eye = np.eye(at.stop - at.start)
@@ -242,8 +266,9 @@ def remainder(
         damper[at, at] = law.damping(carried) * eye
         if kind == "viscous":
             drag[at, at] = loss.get(name, 0.0) * k / (2 * np.pi * matched_hz) * eye
-        own = (errors or {}).get(name, ())
-        error[: len(own), at] = np.asarray(own, complex)[:, None]
+        for out, given in ((error, errors or {}), (cycle, cycles or {})):
+            orders = np.asarray(given.get(name, ()), complex)
+            out[: len(orders), at] = orders[:, None]
     whole, shapes = system.elastic
     seen = rows @ shapes
     free = np.abs(rows @ system.free).max(initial=0.0)
@@ -273,4 +298,10 @@ def remainder(
         drag + damper,
         tuple(laws),
         error,
+        cycle,
     )
+
+
+def _orders(given: Mapping[str, Sequence[complex]], rows: int) -> np.ndarray:
+    """(o, rows) of zeros, as many as the most orders given."""
+    return np.zeros((max([1, *map(len, given.values())]), rows), complex)

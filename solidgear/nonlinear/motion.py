@@ -1,4 +1,5 @@
 r"""Periodic motion by time alone: exact between contacts, contacts located, steady state detected.
+Curved laws, and those that vary over the cycle, are integrated to a tolerance.
 
 Nothing of harmonic balance is used but the force laws and what is linear.
 """
@@ -7,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
@@ -25,6 +28,8 @@ MOST_PERIODS, LONGEST_CYCLE = 4_000, 8
 FADING = 8
 #: a change from period to period above which a motion of several periods is one, in tolerances
 STILL_FADING = 100.0
+#: relative, of laws that are integrated, and steps of Newton's method for what gives way at once
+TOLERANCE, NEWTON = 1e-9, 20
 #: Newton's steps that locate a crossing, and its rest relative to the gap
 CROSSINGS, LOCATED = 30, 1e-13
 
@@ -159,6 +164,59 @@ class Run:
         return found
 
 
+class Integrated:
+    """The same for laws that are curved or vary over the cycle, integrated to a tolerance."""
+
+    def __init__(self, remainder: Remainder, omega: float, looks: int = LOOKS):
+        self.remainder, self.omega, self.looks = remainder, omega, looks
+        orders = np.arange(1, len(remainder.error) + 1)
+        self._turn = 1j * omega * orders
+
+    def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
+        period = 2 * np.pi / self.omega
+        times = np.linspace(0.0, period, self.looks + 1)
+        found = solve_ivp(
+            self._slope, (0.0, period), modal, "DOP853", times, rtol=TOLERANCE, atol=self._least
+        )
+        if not found.success:
+            raise SolidgearError(f"integration in time failed: {found.message}")
+        there = [self._seen(t, y)[:2] for t, y in zip(times[:-1], found.y.T)]
+        s, v = (np.array(rows) for rows in zip(*there))
+        return found.y[:, -1], s, v
+
+    @cached_property
+    def _least(self) -> float:
+        """What a state is told to: a share of that under the mean load."""
+        rest = self.remainder.stiffness @ np.abs(self.remainder.mean)
+        return TOLERANCE * float(np.abs(self.remainder.seen.T @ rest / self.remainder.omega).max())
+
+    def _seen(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Stretches and rates (m,) of a state, and the force of the excess with the excitation."""
+        own, r = self.remainder, len(self.remainder.omega)
+        turned = np.exp(self._turn * t)[:, None] * own.error
+        e, slope = turned.sum(axis=0).real, (self._turn[:, None] * turned).sum(axis=0).real
+        given = own.stiffness @ e
+        v = own.seen @ y[r:] - slope
+        base = own.seen @ (y[:r] / own.omega) + own.mean - e + own.flexible @ given
+        factor = own.factor(np.array([self.omega * t])) if own.varies else None
+        s, still = base, np.zeros_like(base)
+        for _ in range(NEWTON if own.flexible.any() else 0):
+            force, _ = own.excess(s[None], still[None], factor)
+            left = s - base - own.flexible @ force.value[0]
+            step = np.linalg.solve(np.eye(len(s)) - own.flexible @ force.by_stretch[0], left)
+            s = s - step
+            if np.abs(step).max() <= TOLERANCE * np.abs(s).max():
+                break
+        push = own.excess(s[None], v[None], factor)[0].value[0]
+        return s, v, push + given + own.drag @ slope
+
+    def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
+        out = self.remainder.state @ y
+        out[len(self.remainder.omega) :] += self.remainder.seen.T @ self._seen(t, y)[2]
+        return out
+
+
 def _root(series: np.ndarray, rest: float) -> float | None:
     """First time up to `rest` at which a polynomial, at most zero at first, rises through zero."""
     value = series[::-1]
@@ -207,7 +265,8 @@ def settled(
     -------
     Steady
     """
-    run = Run(remainder, omega)
+    straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
+    run = Run(remainder, omega) if straight else Integrated(remainder, omega)
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
     section: list[tuple[float, float]] = []
@@ -228,7 +287,9 @@ def settled(
         if cycle:
             break
     kept = np.concatenate(waves[-max(cycle, 1) :])
-    force = remainder.forces(kept, np.zeros_like(kept)).value
+    angle = 2 * np.pi * np.arange(len(kept)) / run.looks
+    factor = remainder.factor(angle) if remainder.varies else None
+    force = remainder.forces(kept, np.zeros_like(kept), factor).value
     return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
 
 

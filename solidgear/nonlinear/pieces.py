@@ -61,8 +61,10 @@ class Pieces:
     """
 
     def __init__(self, remainder: Remainder, omega: float):
-        if not all(law.pieces for law, _ in remainder.laws):
-            raise SolidgearError("a law that is curved has no pieces; integrate it numerically")
+        if remainder.varies or not all(law.pieces for law, _ in remainder.laws):
+            raise SolidgearError(
+                "a law that is curved, or varies over the cycle, has no straight pieces in time"
+            )
         self.remainder, self.omega = remainder, omega
         self.edges: list[np.ndarray] = []
         self.law = []

@@ -17,6 +17,7 @@ import scipy.linalg as sla
 
 from solidgear.machine.threads import pinned
 from solidgear.nonlinear.continuation import Point
+from solidgear.nonlinear.model import Remainder
 from solidgear.nonlinear.pieces import Pieces
 
 #: a multiplier beyond the unit circle by less is on it: digits of a crossing
@@ -46,7 +47,7 @@ def multipliers(point: Point) -> np.ndarray:
     True
     """
     own = point.balance.remainder
-    if all(law.pieces for law, _ in own.laws):
+    if all(law.pieces for law, _ in own.laws) and not own.varies:
         matrix = _by_pieces(point)
     else:
         matrix = _by_instants(point)
@@ -120,12 +121,19 @@ def _saltation(point: Point, crossing: tuple[float, int, int], jump: np.ndarray)
 
 
 def _by_instants(point: Point) -> np.ndarray:
-    """Monodromy by the midpoint rule with the tangents of every instant."""
     own = point.balance.remainder
-    s, v = point.waves()
-    tangent, _ = own.excess(s, v)
-    step = 2 * np.pi / point.omega / len(s)
-    half = step / 2 * own.generator(tangent.by_stretch, tangent.by_rate)
+    tangent, _ = own.excess(*point.waves(), point.balance.factor)
+    return over_cycle(own, point.omega, tangent.by_stretch, tangent.by_rate)
+
+
+def over_cycle(
+    remainder: Remainder, omega: float, by_stretch: np.ndarray, by_rate: np.ndarray
+) -> np.ndarray:
+    """(2r, 2r) monodromy by the midpoint rule, from the tangents of the excess (T, m, m) at equal
+    intervals of a period.
+    """
+    step = 2 * np.pi / omega / len(by_stretch)
+    half = step / 2 * remainder.generator(by_stretch, by_rate)
     eye = np.eye(half.shape[-1])
     out = eye
     for one in np.linalg.solve(eye - half, eye + half):
