@@ -8,11 +8,18 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.errors import SceneError
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import sweep
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import in_time, parting, teeth_of, with_backlash
+from solidgear.studies.train.nonlinear import (
+    backlash_model,
+    in_time,
+    parting,
+    teeth_of,
+    with_backlash,
+)
 from solidgear.studies.train.nonlinear_told import BacklashTold
 from solidgear.studies.train.respond import Drive
 
@@ -130,3 +137,49 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
 def test_teeth_that_cannot_be_are_refused(run, more, says):
     code, out, err = run("nonlinear", OVERHUNG, "--pinion", "euler", "--gear", "euler", *more)
     assert code == 1 and out == "" and says in err
+
+
+PITCH = 2 * np.pi / 14
+
+
+def cycle(shop, depth=0.1, **changes):
+    """The train with a stiffness that is largest at both ends of a tooth pitch of the pinion."""
+    at = np.linspace(0.0, PITCH, 41)
+    table = {"angle": at, "stiffness": 2.5e8 * (1 + depth * np.cos(14 * at))} | changes
+    table = {key: np.asarray(values).tolist() for key, values in table.items()}
+    mesh = shop.train.mesh.with_changes(stiffness_cycle=table)
+    return shop.with_train(shop.train.with_changes(mesh=mesh))
+
+
+def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(shop, teeth):
+    varied = cycle(shop, 1e-3)
+    found = teeth_of(varied, 5000.0)
+    assert found.cycle[0] == pytest.approx((1e-3, 0.0), rel=5e-3, abs=1e-12)
+    # a small share c of k under the force F acts as a transmission error c F / k
+    system = parting(varied.system(*BEAMS), found)
+    own = backlash_model(varied, *BEAMS, replace(found, errors=(0.0,)), 4000.0)
+    other = backlash_model(shop, *BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
+    assert system.links["mesh"].stiffness == 2.5e8
+    for hz in (400.0, 1000.0):
+        w = 2 * np.pi * hz
+        first, second = Balance(own, 3), Balance(other, 3)
+        swing = [
+            np.ptp(own.forces(*b.stretch(b.solve(b.start(w), w), w), b.factor).value)
+            for b in (first, second)
+        ]
+        assert swing[0] == pytest.approx(swing[1], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"stiffness": 2.5e8 * np.linspace(1.0, 1.1, 41)}, "is not periodic"),
+        ({"stiffness": -2.5e8 * np.ones(41)}, "greater than zero"),
+        ({"angle": np.linspace(0.0, 2 * np.pi / 15, 41)}, "one of its 14 teeth takes"),
+        ({"angle": np.linspace(PITCH, 0.0, 41)}, "angles must ascend"),
+        ({"stiffness": [2.5e8, 2.5e8]}, "2 stiffnesses for 41 angles"),
+    ],
+)
+def test_a_stiffness_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
+    with pytest.raises(SceneError, match=says):
+        cycle(shop, **changes)

@@ -33,12 +33,15 @@ class Teeth:
         Unloaded transmission error by orders of the mesh, m.
     source : str
         Of the mean force.
+    cycle : tuple of (float, float)
+        How the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts.
     """
 
     half_gap: float
     mean_force: float
     errors: tuple[float, ...]
     source: str
+    cycle: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -170,8 +173,10 @@ class Backlash:
 
     @cached_property
     def lost(self) -> tuple[Range, ...]:
-        """Where the teeth part for some of the cycle."""
+        """Where the teeth part for some of the cycle; nowhere without a gap."""
         half = self.teeth.half_gap
+        if half == 0:
+            return ()
         gone = self.driving < 1
         ends = self.branch.crossings(lambda p: float(p.waves()[0].min()) - half)
         return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])

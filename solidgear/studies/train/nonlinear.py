@@ -23,6 +23,7 @@ from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.nonlinear.stability import multipliers
+from solidgear.scene.train_tables import StiffnessCycle
 from solidgear.studies.train.backlash import Backlash, Teeth
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
@@ -33,6 +34,8 @@ from solidgear.system.system import System
 
 #: the first frequency of a branch by default, over the highest
 BEGIN = 0.01
+#: orders of a stiffness over the mesh cycle, and places at which its table is read for them
+CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
 #: longest step of a branch, of the range of speeds
 STEP = 0.02
 #: what may be left of a transient in time: torsion against engine and load fades over thousands of
@@ -75,7 +78,16 @@ def teeth_of(workshop: Workshop, mean_force: float | None = None) -> Teeth:
             'by orders in the file, or --error "10 um"'
         )
     orders = tuple(mesh.transmission_error.orders)
-    return Teeth(mesh.backlash / 2, float(mean_force), orders, source)
+    cycle = () if mesh.stiffness_cycle is None else cycle_orders(mesh.stiffness_cycle)
+    return Teeth(mesh.backlash / 2, float(mean_force), orders, source, cycle)
+
+
+def cycle_orders(table: StiffnessCycle) -> tuple[tuple[float, float], ...]:
+    """Cosine and sine parts of a stiffness over a mesh cycle by its orders, over its mean."""
+    at = np.linspace(table.angle[0], table.angle[-1], CYCLE_PLACES, endpoint=False)
+    parts = np.fft.rfft(np.interp(at, table.angle, table.stiffness))
+    own = 2 * parts[1 : CYCLE_ORDERS + 1] / parts[0].real
+    return tuple((float(c.real), float(-c.imag)) for c in own)
 
 
 def parting(system: System, teeth: Teeth) -> System:
@@ -109,6 +121,7 @@ def backlash_model(
         loss=workshop.losses(),
         load=load,
         errors={"mesh": teeth.errors},
+        cycles={"mesh": [complex(c, -s) for c, s in teeth.cycle]},
         highest_hz=highest_hz,
     )
 

@@ -12,6 +12,10 @@ from solidgear.studies.train.nonlinear import InTime
 
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
+PHASES = (
+    "The file gives no phases of the transmission error: its orders are cosines that begin where the "
+    "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
+)
 
 
 @dataclass(frozen=True)
@@ -80,14 +84,18 @@ class BacklashTold:
     def sentences(self) -> list[str]:
         """What the first mix says, and which of the others is enough."""
         own = self.judge
-        if not own.lost:
+        calm = not own.lost and not own.teeth.cycle
+        if calm:
             return [
                 "The teeth keep contact in all of the range: the linear answer holds to the last "
                 "digit.",
                 *self._verdict(),
             ]
-        lines = [f"The teeth part from {'; from '.join(map(self._range, own.lost))}."]
-        if own.both_flanks:
+        if own.lost:
+            lines = [f"The teeth part from {'; from '.join(map(self._range, own.lost))}."]
+        else:
+            lines = ["The teeth keep contact in all of the range."]
+        if own.both_flanks and own.lost:
             lines.append(
                 f"The other flank is hit from {'; from '.join(map(self._range, own.both_flanks))}."
             )
@@ -101,6 +109,8 @@ class BacklashTold:
         )
         lines += self._off()
         lines += [*self._checked(), *self._verdict()]
+        if own.teeth.cycle or len(own.teeth.errors) > 1:
+            lines.append(PHASES)
         lines.append(
             "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
             "are followed to 1e-4 of the largest."
