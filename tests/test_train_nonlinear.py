@@ -16,6 +16,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import (
     backlash_model,
     in_time,
+    over_force,
     parting,
     teeth_of,
     with_backlash,
@@ -61,7 +62,7 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
 
 def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
     others = [with_backlash(shop, m, m, teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
-    lumped, beams = BacklashTold(shop.train, (solids, *others)).sufficiency()
+    lumped, beams = BacklashTold(shop.train, (solids, *others), 0.044).sufficiency()
     assert lumped.enough and lumped.jumps < 0.01 and abs(lumped.force) < 0.015
     assert not beams.enough and beams.force == pytest.approx(0.30, abs=0.01)
 
@@ -80,6 +81,15 @@ def test_in_time_the_speed_rises_over_the_jump_that_the_branch_foretells(solids)
     # asked: a thousandth; both solve the same law, and what is left of transients is a tenth of it
     assert np.ptp(below.force) / 2 == pytest.approx(force, rel=1e-3)
     assert np.ptp(above.force) / 2 > 1.2 * force
+
+
+def test_no_motion_jumps_at_a_torque_above_the_linear_peak(solids):
+    low, high = over_force(solids, 2)
+    assert high.mean_force == pytest.approx(solids.linear_loudest[1]) and not high.jumps_hz
+    # at half of the linear peak teeth part, and where they do is where sweeps jump
+    (up, _), (down, _) = low.jumps_hz
+    assert [rising for _, rising in low.jumps_hz] == [True, False] and down < up
+    assert low.largest > low.mean_force
 
 
 @pytest.mark.long

@@ -17,8 +17,8 @@ from solidgear.errors import SceneError, SolidgearError, show
 if TYPE_CHECKING:
     from solidgear.studies.train.models import Workshop
 
-#: speeds of a sweep in time, each some seconds
-MOST_IN_TIME = 200
+#: speeds of a sweep in time, and mean forces of a map: each takes seconds
+MOST_RUNS = 200
 
 
 @command
@@ -58,6 +58,10 @@ def nonlinear(
         int,
         typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
     ] = 0,
+    forces: Annotated[
+        int,
+        typer.Option("--forces", help="Mean forces for a map of jumps over speed and torque."),
+    ] = 0,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Folder for the branch, its chart and a page."),
@@ -67,7 +71,7 @@ def nonlinear(
 ) -> None:
     """Teeth with backlash: where they part, jumps over speed, and how far off the linear answer is."""
     from solidgear.report.folder import held
-    from solidgear.report.nonlinear_files import mixes, write_nonlinear
+    from solidgear.report.nonlinear_files import mixes, over_force, write_nonlinear
     from solidgear.report.units import units_named
     from solidgear.studies.train import nonlinear as study
     from solidgear.studies.train.comparison import described
@@ -81,15 +85,18 @@ def nonlinear(
     others = usual if against is None else [mix(text) for text in against]
     shop = _with_teeth(shop, backlash, error)
     teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"))
-    if not 0 <= in_time <= MOST_IN_TIME:
-        raise SolidgearError(f"--in-time {in_time}: give 0 to {MOST_IN_TIME} speeds")
+    for option, count in (("--in-time", in_time), ("--forces", forces)):
+        if not 0 <= count <= MOST_RUNS:
+            raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = tuple(
             study.with_backlash(shop, *pair, teeth, reduced.max_frequency, min_frequency, progress)
             for pair in [first, *(pair for pair in others if pair != first)]
         )
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
-        told = BacklashTold(shop.train, found, swept)
+        mapped = study.over_force(found[0], forces, progress) if forces else ()
+        lever = abs(shop.contact.pinion.lever)
+        told = BacklashTold(shop.train, found, lever, swept, mapped)
         title = f"{shop.train.called}: teeth with backlash"
         cautions = [*slips(shop), *shop.cautions]
         files = []
@@ -102,6 +109,8 @@ def nonlinear(
     say(f"{title}; {found[0].label}", *told.sentences(), *map(caution, cautions))
     say(mixes(told, shown), soft_wrap=False)
     say(*unpublished_lines(shop.train.unpublished()))
+    if mapped:
+        say(over_force(told, shown), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
 

@@ -37,8 +37,38 @@ def backlash_chart(
     rpm = 60 * judge.frequency_hz / teeth
     ends = float(rpm.min()), float(rpm.max())
     panels = [_force(found, rpm, ends, units, width), _contact(judge, rpm, ends, width)]
-    chart = in_columns(panels, 1)
-    return Chart([*chart, [_orders(judge, units)]], width, title)
+    if found.over_force:
+        panels.append(_map(found, ends, units))
+    return Chart(in_columns([*panels, _orders(judge, units)], 1), width, title)
+
+
+def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
+    """Where teeth part, and jumps, over speed and mean force."""
+    judge, teeth = found.judge, found.train.pinion.teeth
+    unit, (hz, size) = units.unit("N"), judge.linear
+    top = 1.05 * float(units.values(size, "N").max())
+    panel = Panel(
+        Axis("speed of the pinion in rpm", ends),
+        Axis(f"mean mesh force in {unit}", (0.0, top)),
+        240.0,
+        "Teeth part below the line; triangles: jumps as the speed rises (up) and falls (down)",
+        series={LINEAR: LOOKS[LINEAR]},
+    )
+    line = _line(60 * hz / teeth, units.values(size, "N"), LINEAR)
+    panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, line)
+    for rising, shape in ((True, "triangle-up"), (False, "triangle-down")):
+        rows = [
+            {
+                "x": 60 * at / teeth,
+                "y": units.value(one.mean_force, "N"),
+                "readout": readout("jump", ("frequency", hertz(at), "Hz")),
+            }
+            for one in found.over_force
+            for at, up in one.jumps_hz
+            if up is rising
+        ]
+        panel.draw({"type": "point", "shape": shape, "filled": True, "color": "#222222"}, rows)
+    return panel
 
 
 def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Panel:

@@ -49,7 +49,7 @@ def write_nonlinear(
         "nonlinear",
         title,
         lead,
-        [mixes(found, shown), train_tables.facts(train, shown)],
+        [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
         lines={"nonlinear": branch(found)},
         charts={"nonlinear": partial(backlash_chart, found, title, shown)},
@@ -92,6 +92,25 @@ def mixes(found: Any, units: Units = ENGINEERING) -> Table:
         Column("at, Hz", lambda one: hertz(one.linear_loudest[0])),
     ]
     return Table("Jumps and largest dynamic mesh force", columns, found.found, style="bare")
+
+
+def over_force(found: Any, units: Units = ENGINEERING) -> Table:
+    """Jumps over the mean force of the teeth."""
+
+    def jumps(one: Any, rising: bool) -> str:
+        return ", ".join(hertz(hz) for hz, up in one.jumps_hz if up is rising) or DASH
+
+    columns = [
+        Column(f"mean force, {units.unit('N')}", lambda one: _force(one.mean_force, units)),
+        Column(
+            f"torque, {units.unit('N m')}",
+            lambda one: plain(units.value(one.mean_force * found.lever, "N m"), 4),
+        ),
+        text("jump up, Hz", lambda one: jumps(one, True)),
+        text("jump down, Hz", lambda one: jumps(one, False)),
+        Column(f"largest, {units.unit('N')}", lambda one: _force(one.largest, units)),
+    ]
+    return Table("Jumps over the torque of the pinion", columns, found.over_force, style="bare")
 
 
 def _force(value: float, units: Units) -> str:

@@ -69,6 +69,25 @@ class Jump:
     force: float
 
 
+@dataclass(frozen=True)
+class AtForce:
+    """Jumps at another mean force of the teeth.
+
+    Attributes
+    ----------
+    mean_force : float
+        N.
+    jumps_hz : tuple of (float, bool)
+        Each with whether the speed rises.
+    largest : float
+        Largest dynamic mesh force of any periodic motion, N.
+    """
+
+    mean_force: float
+    jumps_hz: tuple[tuple[float, bool], ...]
+    largest: float
+
+
 @dataclass(frozen=True, eq=False)
 class Backlash:
     """Periodic motion of a train by two models, over frequency.

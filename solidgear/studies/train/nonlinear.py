@@ -24,7 +24,7 @@ from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.nonlinear.stability import multipliers
 from solidgear.scene.train_tables import StiffnessCycle
-from solidgear.studies.train.backlash import Backlash, Teeth
+from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.operation import mesh_force
@@ -178,6 +178,37 @@ def with_backlash(
     largest = np.array([multipliers(point)[0] for point in branch.points])
     seconds = process_time() - begin
     return Backlash(pinion, gear, teeth, float(own.stiffness[0, 0]), own, branch, largest, seconds)
+
+
+def over_force(
+    found: Backlash, count: int, told: Callable[[str], None] | None = None
+) -> tuple[AtForce, ...]:
+    """Jumps over the mean force of the teeth, up to that above which they never part.
+
+    Parameters
+    ----------
+    count : int
+        Mean forces, equally apart.
+    """
+    most = found.linear_loudest[1]
+    out = []
+    for share in np.arange(1, count + 1) / count:
+        force = float(share * most)
+        if told:
+            told(f"mean force {force:.0f} N")
+        mean = found.remainder.mean * (force / found.teeth.mean_force)
+        ends = found.branch.omega[0], found.branch.omega[-1]
+        branch = follow(replace(found.remainder, mean=mean), *map(float, ends), step=STEP)
+        jumps = tuple(
+            (
+                float(branch.points[k].omega / (2 * np.pi)),
+                bool(branch.points[k - 1].tangent[-1] > 0),
+            )
+            for k in branch.turning
+        )
+        largest = max(float(np.ptp(point.forces()[:, 0])) / 2 for point in branch.points)
+        out.append(AtForce(force, jumps, largest))
+    return tuple(out)
 
 
 @dataclass(frozen=True)

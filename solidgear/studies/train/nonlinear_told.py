@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from solidgear.scene.train import Train
-from solidgear.studies.train.backlash import Backlash, Jump, Range, Teeth
+from solidgear.studies.train.backlash import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.studies.train.nonlinear import InTime
 
 #: of motions that repeat themselves otherwise than every mesh period
@@ -54,13 +54,19 @@ class BacklashTold:
 
     Attributes
     ----------
+    lever : float
+        Torque of the pinion over mesh force, m.
     in_time : tuple of InTime
+        Of the first.
+    over_force : tuple of AtForce
         Of the first.
     """
 
     train: Train
     found: tuple[Backlash, ...]
+    lever: float
     in_time: tuple[InTime, ...] = ()
+    over_force: tuple[AtForce, ...] = ()
 
     @property
     def judge(self) -> Backlash:
@@ -107,6 +113,11 @@ class BacklashTold:
             f"Largest dynamic mesh force {size:.0f} N at {self._at(at)}; the linear answer says "
             f"{linear:.0f} N at {self._at(there)}."
         )
+        if not own.teeth.cycle:
+            lines.append(
+                f"At mean forces above {linear:.0f} N ({linear * self.lever:.0f} N m on the pinion) "
+                "the teeth never part in this range."
+            )
         lines += self._off()
         lines += [*self._checked(), *self._verdict()]
         if own.teeth.cycle or len(own.teeth.errors) > 1:
@@ -201,6 +212,7 @@ class BacklashTold:
             "sentences": self.sentences(),
             "mixes": [self._plain(one) for one in self.found],
             "beside_the_first": [asdict(one) for one in self.sufficiency()],
+            "over_mean_force": [asdict(one) for one in self.over_force],
             "in_time": [asdict(one) | {"off": one.off} for one in self.in_time],
         }
 
