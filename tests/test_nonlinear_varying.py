@@ -14,8 +14,8 @@ from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import Integrated, settled
 from solidgear.nonlinear.stability import multipliers
 from solidgear.nonlinear.varying import edges, growth, hill
-from solidgear.system import Inertia, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System
+from solidgear.system.law import Gap, RadialGap
 
 ALONG = [0, 0, 1, 0, 0, 0]
 
@@ -90,8 +90,8 @@ def test_a_mass_gains_over_a_cycle_what_it_loses():
     point = follow(own, 0.5, 0.9).points[-1]
     state = point.state()
     for _ in range(30):
-        state, *_ = Integrated(own, point.omega, looks=1).period(state)
-    run = Integrated(own, point.omega, looks=2048)
+        state, *_ = Integrated(own, point.omega, 1, 1e-9).period(state)
+    run = Integrated(own, point.omega, 2048, 1e-9)
     _, s, v = run.period(state)
     angle = 2 * np.pi * np.arange(run.looks) / run.looks
     force = own.forces(s, v, own.factor(angle)).value[:, 0]
@@ -100,6 +100,44 @@ def test_a_mass_gains_over_a_cycle_what_it_loses():
     lost = (2 * 0.05 * v[:, 0] + force) * v[:, 0]
     assert np.mean(given) > 0
     assert np.mean(lost) == pytest.approx(np.mean(given), rel=1e-6)
+
+
+def rotor(clearance):
+    """A disc of 10 kg on a shaft of 1e7 N/m, off its seat's middle, in a seat with clearance."""
+    disc = RigidBody(np.diag([10.0, 10.0, 10.0, 0.1, 0.2, 0.1]), {"hub": (0, 0, 0)})
+    law = RadialGap(3e7, clearance)
+    across = np.eye(6)[[0, 2]]
+    links = {
+        "shaft": BearingSpring("disc.hub", np.diag([1e7, 1e8, 1e7, 1e5, 1e5, 1e5])),
+        "seat": RowSpring("disc.hub", across, law.radial, law=law),
+    }
+    system = System({"disc": disc}, links)
+    turning = system.load({"disc.hub": [1, 0, 0, 0, 0, 0]}) - 1j * system.load(
+        {"disc.hub": [0, 0, 1, 0, 0, 0]}
+    )
+    return remainder(
+        system,
+        loss={"shaft": 0.1},
+        kind="viscous",
+        matched_hz=160.0,
+        load=system.load({"disc.hub": [0, 0, -100.0, 0, 0, 0]}),
+        forces=[10.0 * 2e-6 * turning],
+        unbalance=True,
+    )
+
+
+def test_a_rotor_that_rubs_moves_alike_by_balance_and_in_time():
+    own = rotor(20e-6)
+    branch = follow(own, 500.0, 1080.0, step=0.1)
+    free, rubbing = branch.points[0], branch.points[-1]
+    assert not free.forces().any() and rubbing.forces().any()
+    # in the clearance it is the shaft alone: m e w^2 / (k - m w^2 + i w c)
+    c = 0.1 * 1e7 / (2 * np.pi * 160.0)
+    alone = 2e-5 * 500.0**2 / abs(1e7 - 10 * 500.0**2 + 500j * c)
+    np.testing.assert_allclose(free.rms, alone / np.sqrt(2), rtol=1e-8)
+    found = settled(own, rubbing.omega, rubbing.state(), steady=1e-4)
+    assert found.cycle == 1
+    np.testing.assert_allclose(found.rms, rubbing.rms, rtol=1e-3)
 
 
 def test_a_curved_law_has_multipliers_too():

@@ -62,8 +62,8 @@ class Residual:
     jacobian : (n, n) ndarray
     by_omega : (n,) ndarray
     held : bool
-        Some link carries a force at some instant; without any, mean loads have nothing to rest on
-        and the Jacobian is singular.
+        Some link carries a force at some instant, or none needs to: where laws alone hold the
+        system, a motion without any leaves the Jacobian singular.
     """
 
     value: np.ndarray
@@ -161,7 +161,7 @@ class Balance:
             taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
         jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
         value = motion - (as_real(linear) + moved).ravel()
-        return Residual(value, jacobian, -changed.ravel(), held)
+        return Residual(value, jacobian, -changed.ravel(), held or not own.hangs)
 
     def _parts(self, excess: Force, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by those of
@@ -223,9 +223,11 @@ class Balance:
 
 def _over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.ndarray:
     """(2H+1, m, 2H+1, m) coefficients of a force by those of what its tangent (T, m, m) is of."""
-    if tangent.shape[1] == 1:
-        return (read @ (tangent[:, 0] * make))[:, None, :, None]
-    return np.einsum("nt,tij,tk->nikj", read, tangent, make, optimize=True)
+    m = tangent.shape[1]
+    out = np.empty((len(read), m, make.shape[1], m))
+    for i, j in np.ndindex(m, m):
+        out[:, i, :, j] = read @ (tangent[:, i, j, None] * make)
+    return out
 
 
 def _applied(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:

@@ -86,7 +86,9 @@ class Point:
         push[1 : orders + 1] += error @ own.stiffness + n[1 : orders + 1, None] * (error @ own.drag)
         stiff = np.diag(own.omega**2) + n[:, None, None] * own.losses
         stiff = stiff + n[:, None, None] ** 2 * np.eye(len(own.omega))
-        q = np.linalg.solve(stiff, (push @ own.seen)[..., None])[..., 0]
+        modal = push @ own.seen
+        modal[1 : orders + 1] += own.growth(self.omega) * own.push[:orders]
+        q = np.linalg.solve(stiff, modal[..., None])[..., 0]
         return np.concatenate([own.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real])
 
     def forces(self) -> np.ndarray:

@@ -29,6 +29,8 @@ from solidgear.system.system import System
 KINDS = ("modal", "viscous")
 #: a free motion that stretches a link by less than this of what others do leaves it alone
 STILL = 1e-9
+#: share of a static flexibility that is rounding
+LOOSE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,12 @@ class Remainder:
         Transmission error e of each row, by orders from 1, m.
     cycle : (o, m) complex ndarray
         How the force of each row varies with the angle of the excitation: one, and these orders.
+    push : (o, r) complex ndarray
+        Forces on the modes by orders from 1, mass-normalised.
+    gives : (o, m) complex ndarray
+        What they stretch the rows by in the modes that are flexibility, m.
+    unbalance : bool
+        These forces are those at 1 rad/s and grow with the square of the frequency.
     """
 
     omega: np.ndarray
@@ -70,6 +78,9 @@ class Remainder:
     laws: tuple[tuple[Law, slice], ...]
     error: np.ndarray = field(repr=False)
     cycle: np.ndarray = field(repr=False)
+    push: np.ndarray = field(repr=False)
+    gives: np.ndarray = field(repr=False)
+    unbalance: bool = False
 
     @property
     def rows(self) -> int:
@@ -165,6 +176,25 @@ class Remainder:
         shape = (len(near), self.rows, self.rows)
         return (near @ flat).reshape(shape), (-1j * near**2 @ flat).reshape(shape)
 
+    @cached_property
+    def hangs(self) -> bool:
+        """Whether nothing but its laws holds it: without any force of theirs it has no rest."""
+        still = self.receptance(np.zeros(1))[0][0].real + self.flexible
+        free = np.eye(self.rows) - still @ self.stiffness
+        return bool(np.linalg.svd(free, compute_uv=False)[-1] < LOOSE)
+
+    @cached_property
+    def _pushed(self) -> np.ndarray:
+        """(o, 2r, m) residues of the stretch under the forces of every order."""
+        _, right = np.linalg.eig(self.state)
+        r = len(self.omega)
+        into = np.linalg.solve(right, np.vstack([np.zeros((r, len(self.push))), self.push.T]))
+        return into.T[:, :, None] * ((self.seen / self.omega) @ right[:r]).T
+
+    def growth(self, omega: float) -> float:
+        """What forces are multiplied by at a frequency."""
+        return omega**2 if self.unbalance else 1.0
+
     def linear(self, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Stretch of the linear system in harmonics 0 to `count` of the excitation, (count + 1, m)
         complex, and its derivative over the frequency.
@@ -172,22 +202,27 @@ class Remainder:
         out = np.zeros((count + 1, self.rows), complex)
         slope = np.zeros_like(out)
         out[0] = self.mean
-        orders = min(count, len(self.error))
-        n = np.arange(1, orders + 1)
+        here = slice(1, min(count, len(self.error)) + 1)
+        n = np.arange(1, here.stop)
         h, by = self.receptance(n * omega)
-        e = self.error[:orders]
+        e = self.error[: len(n)]
         push = e @ self.stiffness + 1j * n[:, None] * omega * (e @ self.drag)
         grow = 1j * n[:, None] * (e @ self.drag)
-        out[1 : orders + 1] = (h @ push[..., None])[..., 0]
-        out[1 : orders + 1] += e @ self.stiffness @ self.flexible - e
-        slope[1 : orders + 1] = (n[:, None, None] * by @ push[..., None] + h @ grow[..., None])[
-            ..., 0
-        ]
+        out[here] = (h @ push[..., None])[..., 0] + e @ self.stiffness @ self.flexible - e
+        slope[here] = (n[:, None, None] * by @ push[..., None] + h @ grow[..., None])[..., 0]
+        if self.push.any():
+            near = 1 / (1j * n[:, None] * omega - self._poles[0])
+            pushed, rise = self._pushed[: len(n)], 2 / omega if self.unbalance else 0.0
+            moved = np.einsum("nk,nkm->nm", near, pushed) + self.gives[: len(n)]
+            changed = np.einsum("nk,nkm->nm", -1j * n[:, None] * near**2, pushed)
+            out[here] += self.growth(omega) * moved
+            slope[here] += self.growth(omega) * (changed + rise * moved)
         return out, slope
 
     def scaled(self, share: float) -> Remainder:
         """The same under a share of its excitation and of what varies."""
-        return replace(self, error=share * self.error, cycle=share * self.cycle)
+        given = {name: share * getattr(self, name) for name in ("error", "cycle", "push", "gives")}
+        return replace(self, **given)
 
 
 def remainder(
@@ -199,6 +234,8 @@ def remainder(
     load: np.ndarray | None = None,
     errors: Mapping[str, Sequence[complex]] | None = None,
     cycles: Mapping[str, Sequence[complex]] | None = None,
+    forces: Sequence[np.ndarray] = (),
+    unbalance: bool = False,
     highest_hz: float = np.inf,
 ) -> Remainder:
     """The remainder of a system whose links with a law are :class:`solidgear.system.RowSpring`.
@@ -218,6 +255,10 @@ def remainder(
         Transmission error of links by orders from 1, m: ``Re(e exp(i n w t))``.
     cycles : mapping of str to sequence of complex
         How links vary by orders from 1: forces are multiplied by ``1 + sum Re(c exp(i n w t))``.
+    forces : sequence of (N,) complex array_like
+        On the coordinates by orders from 1, such as :meth:`solidgear.system.System.load` gives.
+    unbalance : bool
+        Those are at 1 rad/s and grow with the square of the frequency.
     highest_hz : float
         Modes above it are flexibility.
 
@@ -239,6 +280,8 @@ def remainder(
     """
     if kind not in KINDS:
         raise SolidgearError(f"losses of the kind {kind!r} are unknown; use {', '.join(KINDS)}")
+    if kind == "viscous" and not matched_hz > 0:
+        raise SolidgearError("viscous losses need the frequency, in Hz, at which they are told")
     laws: list[tuple[Law, slice]] = []
     links: list[tuple[str, RowSpring]] = []
     stretch = [np.zeros((0, system.size))]
@@ -257,7 +300,9 @@ def remainder(
     damper, drag = np.zeros_like(stiffness), np.zeros_like(stiffness)
     held = system.static(load)
     loss = dict(loss or {})
-    error, cycle = (_orders(given or {}, len(rows)) for given in (errors, cycles))
+    orders = max([1, len(forces), *(len(e) for e in (errors or {}).values())])
+    error = np.zeros((orders, len(rows)), complex)
+    cycle = np.zeros((max([1, *(len(c) for c in (cycles or {}).values())]), len(rows)), complex)
     for (name, link), (law, at) in zip(links, laws):
         k = link.stiffness
         eye = np.eye(at.stop - at.start)
@@ -267,8 +312,8 @@ def remainder(
         if kind == "viscous":
             drag[at, at] = loss.get(name, 0.0) * k / (2 * np.pi * matched_hz) * eye
         for out, given in ((error, errors or {}), (cycle, cycles or {})):
-            orders = np.asarray(given.get(name, ()), complex)
-            out[: len(orders), at] = orders[:, None]
+            told = np.asarray(given.get(name, ()), complex)
+            out[: len(told), at] = told[:, None]
     whole, shapes = system.elastic
     seen = rows @ shapes
     free = np.abs(rows @ system.free).max(initial=0.0)
@@ -287,6 +332,9 @@ def remainder(
     else:
         losses = lost[np.ix_(kept, kept)] / (2 * np.pi * matched_hz)
     soft = seen[:, ~kept] / whole[~kept]
+    pushed = np.zeros((orders, len(whole)), complex)
+    for row, force in zip(pushed, forces):
+        row[:] = np.asarray(force) @ shapes
     return Remainder(
         omega,
         losses + own.T @ damper @ own,
@@ -299,9 +347,7 @@ def remainder(
         tuple(laws),
         error,
         cycle,
+        pushed[:, kept],
+        pushed[:, ~kept] / whole[~kept] @ soft.T,
+        unbalance,
     )
-
-
-def _orders(given: Mapping[str, Sequence[complex]], rows: int) -> np.ndarray:
-    """(o, rows) of zeros, as many as the most orders given."""
-    return np.zeros((max([1, *map(len, given.values())]), rows), complex)

@@ -29,7 +29,7 @@ FADING = 8
 #: a change from period to period above which a motion of several periods is one, in tolerances
 STILL_FADING = 100.0
 #: relative, of laws that are integrated, and steps of Newton's method for what gives way at once
-TOLERANCE, NEWTON = 1e-9, 20
+TOLERANCE, NEWTON = 1e-7, 20
 #: Newton's steps that locate a crossing, and its rest relative to the gap
 CROSSINGS, LOCATED = 30, 1e-13
 
@@ -167,8 +167,15 @@ class Run:
 class Integrated:
     """The same for laws that are curved or vary over the cycle, integrated to a tolerance."""
 
-    def __init__(self, remainder: Remainder, omega: float, looks: int = LOOKS):
+    def __init__(
+        self,
+        remainder: Remainder,
+        omega: float,
+        looks: int = LOOKS,
+        tolerance: float = TOLERANCE,
+    ):
         self.remainder, self.omega, self.looks = remainder, omega, looks
+        self.tolerance = tolerance
         orders = np.arange(1, len(remainder.error) + 1)
         self._turn = 1j * omega * orders
 
@@ -177,7 +184,13 @@ class Integrated:
         period = 2 * np.pi / self.omega
         times = np.linspace(0.0, period, self.looks + 1)
         found = solve_ivp(
-            self._slope, (0.0, period), modal, "DOP853", times, rtol=TOLERANCE, atol=self._least
+            self._slope,
+            (0.0, period),
+            modal,
+            "DOP853",
+            times,
+            rtol=self.tolerance,
+            atol=self._least,
         )
         if not found.success:
             raise SolidgearError(f"integration in time failed: {found.message}")
@@ -187,9 +200,10 @@ class Integrated:
 
     @cached_property
     def _least(self) -> float:
-        """What a state is told to: a share of that under the mean load."""
-        rest = self.remainder.stiffness @ np.abs(self.remainder.mean)
-        return TOLERANCE * float(np.abs(self.remainder.seen.T @ rest / self.remainder.omega).max())
+        """What a state is told to: a share of that of the linear system."""
+        own = self.remainder
+        size = np.abs(own.linear(self.omega, len(own.error))[0]).max()
+        return self.tolerance * float(own.omega[0] * size / np.abs(own.seen).max())
 
     def _seen(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Stretches and rates (m,) of a state, and the force of the excess with the excitation."""
@@ -198,7 +212,9 @@ class Integrated:
         e, slope = turned.sum(axis=0).real, (self._turn[:, None] * turned).sum(axis=0).real
         given = own.stiffness @ e
         v = own.seen @ y[r:] - slope
+        turn, grown = np.exp(self._turn * t), own.growth(self.omega)
         base = own.seen @ (y[:r] / own.omega) + own.mean - e + own.flexible @ given
+        base = base + grown * (turn @ own.gives).real
         factor = own.factor(np.array([self.omega * t])) if own.varies else None
         s, still = base, np.zeros_like(base)
         for _ in range(NEWTON if own.flexible.any() else 0):
@@ -206,14 +222,16 @@ class Integrated:
             left = s - base - own.flexible @ force.value[0]
             step = np.linalg.solve(np.eye(len(s)) - own.flexible @ force.by_stretch[0], left)
             s = s - step
-            if np.abs(step).max() <= TOLERANCE * np.abs(s).max():
+            if np.abs(step).max() <= 1e-3 * self.tolerance * np.abs(s).max():
                 break
         push = own.excess(s[None], v[None], factor)[0].value[0]
         return s, v, push + given + own.drag @ slope
 
     def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
         out = self.remainder.state @ y
-        out[len(self.remainder.omega) :] += self.remainder.seen.T @ self._seen(t, y)[2]
+        own = self.remainder
+        pushed = (np.exp(self._turn * t) @ own.push).real * own.growth(self.omega)
+        out[len(own.omega) :] += own.seen.T @ self._seen(t, y)[2] + pushed
         return out
 
 

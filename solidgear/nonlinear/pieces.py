@@ -102,15 +102,18 @@ class Pieces:
         more = own.stiffness - np.diag(k)
         still = np.linalg.inv(np.eye(m) - own.flexible @ more)
         # e and its rate as rows of the state beside y
-        e, slope = np.zeros((m, n)), np.zeros((m, n))
+        e, soft, grown = np.zeros((m, n)), np.zeros((m, n)), own.growth(self.omega)
         spin = np.zeros((n, n))
         for order in range(1, orders + 1):
             at, w = 2 * r + 2 * order - 1, order * self.omega
             spin[at, at + 1], spin[at + 1, at] = -w, w  # cos, sin
             e[:, at], e[:, at + 1] = own.error[order - 1].real, -own.error[order - 1].imag
+            gives, push = grown * own.gives[order - 1], grown * own.push[order - 1]
+            soft[:, at], soft[:, at + 1] = gives.real, -gives.imag
+            spin[r : 2 * r, at], spin[r : 2 * r, at + 1] = push.real, -push.imag
         slope = e @ spin
         base = own.flexible @ own.stiffness - np.eye(m)
-        stretch, rate = base @ e, base @ slope
+        stretch, rate = base @ e + soft, base @ slope + soft @ spin
         stretch[:, :r] += own.seen / own.omega
         rate[:, r : 2 * r] += own.seen
         stretch[:, 2 * r] += own.mean - own.flexible @ f
