@@ -8,6 +8,7 @@ import pytest
 from solidgear.errors import SolidgearError
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.doubling import doubled
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import Run, settled, sweep
 from solidgear.nonlinear.stability import multipliers, stable
@@ -109,6 +110,21 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
         found[2:], sums * found[1:-1] - product * found[:-2], atol=2e-2 * np.abs(found).max()
     )
     assert product < np.exp(-2 * ZETA * period) * (1 + 1e-9)
+
+
+def test_where_a_period_doubles_a_branch_of_two_periods_begins_that_time_confirms():
+    own = pair(0.1)
+    branch = follow(own, 1.0, 2.5)
+    (two,) = doubled(branch)
+    begin, end = (2 * two.points[k].omega for k in (0, -1))
+    flips = [point.omega for point in branch.points if not stable(point)]
+    assert begin < min(flips) and max(flips) < end
+    for w in (1.3, 1.9):
+        (motion, *_), (single,) = two.at(w / 2), branch.at(w)
+        found = settled(own, w, 1.05 * single.state())
+        assert stable(motion) and found.cycle == 2
+        assert found.rms[0] == pytest.approx(motion.rms[0], rel=1e-3)
+        assert abs(found.rms[0] / single.rms[0] - 1) > 0.02
 
 
 def test_a_branch_does_not_depend_on_its_direction(loud):

@@ -51,7 +51,7 @@ class Point:
     tangent : (n + 1,) ndarray
         Of the branch, in scaled unknowns; its last entry is that of the speed.
     sign : float
-        Of the bordered determinant.
+        Of the bordered determinant; 0 where branches cross.
     """
 
     omega: float
@@ -139,7 +139,7 @@ class Branch:
 
     def _between(self, before: Point, after: Point, value: Callable[[Point], float]) -> Point:
         """Where a value changes its sign between two neighbours."""
-        walk = _Follower(before.balance, *self.scale)
+        walk = Follower(before.balance, *self.scale)
         if after.balance.count > before.balance.count:
             before = walk.refit(before, after.balance.count)
         end = after.balance.resized(after.motion, before.balance.count)[1]
@@ -150,7 +150,7 @@ class Branch:
         return before if found is None else found
 
 
-class _Follower:
+class Follower:
     """One walk along a branch."""
 
     def __init__(self, balance: Balance, size: float, width: float):
@@ -303,23 +303,34 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
     balance, motion = _begun(remainder, count, begin)
     low, high = min(begin, end), max(begin, end)
     grid = np.linspace(low, high, 200)
-    size = max(float(np.abs(balance.linear(w)[1:]).max()) for w in grid)
+    size = max(float(np.abs(balance.linear(w)[remainder.rows :]).max()) for w in grid)
     # a linear peak is far above what a gap leaves of it
     gaps = [edge for law, _ in remainder.laws for edge in law.edges]
     size = min(size, max([abs(e) for e in gaps if e], default=size))
-    walk = _Follower(balance, size or 1.0, high - low)
+    walk = Follower(balance, size or 1.0, high - low)
     ahead = np.zeros(motion.size + 1)
     ahead[-1] = np.sign(end - begin)
-    points = [walk.point(motion, begin, ahead)]
-    turning: list[int] = []
+    first = walk.point(motion, begin, ahead)
+    points, turning = walked(walk, first, longest, adaptive, lambda p: not low <= p.omega <= high)
+    return _ended(points, turning, walk, begin, end, low, high)
+
+
+def walked(
+    walk: Follower,
+    first: Point,
+    longest: float,
+    adaptive: bool,
+    ended: Callable[[Point], bool],
+) -> tuple[list[Point], list[int]]:
+    """Points of a branch from the first one until one ends it, and which of them turn."""
+    points, turning = [first], []
     step = longest / 4
     while len(points) < MOST_POINTS:
         last = points[-1]
         if adaptive:
             last = points[-1] = _fitted(walk, last)
         taken = walk.correct(last, step)
-        fine = taken is not None and _sound(last, taken[0], step)
-        if not fine:
+        if taken is None or not _sound(last, taken[0]):
             step /= 2
             if step < SHORTEST * longest:
                 raise SolidgearError(
@@ -327,7 +338,6 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
                     "two branches may cross there"
                 )
             continue
-        assert taken is not None
         new, iterations = taken
         if last.tangent[-1] * new.tangent[-1] < 0:
             turn = walk.where(last, step, lambda p: p.tangent[-1])
@@ -335,19 +345,19 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
                 turning.append(len(points))
                 points.append(turn)
         points.append(new)
-        if not low <= new.omega <= high:
-            return _ended(points, turning, walk, begin, end, low, high)
+        if ended(new):
+            return points, turning
         if iterations <= EASY:
             step = min(step * GROWTH, longest)
     raise SolidgearError(f"the branch has no end after {MOST_POINTS} points")
 
 
-def _sound(last: Point, new: Point, step: float) -> bool:
+def _sound(last: Point, new: Point) -> bool:
     """Tell whether a step followed the branch: little bent, on the same side of it, and no leap."""
-    return bool(new.sign == last.sign and new.tangent @ last.tangent > STRAIGHT)
+    return bool(last.sign in (0.0, new.sign) and new.tangent @ last.tangent > STRAIGHT)
 
 
-def _fitted(walk: _Follower, point: Point) -> Point:
+def _fitted(walk: Follower, point: Point) -> Point:
     """The point with as many harmonics as its highest ask for."""
     count = point.balance.count
     tail = point.balance.tail(point.motion)

@@ -219,10 +219,32 @@ class Remainder:
             slope[here] += self.growth(omega) * (changed + rise * moved)
         return out, slope
 
+    def slower(self, periods: int) -> Remainder:
+        """The same told by a cycle of so many periods of its excitation."""
+
+        def at_multiples(own: np.ndarray) -> np.ndarray:
+            out = np.zeros((periods * len(own), own.shape[1]), complex)
+            out[periods - 1 :: periods] = own
+            return out
+
+        grown = periods**2 if self.unbalance else 1
+        return replace(
+            self,
+            error=at_multiples(self.error),
+            cycle=at_multiples(self.cycle),
+            push=grown * at_multiples(self.push),
+            gives=grown * at_multiples(self.gives),
+        )
+
     def scaled(self, share: float) -> Remainder:
         """The same under a share of its excitation and of what varies."""
-        given = {name: share * getattr(self, name) for name in ("error", "cycle", "push", "gives")}
-        return replace(self, **given)
+        return replace(
+            self,
+            error=share * self.error,
+            cycle=share * self.cycle,
+            push=share * self.push,
+            gives=share * self.gives,
+        )
 
 
 def remainder(
