@@ -95,7 +95,7 @@ def test_refused_in_a_line_that_fits_the_screen(run, tmp_path, monkeypatch, kind
 
 #: commands that tell no numbers of their own
 SILENT = {"new", "scenes", "options", "render"}
-TRAINS = {"system-modes", "response", "receptance", "judge-system"}
+TRAINS = {"system-modes", "response", "receptance", "judge-system", "nonlinear"}
 
 
 def test_what_commands_share_all_of_them_take():

@@ -31,12 +31,13 @@ MAY_IMPORT = {
     "reduction": GROUND | {"machine", "body", "solve"},
     "bearings": GROUND | {"scene", "body", "solve"},
     "system": GROUND | {"machine", "scene", "body", "reduction", "bearings"},
+    "nonlinear": GROUND | {"machine", "system"},
     "judge": GROUND
     | {"machine", "scene", "body", "meshing", "solve", "models", "bounds", "ladder", "reduction"},
     "report": GROUND | {"machine", "body", "judge"},
     "studies": GROUND
     | {"machine", "scene", "body", "meshing", "solve", "models", "bounds", "ladder", "reduction"}
-    | {"kernel", "bearings", "system", "judge", "report"},
+    | {"kernel", "bearings", "system", "nonlinear", "judge", "report"},
 }
 #: lines of a file
 LONGEST = 400

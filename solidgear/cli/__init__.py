@@ -32,6 +32,7 @@ from solidgear.cli import (
     deflect,
     files,
     measured,
+    nonlinear,
     optimise,
     receptance,
     sensitivities,

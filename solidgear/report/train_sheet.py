@@ -44,6 +44,11 @@ WORDS = {
     ),
     "designs": "The goal in every design that was solved, each with its error bar.",
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
+    "nonlinear": (
+        "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
+        "unstable, with the jumps between them, and the linear answer. Below: contact over the "
+        "cycle, and the orders of the largest force."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "

@@ -98,6 +98,17 @@ class Train(Model):
                 path=("mesh", "ratio"),
             )
 
+        cycle = self.mesh.stiffness_cycle
+        if cycle is not None:
+            pitch = 2 * pi / self.pinion.teeth
+            if not isclose(cycle.pitch, pitch, rel_tol=RATIO_TYPED):
+                yield SceneError(
+                    f"covers {cycle.pitch:.5g} rad of the pinion, and one of its "
+                    f"{self.pinion.teeth} teeth takes {pitch:.5g} rad; correct the angles, or the "
+                    "number of teeth",
+                    path=("mesh", "stiffness_cycle", "angle"),
+                )
+
     def _flanks(self) -> Iterator[SceneError]:
         """Left and right flanks are those of cylindrical gears, and touch their own kind."""
         named = [side for side in SIDES if self.member(side).loaded_side in FLANKS]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import isclose, pi
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -22,6 +22,7 @@ from solidgear.scene.units import (
     PositiveLength,
     PressureAngle,
     ShaftAngle,
+    SignedAngle,
     SpiralAngle,
     Thickness,
     Tolerance,
@@ -35,6 +36,8 @@ FEWEST_TEETH, MOST_TEETH = 3, 2000
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32
+#: points of a stiffness over a mesh cycle at least, and how near its two ends are to be
+LEAST_OF_CYCLE, CYCLE_CLOSES = 3, 1e-3
 Vector = Annotated[
     tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
 ]
@@ -193,6 +196,43 @@ class ErrorTable(Model):
         return self
 
 
+class StiffnessCycle(Model):
+    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh.
+
+    Attributes
+    ----------
+    angle : tuple of float
+        Of the pinion, ascending over one tooth pitch, both ends told, rad.
+    stiffness : tuple of float
+        N/m, at each angle; linear between.
+    """
+
+    angle: tuple[SignedAngle, ...]
+    stiffness: tuple[MeshSpring, ...]
+
+    @model_validator(mode="after")
+    def _periodic(self):
+        if len(self.angle) != len(self.stiffness) or len(self.angle) < LEAST_OF_CYCLE:
+            counts = f"{len(self.stiffness)} stiffnesses for {len(self.angle)} angles"
+            how = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
+            raise SceneError(how, path=("stiffness",))
+        if any(b <= a for a, b in zip(self.angle, self.angle[1:])):
+            raise SceneError("angles must ascend", path=("angle",))
+        first, last = self.stiffness[0], self.stiffness[-1]
+        if not isclose(first, last, rel_tol=CYCLE_CLOSES):
+            raise SceneError(
+                f"is not periodic: it begins at {first:.6g} N/m and ends at {last:.6g} N/m; both are "
+                "the same instant of neighbouring teeth",
+                path=("stiffness",),
+            )
+        return self
+
+    @property
+    def pitch(self) -> float:
+        """Angle that it covers, rad."""
+        return self.angle[-1] - self.angle[0]
+
+
 def _constant_or_table(value: Any) -> Any:
     return value if isinstance(value, (dict, ErrorTable)) else {"orders": (value,)}
 
@@ -244,6 +284,10 @@ class Mesh(Model):
         Static transmission error under the load of the cells and without it, m.
     transmission_error : ErrorTable
         A single number is a constant amplitude, m.
+    stiffness_cycle : StiffnessCycle or None
+        Stiffness over a mesh cycle; of nonlinear motion alone.
+    backlash : float or None
+        Width of the gap between both flanks along the line of action, m; of nonlinear motion alone.
     local_harmonics : tuple of int
         Harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
         tooth pitch of the lumped point's seat; by default none, the mean of the seat alone.
@@ -264,6 +308,8 @@ class Mesh(Model):
     unloaded_error: Thickness | None = None
     transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
     transmission_error_status: Status = "assumed"
+    stiffness_cycle: StiffnessCycle | None = None
+    backlash: Thickness | None = None
     local_harmonics: tuple[Harmonic, ...] = ()
 
     @model_validator(mode="after")

@@ -21,6 +21,7 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.reduction.superelement import PortMotion
 from solidgear.system.gear_mesh import MeshVector
+from solidgear.system.law import Law
 from solidgear.system.matrices import frozen, not_negative, spd
 
 
@@ -101,6 +102,8 @@ class RowSpring:
         Ground without it.
     to_row : array_like, optional
         By default ``row``.
+    law : Law, optional
+        Force over stretch where motions are large; `stiffness` is its tangent at the operating point.
 
     Examples
     --------
@@ -115,6 +118,7 @@ class RowSpring:
     stiffness: float = 1.0
     to: str | None = None
     to_row: ArrayLike | None = None
+    law: Law | None = None
 
     def __post_init__(self):
         name = f"the spring at {self.at}"
@@ -131,11 +135,16 @@ class RowSpring:
         """One or two ports."""
         return (self.at,) if self.to is None else (self.at, self.to)
 
-    def strain(self, *ends: PortMotion) -> np.ndarray:
-        """Root of the stiffness times the stretch; no row for no stiffness."""
+    def stretch(self, *ends: PortMotion) -> np.ndarray:
+        """(r, N) rows of the stretch itself, m."""
         stretch = self.row @ ends[0].rows
         if len(ends) > 1:
             stretch = stretch - (self.row if self.to_row is None else self.to_row) @ ends[1].rows
+        return stretch
+
+    def strain(self, *ends: PortMotion) -> np.ndarray:
+        """Root of the stiffness times the stretch; no row for no stiffness."""
+        stretch = self.stretch(*ends)
         return np.sqrt(self.stiffness) * stretch if self.stiffness > 0 else stretch[:0]
 
 

@@ -1,0 +1,142 @@
+"""The command nonlinear: a train whose teeth have backlash, over speed."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from solidgear.cli.app import caution, command, say
+from solidgear.cli.shared import Shown
+from solidgear.cli.train_options import Mix, Reduced, TrainFile, mix
+from solidgear.errors import SceneError, SolidgearError, show
+
+if TYPE_CHECKING:
+    from solidgear.studies.train.models import Workshop
+
+#: speeds of a sweep in time, and mean forces of a map: each takes seconds
+MOST_RUNS = 200
+
+
+@command
+def nonlinear(
+    train: TrainFile,
+    *,
+    models: Mix,
+    backlash: Annotated[
+        str | None,
+        typer.Option(
+            help='Along the line of action, such as "100 um"; that of the file without it.'
+        ),
+    ] = None,
+    mean_force: Annotated[
+        str | None,
+        typer.Option(
+            "--mean-force",
+            help='Of the teeth, such as "5 kN"; that of the operating point in the file without it.',
+        ),
+    ] = None,
+    error: Annotated[
+        str | None,
+        typer.Option(help='Transmission error, such as "10 um"; that of the file without it.'),
+    ] = None,
+    min_frequency: Annotated[
+        float | None,
+        typer.Option("--min-frequency", help="Hz; a hundredth of the highest by default."),
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            help="Further models to judge, as PINION+GEAR; lumped and Timoshenko shafts by default.",
+        ),
+    ] = None,
+    in_time: Annotated[
+        int,
+        typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
+    ] = 0,
+    forces: Annotated[
+        int,
+        typer.Option("--forces", help="Mean forces for a map of jumps over speed and torque."),
+    ] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for the branch, its chart and a page."),
+    ] = None,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    """Teeth with backlash: where they part, jumps over speed, and how far off the linear answer is."""
+    from solidgear.report.folder import held
+    from solidgear.report.nonlinear_files import mixes, over_force, write_nonlinear
+    from solidgear.report.units import units_named
+    from solidgear.studies.train import nonlinear as study
+    from solidgear.studies.train.comparison import described
+    from solidgear.studies.train.modes import unpublished_lines
+    from solidgear.studies.train.nonlinear_told import BacklashTold
+    from solidgear.studies.train.slips import slips
+
+    shop = reduced.workshop(train, models.of_shafts)
+    first = models.pinion, models.gear
+    usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
+    others = usual if against is None else [mix(text) for text in against]
+    shop = _with_teeth(shop, backlash, error)
+    teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"))
+    for option, count in (("--in-time", in_time), ("--forces", forces)):
+        if not 0 <= count <= MOST_RUNS:
+            raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = tuple(
+            study.with_backlash(shop, *pair, teeth, reduced.max_frequency, min_frequency, progress)
+            for pair in [first, *(pair for pair in others if pair != first)]
+        )
+        swept = study.in_time(found[0], in_time, progress) if in_time else ()
+        mapped = study.over_force(found[0], forces, progress) if forces else ()
+        lever = abs(shop.contact.pinion.lever)
+        told = BacklashTold(shop.train, found, lever, swept, mapped)
+        title = f"{shop.train.called}: teeth with backlash"
+        cautions = [*slips(shop), *shop.cautions]
+        files = []
+        if out:
+            files = write_nonlinear(out, told, title, described(shop), run.units, cautions)
+    if run.as_json:
+        print(json.dumps(told.as_dict() | {"cautions": cautions}, allow_nan=False))
+        return
+    shown = units_named(run.units)
+    say(f"{title}; {found[0].label}", *told.sentences(), *map(caution, cautions))
+    say(mixes(told, shown), soft_wrap=False)
+    say(*unpublished_lines(shop.train.unpublished()))
+    if mapped:
+        say(over_force(told, shown), soft_wrap=False)
+    if files:
+        say(f"Written: {', '.join(map(str, files))}")
+
+
+def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Workshop:
+    """The same train with teeth as given."""
+    width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
+    if width is None and size is None:
+        return shop
+    for option, value, text in (("--backlash", width, backlash), ("--error", size, error)):
+        if value is not None and value < 0:
+            raise SolidgearError(f"{option} {show(text, 40)}: it must not be negative")
+    changes: dict[str, Any] = {} if width is None else {"backlash": width}
+    if size is not None:
+        changes["transmission_error"] = size
+    mesh = shop.train.mesh.with_changes(**changes)
+    return shop.with_train(shop.train.with_changes(mesh=mesh))
+
+
+def _read(option: str, text: str | None, dimension: str) -> float | None:
+    """A quantity of an option in SI."""
+    from solidgear.scene.units import quantity
+
+    if text is None:
+        return None
+    try:
+        return quantity(text, dimension)
+    except SceneError as error:
+        raise SolidgearError(f"{option} {show(text, 40)}: {error}") from None

@@ -1,0 +1,240 @@
+r"""Harmonic balance: periodic motion as a Fourier series of the stretches of links with a law alone.
+
+With S_h the harmonics of the stretches, P_h those of the excess force of the laws over their tangents
+and H the receptance of all that is linear,
+
+    S_h = S_lin,h + H(h w) P_h + F p_h,
+
+P from the motion in time (alternating frequency and time) and the Jacobian from its tangents there,
+exact for the sampled law.  A system of any size costs its few stretches.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.nonlinear.model import Remainder
+from solidgear.system.law import Force
+
+#: instants a harmonic, and of a period at least: with two, turning points of a law of pieces were 2 % off
+INSTANTS = 16
+LEAST_INSTANTS = 256
+#: change of the unknowns, relative to the largest stretch, at which Newton's method has arrived
+ARRIVED = 1e-11
+ITERATIONS = 12
+
+
+@cache
+def series(count: int, instants: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Synthesis (T, 2H+1) of a0, a_h, b_h, the derivative of it over the angle, and analysis."""
+    angle = 2 * np.pi * np.arange(instants) / instants
+    h = np.arange(1, count + 1)
+    c, s = np.cos(angle[:, None] * h), np.sin(angle[:, None] * h)
+    make = np.hstack([np.ones((instants, 1)), c, s])
+    slope = np.hstack([np.zeros((instants, 1)), -h * s, h * c])
+    read = 2 / instants * make.T
+    read[0] /= 2
+    return make, slope, read
+
+
+def as_real(harmonics: np.ndarray) -> np.ndarray:
+    """(2H+1, m) coefficients a0, a_h, b_h of complex harmonics (H+1, m)."""
+    return np.concatenate([harmonics[:1].real, harmonics[1:].real, -harmonics[1:].imag])
+
+
+def as_complex(parts: np.ndarray) -> np.ndarray:
+    """(H+1, m) complex harmonics of coefficients (2H+1, m)."""
+    count = len(parts) // 2
+    return np.concatenate([parts[:1] + 0j, parts[1 : count + 1] - 1j * parts[count + 1 :]])
+
+
+@dataclass(frozen=True, eq=False)
+class Residual:
+    """The balance that is left at a trial motion, with its derivatives.
+
+    Attributes
+    ----------
+    value : (n,) ndarray
+    jacobian : (n, n) ndarray
+    by_omega : (n,) ndarray
+    held : bool
+        Some link carries a force at some instant, or none needs to: where laws alone hold the
+        system, a motion without any leaves the Jacobian singular.
+    """
+
+    value: np.ndarray
+    jacobian: np.ndarray
+    by_omega: np.ndarray
+    held: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """The equations of a remainder for so many harmonics.
+
+    Attributes
+    ----------
+    count : int
+        Harmonics H.
+    instants : int
+        A harmonic.
+
+    Examples
+    --------
+    >>> from solidgear.system import Inertia, RowSpring, System
+    >>> from solidgear.nonlinear.model import remainder
+    >>> from solidgear.system.law import Gap
+    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
+    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
+    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
+    >>> balance = Balance(found, 9)
+    >>> motion = balance.solve(balance.start(0.5), 0.5)
+    >>> round(float(motion[0]), 6)      # in contact throughout, around 1 + 0.1
+    1.1
+    """
+
+    remainder: Remainder
+    count: int
+    instants: int = INSTANTS
+
+    @property
+    def samples(self) -> int:
+        """Instants of a period."""
+        return max(LEAST_INSTANTS, self.instants * self.count)
+
+    @cached_property
+    def _series(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return series(self.count, self.samples)
+
+    @cached_property
+    def factor(self) -> np.ndarray | None:
+        """(T, m) what forces are multiplied by at every instant; None where nothing varies."""
+        angle = 2 * np.pi * np.arange(self.samples) / self.samples
+        return self.remainder.factor(angle) if self.remainder.varies else None
+
+    def linear(self, omega: float) -> np.ndarray:
+        """(n,) motion of the linear system, whose rest is where its forces are none."""
+        return as_real(self.remainder.linear(omega, self.count)[0]).ravel()
+
+    def start(self, omega: float) -> np.ndarray:
+        """(n,) motion of the linear system around where laws carry its mean forces."""
+        out = self.linear(omega).reshape(-1, self.remainder.rows)
+        mean = np.diag(self.remainder.stiffness) * self.remainder.mean
+        for law, at in self.remainder.laws:
+            depth = getattr(law, "depth", None)
+            if depth is not None:
+                out[0, at] = [depth(force) for force in mean[at]]
+        return out.ravel()
+
+    def stretch(self, motion: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:
+        """Stretches and rates (T, m) over a period."""
+        make, slope, _ = self._series
+        parts = motion.reshape(-1, self.remainder.rows)
+        return make @ parts, omega * (slope @ parts)
+
+    def residual(self, motion: np.ndarray, omega: float) -> Residual:
+        """What is left of the balance at a motion (n,) and a frequency, rad/s."""
+        own = self.remainder
+        make, slope, read = self._series
+        s, v = self.stretch(motion, omega)
+        excess, held = own.excess(s, v, self.factor)
+        parts, by = self._parts(excess, s)
+        h = np.arange(self.count + 1)
+        receptance, change = own.receptance(h * omega)
+        linear, linear_change = own.linear(omega, self.count)
+        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
+        still, soft = parts, by
+        if own.drags:
+            if own.flexible.any():
+                still, soft = self._parts(own.excess(s, np.zeros_like(v), self.factor)[0], s)
+            by = by + omega * _over_parts(read, excess.by_rate, slope)
+            by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
+            changed = changed + _applied(receptance, by_omega)
+        moved = _applied(receptance, parts) + still @ own.flexible
+        taken = _applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
+        if own.flexible.any():
+            taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
+        jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
+        value = motion - (as_real(linear) + moved).ravel()
+        return Residual(value, jacobian, -changed.ravel(), held or not own.hangs)
+
+    def _parts(self, excess: Force, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by those of
+        the stretch.
+
+        Between two instants on both sides of a kink of a law a sampled sum takes a straight line
+        for a bent one; what lies between is added, exact for a straight stretch.  Without it the
+        error jumps as kinks pass from one interval to the next, and a branch has false folds.
+        """
+        make, _, read = self._series
+        parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
+        for law, at in self.remainder.laws:
+            for edge, jump in law.kinks:
+                for row in range(at.start, at.stop):
+                    gap = s[:, row] - edge
+                    first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
+                    after = (first + 1) % len(gap)
+                    u, v = np.abs(gap[first]), np.abs(gap[after])
+                    weight = jump / 4 * (read[:, first] + read[:, after])
+                    if self.factor is not None:
+                        weight = weight * (self.factor[first, row] + self.factor[after, row]) / 2
+                    parts[:, row] += weight @ (u * v / (u + v))
+                    slope = np.sign(gap[first]) * (v / (u + v)) ** 2
+                    other = np.sign(gap[after]) * (u / (u + v)) ** 2
+                    bent = slope[:, None] * make[first] + other[:, None] * make[after]
+                    by[:, row, :, row] += weight @ bent
+        return parts, by
+
+    def solve(self, motion: np.ndarray, omega: float) -> np.ndarray:
+        """Motion (n,) at a frequency by Newton's method, from a guess.
+
+        Raises
+        ------
+        SolidgearError
+            If it does not converge; begin nearer.
+        """
+        for _ in range(4 * ITERATIONS):
+            left = self.residual(motion, omega)
+            if not left.held:
+                break
+            step = np.linalg.solve(left.jacobian, -left.value)
+            motion = motion + step
+            if np.abs(step).max() <= ARRIVED * np.abs(motion).max():
+                return motion
+        raise SolidgearError("harmonic balance does not converge from this motion; begin nearer")
+
+    def resized(self, motion: np.ndarray, count: int) -> tuple[Balance, np.ndarray]:
+        """The same motion with more harmonics, the new ones zero, or fewer."""
+        parts = as_complex(motion.reshape(-1, self.remainder.rows))
+        out = np.zeros((count + 1, self.remainder.rows), complex)
+        out[: len(parts)] = parts[: count + 1]
+        return Balance(self.remainder, count, self.instants), as_real(out).ravel()
+
+    def tail(self, motion: np.ndarray) -> float:
+        """Largest of the two highest harmonics over that of all but the mean."""
+        size = np.abs(as_complex(motion.reshape(-1, self.remainder.rows))[1:]).max(axis=1)
+        return float(size[-2:].max() / max(size.max(), np.finfo(float).tiny))
+
+
+def _over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.ndarray:
+    """(2H+1, m, 2H+1, m) coefficients of a force by those of what its tangent (T, m, m) is of."""
+    m = tangent.shape[1]
+    out = np.empty((len(read), m, make.shape[1], m))
+    for i, j in np.ndindex(m, m):
+        out[:, i, :, j] = read @ (tangent[:, i, j, None] * make)
+    return out
+
+
+def _applied(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Matrices (H+1, m, m) on coefficients (2H+1, m), or on columns of them (2H+1, m k)."""
+    count, m = len(matrix) - 1, matrix.shape[1]
+    columns = parts.reshape(len(parts), m, -1)
+    up, down = columns[1 : count + 1], columns[count + 1 :]
+    real, imag = matrix[1:].real, matrix[1:].imag
+    out = [matrix[:1].real @ columns[:1], real @ up + imag @ down, real @ down - imag @ up]
+    return np.concatenate(out).reshape(parts.shape)

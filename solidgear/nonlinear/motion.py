@@ -1,0 +1,362 @@
+r"""Periodic motion by time alone: exact between contacts, contacts located, steady state detected.
+Curved laws, and those that vary over the cycle, are integrated to a tolerance.
+
+Nothing of harmonic balance is used but the force laws and what is linear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.pieces import SHORT, TERMS, Pieces
+
+#: looks at a stretch in a period
+LOOKS = 128
+#: what is left of a transient, relative, when a motion is steady
+STEADY = 1e-5
+#: periods of the excitation after which a motion is called unsteady, and that may make one of its own
+MOST_PERIODS, LONGEST_CYCLE = 4_000, 8
+#: periods over which changes must fade to be judged
+FADING = 8
+#: a change from period to period above which a motion of several periods is one, in tolerances
+STILL_FADING = 100.0
+#: relative, of laws that are integrated, and steps of Newton's method for what gives way at once
+TOLERANCE, NEWTON = 1e-7, 20
+#: Newton's steps that locate a crossing, and its rest relative to the gap
+CROSSINGS, LOCATED = 30, 1e-13
+
+
+@dataclass(frozen=True, eq=False)
+class Steady:
+    """A motion that no longer changes.
+
+    Attributes
+    ----------
+    omega : float
+        Of the excitation, rad/s.
+    cycle : int
+        Periods of the excitation after which it repeats itself; 0 where it never did.
+    periods : int
+        That it took.
+    stretch, force : (t, m) ndarray
+        Over its cycle, at equal intervals.
+    section : (p, 2) ndarray
+        First stretch and its rate at the beginning of each of the last periods (Poincare).
+    state : (2r,) ndarray
+        At its end, where another speed can begin.
+    """
+
+    omega: float
+    cycle: int
+    periods: int
+    stretch: np.ndarray
+    force: np.ndarray
+    section: np.ndarray
+    state: np.ndarray
+
+    @property
+    def rms(self) -> np.ndarray:
+        """(m,) root mean square of the stretches about their mean."""
+        return self.stretch.std(axis=0)
+
+
+class Run:
+    """A remainder in time, at one frequency of the excitation."""
+
+    def __init__(self, remainder: Remainder, omega: float):
+        self.remainder, self.omega = remainder, omega
+        self.pieces = Pieces(remainder, omega)
+        size = self.pieces.piece(self.pieces.name(remainder.mean)).size
+        self.looks = max(LOOKS, int(np.ceil(size / SHORT * 2 * np.pi / omega)))
+        self.step = 2 * np.pi / omega / self.looks
+        self._ahead: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
+
+    def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
+        y = self.pieces.state(modal)
+        name = self._standing(y)
+        s, v = (np.empty((self.looks, self.remainder.rows)) for _ in range(2))
+        k = 0
+        while k < self.looks:
+            piece = self.pieces.piece(name)
+            seen, over = self._looking(name)
+            left = self.looks - k
+            ahead = np.concatenate([piece.stretch @ y, *(seen[:left] @ y)]).reshape(left + 1, -1)
+            gone = np.flatnonzero(self._off(name, ahead[1:]))
+            stay = int(gone[0]) if len(gone) else left
+            # a period is looked at once, its end being the beginning of the next
+            count = min(stay + 1, left)
+            s[k : k + count] = ahead[:count]
+            before = y
+            for j in range(count):
+                v[k + j] = piece.rate @ (over[j - 1] @ before if j else before)
+            y = over[stay - 1] @ y if stay else y
+            k += stay
+            if stay < left:
+                y, name = self._through(name, y, self.step)
+                k += 1
+        return y[: 2 * len(self.remainder.omega)], s, v
+
+    def _looking(self, name: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Rows (looks, m, n) that give the stretches 1, 2 ... steps later, and transitions."""
+        if name not in self._ahead:
+            piece = self.pieces.piece(name)
+            one = piece.over(self.step)
+            over = np.empty((self.looks, *one.shape))
+            over[0] = one
+            for k in range(1, self.looks):
+                over[k] = one @ over[k - 1]
+            self._ahead[name] = piece.stretch @ over, over
+        return self._ahead[name]
+
+    def _off(self, name: tuple[int, ...], stretch: np.ndarray) -> np.ndarray:
+        """(t,) which of some stretches (t, m) are off these pieces."""
+        own = [
+            np.searchsorted(edges, stretch[:, row]) != where
+            for row, (where, edges) in enumerate(zip(name, self.pieces.edges))
+        ]
+        return np.any(own, axis=0)
+
+    def _standing(self, y: np.ndarray) -> tuple[int, ...]:
+        """The piece on which a state is: the one that its own stretches name."""
+        name = self.pieces.name(self.remainder.mean)
+        for _ in range(6):
+            own = self.pieces.name(self.pieces.piece(name).stretch @ y)
+            if own == name:
+                return name
+            name = own
+        raise SolidgearError("a state in time is on no piece of the laws, or on two")
+
+    def _through(self, name, y, rest: float):
+        """State and piece after a time in which a stretch leaves its piece."""
+        while rest > 0:
+            piece = self.pieces.piece(name)
+            terms = piece.series(y)
+            at, row, side = self._crossing(name, terms @ piece.stretch.T, rest)
+            y = terms.T @ at ** np.arange(TERMS)
+            if row is None:
+                return y, name
+            rest -= at
+            name = tuple(w + side * (j == row) for j, w in enumerate(name))
+        return y, name
+
+    def _crossing(self, name, series: np.ndarray, rest: float):
+        """First time within `rest` at which a stretch leaves its piece, which one, and to which side."""
+        first = rest
+        found: tuple[float, int | None, int] = rest, None, 0
+        for row, (where, edges) in enumerate(zip(name, self.pieces.edges)):
+            for edge, side in ((where - 1, -1), (where, 1)):
+                if not 0 <= edge < len(edges):
+                    continue
+                own = series[:, row].copy()
+                own[0] -= edges[edge]
+                at = _root(side * own, first)
+                if at is not None:
+                    first, found = at, (at, row, side)
+        return found
+
+
+class Integrated:
+    """The same for laws that are curved or vary over the cycle, integrated to a tolerance."""
+
+    def __init__(
+        self,
+        remainder: Remainder,
+        omega: float,
+        looks: int = LOOKS,
+        tolerance: float = TOLERANCE,
+    ):
+        self.remainder, self.omega, self.looks = remainder, omega, looks
+        self.tolerance = tolerance
+        orders = np.arange(1, len(remainder.error) + 1)
+        self._turn = 1j * omega * orders
+
+    def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
+        period = 2 * np.pi / self.omega
+        times = np.linspace(0.0, period, self.looks + 1)
+        found = solve_ivp(
+            self._slope,
+            (0.0, period),
+            modal,
+            "DOP853",
+            times,
+            rtol=self.tolerance,
+            atol=self._least,
+        )
+        if not found.success:
+            raise SolidgearError(f"integration in time failed: {found.message}")
+        there = [self._seen(t, y)[:2] for t, y in zip(times[:-1], found.y.T)]
+        s, v = (np.array(rows) for rows in zip(*there))
+        return found.y[:, -1], s, v
+
+    @cached_property
+    def _least(self) -> float:
+        """What a state is told to: a share of that of the linear system."""
+        own = self.remainder
+        size = np.abs(own.linear(self.omega, len(own.error))[0]).max()
+        return self.tolerance * float(own.omega[0] * size / np.abs(own.seen).max())
+
+    def _seen(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Stretches and rates (m,) of a state, and the force of the excess with the excitation."""
+        own, r = self.remainder, len(self.remainder.omega)
+        turned = np.exp(self._turn * t)[:, None] * own.error
+        e, slope = turned.sum(axis=0).real, (self._turn[:, None] * turned).sum(axis=0).real
+        given = own.stiffness @ e
+        v = own.seen @ y[r:] - slope
+        turn, grown = np.exp(self._turn * t), own.growth(self.omega)
+        base = own.seen @ (y[:r] / own.omega) + own.mean - e + own.flexible @ given
+        base = base + grown * (turn @ own.gives).real
+        factor = own.factor(np.array([self.omega * t])) if own.varies else None
+        s, still = base, np.zeros_like(base)
+        for _ in range(NEWTON if own.flexible.any() else 0):
+            force, _ = own.excess(s[None], still[None], factor)
+            left = s - base - own.flexible @ force.value[0]
+            step = np.linalg.solve(np.eye(len(s)) - own.flexible @ force.by_stretch[0], left)
+            s = s - step
+            if np.abs(step).max() <= 1e-3 * self.tolerance * np.abs(s).max():
+                break
+        push = own.excess(s[None], v[None], factor)[0].value[0]
+        return s, v, push + given + own.drag @ slope
+
+    def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
+        out = self.remainder.state @ y
+        own = self.remainder
+        pushed = (np.exp(self._turn * t) @ own.push).real * own.growth(self.omega)
+        out[len(own.omega) :] += own.seen.T @ self._seen(t, y)[2] + pushed
+        return out
+
+
+def _root(series: np.ndarray, rest: float) -> float | None:
+    """First time up to `rest` at which a polynomial, at most zero at first, rises through zero."""
+    value = series[::-1]
+    if np.polyval(value, rest) <= 0:
+        return None
+    slope = np.polyder(value)
+    low, high = 0.0, rest
+    if series[0] >= 0 and series[1] > 0:
+        return 0.0
+    at = rest / 2
+    for _ in range(CROSSINGS):
+        f = np.polyval(value, at)
+        low, high = (at, high) if f <= 0 else (low, at)
+        by = np.polyval(slope, at)
+        new = at - f / by if by else (low + high) / 2
+        if not low < new < high:
+            new = (low + high) / 2
+        if abs(new - at) <= LOCATED * rest:
+            return float(new)
+        at = new
+    return float(at)
+
+
+def settled(
+    remainder: Remainder,
+    omega: float,
+    state: np.ndarray | None = None,
+    *,
+    most: int = MOST_PERIODS,
+    steady: float = STEADY,
+) -> Steady:
+    """The motion that a state runs into.
+
+    Parameters
+    ----------
+    omega : float
+        Of the excitation, rad/s.
+    state : (2r,) ndarray, optional
+        To begin at; rest at the linear mean without it.
+    most : int
+        Periods after which a motion that still changes is called unsteady, its cycle 0.
+    steady : float
+        What may be left of the transient, of the swing of the stretches; told by how fast it fades.
+
+    Returns
+    -------
+    Steady
+    """
+    straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
+    run = Run(remainder, omega) if straight else Integrated(remainder, omega)
+    modal = np.zeros(2 * len(remainder.omega)) if state is None else state
+    waves: list[np.ndarray] = []
+    section: list[tuple[float, float]] = []
+    change: dict[int, list[float]] = {c: [] for c in range(1, LONGEST_CYCLE + 1)}
+    cycle = 0
+    for _ in range(most):
+        modal, s, v = run.period(modal)
+        waves = [*waves[-LONGEST_CYCLE:], s]
+        section.append((float(s[0, 0]), float(v[0, 0])))
+        swing = float(np.ptp(s, axis=0).max()) or 1.0
+        for c, own in change.items():
+            if len(waves) > c:
+                own.append(float(np.abs(waves[-1] - waves[-1 - c]).max()) / swing)
+        cycle = next((c for c, own in change.items() if _faded(own, steady)), 0)
+        # what still fades towards one period looks like two or three before
+        if cycle > 1 and max(change[1][-FADING:]) < STILL_FADING * steady:
+            cycle = 0
+        if cycle:
+            break
+    kept = np.concatenate(waves[-max(cycle, 1) :])
+    angle = 2 * np.pi * np.arange(len(kept)) / run.looks
+    factor = remainder.factor(angle) if remainder.varies else None
+    force = remainder.forces(kept, np.zeros_like(kept), factor).value
+    return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
+
+
+def _faded(change: list[float], steady: float) -> bool:
+    """Tell whether changes fade, and what all later ones add up to is little."""
+    if len(change) < 2 * FADING:
+        return False
+    now, before = max(change[-FADING:]), max(change[-2 * FADING : -FADING])
+    if now <= 1e-12:
+        return True
+    if now >= before:
+        return now <= 1e-3 * steady
+    rate = (now / before) ** (1 / FADING)
+    return now * rate / (1 - rate) <= steady
+
+
+@pinned
+def sweep(
+    remainder: Remainder,
+    omegas: Sequence[float],
+    *,
+    state: np.ndarray | None = None,
+    most: int = MOST_PERIODS,
+    steady: float = STEADY,
+) -> list[Steady]:
+    """Steady motions one after the other, each begun where the last one ended.
+
+    Parameters
+    ----------
+    omegas : sequence of float
+        rad/s, in the order in which they are run through.
+    state : (2r,) ndarray, optional
+        To begin at; rest at the linear mean without it.
+
+    Examples
+    --------
+    >>> from solidgear.system import Inertia, RowSpring, System
+    >>> from solidgear.nonlinear.model import remainder
+    >>> from solidgear.system.law import Gap
+    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
+    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
+    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
+    >>> down = sweep(found, [1.0, 0.9, 0.8, 0.75])
+    >>> round(float(down[-1].rms[0]), 3)
+    0.225
+    """
+    out: list[Steady] = []
+    for omega in omegas:
+        out.append(settled(remainder, float(omega), state, most=most, steady=steady))
+        state = out[-1].state
+    return out

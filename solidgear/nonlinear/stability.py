@@ -1,0 +1,141 @@
+r"""Stability of periodic motions by Floquet's multipliers.
+
+Small motions beside a periodic one obey ``y' = A(t) y`` with the tangents of the laws along it.  Over
+a period they are taken by the monodromy matrix, whose eigenvalues, the multipliers, lie within the
+unit circle where the motion is stable.  One leaves through +1 at a turning point, through -1 where the
+period doubles, a pair elsewhere where a second frequency comes in.
+
+Of laws of straight pieces A is constant between crossings, whose instants are roots of the Fourier
+series: the product of matrix exponentials is exact.  Where a damper in contact begins at once, the
+force leaps, and small motions with it (saltation).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.machine.threads import pinned
+from solidgear.nonlinear.continuation import Point
+from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.pieces import Pieces
+
+#: a multiplier beyond the unit circle by less is on it: digits of a crossing
+ON = 1e-7
+#: steps of Newton's method that locate a crossing between two instants
+STEPS = 4
+
+
+@pinned
+def multipliers(point: Point) -> np.ndarray:
+    """(2r,) Floquet multipliers of a periodic motion, largest first.
+
+    Examples
+    --------
+    A linear pair gives those of its own decay over a period:
+
+    >>> from solidgear.nonlinear.continuation import follow
+    >>> from solidgear.nonlinear.model import remainder
+    >>> from solidgear.system import Inertia, RowSpring, System
+    >>> from solidgear.system.law import Gap
+    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
+    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
+    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.005]}, **losses)
+    >>> point = follow(found, 0.5, 1.3).points[0]
+    >>> bool(np.allclose(abs(multipliers(point)), np.exp(-0.05 * 2 * np.pi / 0.5)))
+    True
+    """
+    own = point.balance.remainder
+    if all(law.pieces for law, _ in own.laws) and not own.varies:
+        matrix = _by_pieces(point)
+    else:
+        matrix = _by_instants(point)
+    value = np.linalg.eigvals(matrix)
+    return value[np.argsort(-np.abs(value), kind="stable")]
+
+
+def stable(point: Point) -> bool:
+    """Tell whether small motions beside a periodic one die away."""
+    return bool(np.abs(multipliers(point)[0]) <= 1 + ON)
+
+
+def _by_pieces(point: Point) -> np.ndarray:
+    own, omega = point.balance.remainder, point.omega
+    pieces = Pieces(own, omega)
+    s, _ = point.waves()
+    crossings = sorted(_crossings(point, s, pieces.edges))
+    period = 2 * np.pi / omega
+    names = [pieces.name(s[0])]
+    for _, row, side in crossings:
+        names.append(tuple(w + side * (j == row) for j, w in enumerate(names[-1])))
+    straights = [pieces.straight(name) for name in names]
+    out = np.eye(2 * len(own.omega))
+    times = [0.0, *(angle / omega for angle, _, _ in crossings), period]
+    for k, (before, after) in enumerate(zip(times, times[1:])):
+        stiffness, damper, _ = straights[k]
+        more, drag = own.stiffness - np.diag(stiffness), own.damper - np.diag(damper)
+        out = sla.expm((after - before) * own.generator(more, drag)) @ out
+        if k < len(crossings) and own.drags:
+            jump = np.diag(straights[k + 1][1] - damper)
+            out = _saltation(point, crossings[k], jump) @ out
+    return out
+
+
+def _crossings(point: Point, s: np.ndarray, edges: list[np.ndarray]):
+    """Angle, row and side (1 to the next piece, -1 to the last) of every crossing in a period."""
+    step = 2 * np.pi / len(s)
+    for row, own in enumerate(edges):
+        for edge in own:
+            gap = s[:, row] - edge
+            # beyond or not, as pieces are told apart: the edge itself belongs to the lower one
+            above = gap > 0
+            for k in np.flatnonzero(above != np.roll(above, -1)):
+                after = gap[(k + 1) % len(s)]
+                angle = step * (k + gap[k] / (gap[k] - after))
+                for _ in range(STEPS):
+                    value, slope = _wave(point, angle)
+                    new = angle - (value[row] - edge) / slope[row]
+                    angle = float(np.clip(new, step * k, step * (k + 1)))
+                yield angle, row, -1 if above[k] else 1
+
+
+def _wave(point: Point, angle: float) -> tuple[np.ndarray, np.ndarray]:
+    """Stretches (m,) and their slopes over the angle at one angle."""
+    harmonics = point.harmonics
+    n = 1j * np.arange(len(harmonics))[:, None]
+    turned = harmonics * np.exp(n * angle)
+    return turned.sum(axis=0).real, (n * turned).sum(axis=0).real
+
+
+def _saltation(point: Point, crossing: tuple[float, int, int], jump: np.ndarray) -> np.ndarray:
+    """(2r, 2r) leap of small motions where the damping force of a row sets in or ends."""
+    own = point.balance.remainder
+    angle, row, _ = crossing
+    rate = point.omega * _wave(point, angle)[1]
+    r = len(own.omega)
+    out = np.eye(2 * r)
+    leap = -own.seen.T @ jump @ rate
+    out[r:, :r] += np.outer(leap, own.seen[row] / own.omega) / rate[row]
+    return out
+
+
+def _by_instants(point: Point) -> np.ndarray:
+    own = point.balance.remainder
+    tangent, _ = own.excess(*point.waves(), point.balance.factor)
+    return over_cycle(own, point.omega, tangent.by_stretch, tangent.by_rate)
+
+
+def over_cycle(
+    remainder: Remainder, omega: float, by_stretch: np.ndarray, by_rate: np.ndarray
+) -> np.ndarray:
+    """(2r, 2r) monodromy by the midpoint rule, from the tangents of the excess (T, m, m) at equal
+    intervals of a period.
+    """
+    step = 2 * np.pi / omega / len(by_stretch)
+    half = step / 2 * remainder.generator(by_stretch, by_rate)
+    eye = np.eye(half.shape[-1])
+    out = eye
+    for one in np.linalg.solve(eye - half, eye + half):
+        out = one @ out
+    return out

@@ -1,0 +1,93 @@
+r"""Mesh stiffness that varies over the mesh cycle, and where that alone makes motions grow.
+
+Teeth that keep contact, with ``k (1 + c(t))``, make a linear system with periodic coefficients.  Near
+speeds at which the excitation, or a multiple of it, is the sum of two natural frequencies or twice
+one, its motions grow by themselves (tongues of Mathieu and Hill).  Floquet's multipliers tell which
+do.  Edges at which a multiplier is +1 or -1 have a motion that repeats itself after one cycle or two,
+
+    s_h + H(h w) (K C s)_h = 0,        h = ..., -1, 0, 1, ...   or   ..., -1/2, 1/2, 3/2, ...
+
+so that Hill's determinant is zero there, from receptances alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import brentq
+
+from solidgear.machine.threads import pinned
+from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.stability import over_cycle
+
+#: instants of a cycle, and harmonics of Hill's determinant on either side
+INSTANTS, HARMONICS = 512, 8
+#: places between two speeds at which the determinant is looked at
+PLACES = 400
+
+
+def growth(remainder: Remainder, omega: float) -> complex:
+    """Largest Floquet multiplier of teeth that keep contact, at a frequency of the cycle, rad/s.
+
+    Examples
+    --------
+    Mathieu's equation at twice its natural frequency:
+
+    >>> from solidgear.nonlinear.model import remainder
+    >>> from solidgear.system import Inertia, RowSpring, System
+    >>> from solidgear.system.law import Gap
+    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 0.0))
+    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    >>> found = remainder(pair, cycles={"mesh": [0.2]})
+    >>> bool(abs(growth(found, 2.0)) > 1), bool(abs(growth(found, 1.7)) > 1 + 1e-9)
+    (True, False)
+    """
+    angle = 2 * np.pi * np.arange(INSTANTS) / INSTANTS
+    more = (1 - remainder.factor(angle))[:, None, :] * remainder.stiffness
+    drag = (1 - remainder.factor(angle))[:, None, :] * remainder.damper
+    value = np.linalg.eigvals(over_cycle(remainder, omega, more, drag))
+    return complex(value[np.abs(value).argmax()])
+
+
+def hill(remainder: Remainder, omega: float, half: bool, count: int = HARMONICS) -> float:
+    """Hill's determinant, whose sign changes where a multiplier is +1, or -1 with `half`.
+
+    Parameters
+    ----------
+    count : int
+        Harmonics on either side.
+    """
+    m = remainder.rows
+    place = np.arange(-count, count + 1 - half) + (0.5 if half else 0.0)
+    moves, _ = remainder.receptance(omega * place)
+    moves = (moves + remainder.flexible) @ remainder.stiffness
+    out = np.eye(len(place) * m, dtype=complex).reshape(len(place), m, len(place), m)
+    for order, own in enumerate(remainder.cycle, start=1):
+        for to in range(len(place)):
+            for at, share in ((to - order, own / 2), (to + order, own.conj() / 2)):
+                if 0 <= at < len(place):
+                    out[to, :, at, :] += moves[to] * share
+    return float(np.linalg.det(out.reshape(len(place) * m, -1)).real)
+
+
+@pinned
+def edges(remainder: Remainder, low: float, high: float, half: bool) -> tuple[float, ...]:
+    """Frequencies of the cycle between two at which Hill's determinant is zero, rad/s.
+
+    Parameters
+    ----------
+    half : bool
+        True for motions that repeat themselves after two cycles, such as about twice a natural
+        frequency.
+    """
+    places: Sequence[float] = np.geomspace(low, high, PLACES).tolist()
+    values = [hill(remainder, w, half) for w in places]
+    out = []
+    for a, b, before, after in zip(places, places[1:], values, values[1:]):
+        # an undamped pole of a receptance changes the sign too, by way of infinity
+        if before * after < 0:
+            at = float(brentq(lambda w: hill(remainder, w, half), a, b, xtol=1e-12 * b))
+            if abs(hill(remainder, at, half)) <= min(abs(before), abs(after)):
+                out.append(at)
+    return tuple(out)

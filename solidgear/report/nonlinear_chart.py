@@ -1,0 +1,198 @@
+"""Charts of teeth with backlash: mesh force over speed with its branches, contact over the cycle, and
+the orders of the largest force.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from solidgear.report.panel import GREY, Axis, Panel, Series, read_places, readout
+from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
+from solidgear.report.units import ENGINEERING, Units, plain
+from solidgear.report.words import hertz
+
+STABLE, UNSTABLE, LINEAR, JUMP = "stable", "unstable", "linear: no backlash", "jumps"
+OTHERS = ("#c98a00", "#b3305c", "#5a3e8c", "#1f9bb8", "#8a6d3b")
+DRIVE, NONE, BACK = "in contact", "apart", "on the other flank"
+LOOKS = {STABLE: Series("#00805e"), UNSTABLE: Series("#d55e00"), LINEAR: Series(GREY)}
+CONTACT = {DRIVE: Series("#00805e"), NONE: Series("#d9d9d9"), BACK: Series("#b3305c")}
+#: bins of the speed in which shares of the cycle are drawn
+BINS = 160
+
+
+def backlash_chart(
+    found: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
+) -> Chart:
+    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and orders.
+
+    Parameters
+    ----------
+    found : BacklashTold
+    width : float
+        px.
+    """
+    judge, teeth = found.judge, found.train.pinion.teeth
+    rpm = 60 * judge.frequency_hz / teeth
+    ends = float(rpm.min()), float(rpm.max())
+    panels = [_force(found, rpm, ends, units, width), _contact(judge, rpm, ends, width)]
+    if found.over_force:
+        panels.append(_map(found, ends, units))
+    return Chart(in_columns([*panels, _orders(judge, units)], 1), width, title)
+
+
+def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
+    """Where teeth part, and jumps, over speed and mean force."""
+    judge, teeth = found.judge, found.train.pinion.teeth
+    unit, (hz, size) = units.unit("N"), judge.linear
+    top = 1.05 * float(units.values(size, "N").max())
+    panel = Panel(
+        Axis("speed of the pinion in rpm", ends),
+        Axis(f"mean mesh force in {unit}", (0.0, top)),
+        240.0,
+        "Teeth part below the line; triangles: jumps as the speed rises (up) and falls (down)",
+        series={LINEAR: LOOKS[LINEAR]},
+    )
+    line = _line(60 * hz / teeth, units.values(size, "N"), LINEAR)
+    panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, line)
+    for rising, shape in ((True, "triangle-up"), (False, "triangle-down")):
+        rows = [
+            {
+                "x": 60 * at / teeth,
+                "y": units.value(one.mean_force, "N"),
+                "readout": readout("jump", ("frequency", hertz(at), "Hz")),
+            }
+            for one in found.over_force
+            for at, up in one.jumps_hz
+            if up is rising
+        ]
+        panel.draw({"type": "point", "shape": shape, "filled": True, "color": "#222222"}, rows)
+    return panel
+
+
+def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Panel:
+    judge, teeth = found.judge, found.train.pinion.teeth
+    unit = units.unit("N")
+    hz, size = judge.linear
+    linear = units.values(size, "N")
+    curves = {one.label: units.values(one.force, "N") for one in found.found}
+    top = 1.08 * max(float(linear.max()), *(float(v.max()) for v in curves.values()))
+    others = {one.label: Series(OTHERS[k]) for k, one in enumerate(found.found[1:])}
+    panel = Panel(
+        Axis("speed of the pinion in rpm", ends),
+        Axis(f"dynamic mesh force in {unit}", (0.0, top)),
+        360.0,
+        "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
+        series={**LOOKS, **others},
+        legend={
+            "orient": "top",
+            "columns": 3 if width > NARROW else 1,
+            "symbolType": "stroke",
+            "symbolStrokeWidth": 3,
+        },
+    )
+    rows = _line(60 * hz / teeth, linear, LINEAR)
+    panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, rows)
+    for one in found.found[1:]:
+        places, own = 60 * one.frequency_hz / teeth, curves[one.label]
+        inside = one.stable & (places >= ends[0]) & (places <= ends[1])
+        for part, (a, b) in enumerate(_runs(inside)):
+            rows = _line(places[a:b], own[a:b], one.label, part)
+            panel.draw({"type": "line", "strokeWidth": 1.1, "clip": True}, rows)
+    force = curves[judge.label]
+    for name, where, dash in ((UNSTABLE, ~judge.stable, [3, 2]), (STABLE, judge.stable, [1, 0])):
+        for part, (a, b) in enumerate(_runs(where)):
+            # a part reaches its neighbours, so that the branch has no gaps
+            a, b = max(a - 1, 0), min(b + 1, len(rpm))
+            rows = _line(rpm[a:b], force[a:b], name, part)
+            panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
+    for jump in judge.jumps:
+        x, y = 60 * jump.frequency_hz / teeth, units.value(jump.force, "N")
+        way = "rising" if jump.rising else "falling"
+        mark = {"type": "point", "shape": "triangle-up" if jump.rising else "triangle-down"}
+        words = readout(f"jumps, {way}", ("frequency", hertz(jump.frequency_hz), "Hz"))
+        panel.draw(
+            mark | {"size": 90, "filled": True, "color": "#222222"},
+            [{"x": x, "y": y, "readout": words}],
+        )
+    read = []
+    for k in read_places(rpm, force, int(width / 14.0)):
+        words = readout(
+            "stable" if judge.stable[k] else "unstable",
+            ("speed", f"{rpm[k]:.0f}", "rpm"),
+            ("frequency", hertz(float(judge.frequency_hz[k])), "Hz"),
+            ("mesh force", plain(float(force[k]), 4), unit),
+            ("in contact", f"{100 * judge.driving[k]:.0f}", "% of the cycle"),
+        )
+        read.append({"x": rpm[k], "y": force[k], "readout": words})
+    panel.read(read, LOOKS[STABLE].colour)
+    return panel
+
+
+def _line(x: np.ndarray, y: np.ndarray, name: str, part: int = 0) -> list[dict[str, Any]]:
+    rows = zip(x.tolist(), y.tolist())
+    return [{"x": a, "y": b, "name": name, "detail": part} for a, b in rows]
+
+
+def _runs(where: np.ndarray) -> np.ndarray:
+    """(n, 2) first and after the last of each run."""
+    return np.flatnonzero(np.diff(np.r_[False, where, False].astype(int))).reshape(-1, 2)
+
+
+def _contact(judge: Any, rpm: np.ndarray, ends, width: float) -> Panel:
+    """Shares of the cycle in areas over one another; of stable motions, the largest loss a speed."""
+    panel = Panel(
+        Axis("speed of the pinion in rpm", ends),
+        Axis("share of the cycle in %", (0.0, 100.0)),
+        130.0,
+        "Contact of the teeth over a mesh cycle; of several motions, the one that parts longest",
+        series=CONTACT,
+        legend={"orient": "top", "columns": 3 if width > NARROW else 1},
+    )
+    edges = np.linspace(ends[0], ends[1], BINS + 1).tolist()
+    rows = []
+    for low, high in zip(edges, edges[1:]):
+        inside = np.flatnonzero(judge.stable & (rpm >= low) & (rpm <= high))
+        if len(inside):
+            k = int(inside[judge.driving[inside].argmin()])
+        else:
+            k = int(np.abs(np.where(judge.stable, rpm, np.inf) - (low + high) / 2).argmin())
+        drive, back = 100 * judge.driving[k], 100 * judge.backside[k]
+        for name, y, y2 in (
+            (DRIVE, 0, drive),
+            (BACK, drive, drive + back),
+            (NONE, drive + back, 100),
+        ):
+            if y2 > y:
+                # a little over the next, so that no line shows between them
+                wide = high + (high - low) / 4
+                rows.append({"x": low, "x2": wide, "y": y, "y2": y2, "name": name})
+    panel.draw({"type": "rect", "strokeWidth": 0}, rows)
+    return panel
+
+
+def _orders(judge: Any, units: Units) -> Panel:
+    """Amplitudes of the mesh force by orders of the mesh."""
+    size = units.values(judge.spectrum(), "N")
+    unit, hz = units.unit("N"), judge.loudest[0]
+    panel = Panel(
+        Axis("order of the mesh", (0.4, len(size) + 0.6)),
+        Axis(f"amplitude in {unit}", (0.0, 1.1 * float(size.max()))),
+        130.0,
+        f"Orders of the mesh force where it is largest, {hz:.0f} Hz",
+        series={STABLE: LOOKS[STABLE]},
+    )
+    rows = [
+        {
+            "x": k - 0.3,
+            "x2": k + 0.3,
+            "y": 0.0,
+            "y2": float(y),
+            "fill": LOOKS[STABLE].colour,
+            "readout": readout(f"order {k}", ("mesh force", plain(float(y), 4), unit)),
+        }
+        for k, y in enumerate(size, start=1)
+    ]
+    panel.draw({"type": "rect"}, rows)
+    return panel

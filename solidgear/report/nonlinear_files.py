@@ -1,0 +1,117 @@
+"""Files of a train with backlash: the branch as numbers, its chart, a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solidgear.report import train_tables
+from solidgear.report.nonlinear_chart import backlash_chart
+from solidgear.report.sheet_files import write_files
+from solidgear.report.table import Column, Table, text
+from solidgear.report.train_files import figures
+from solidgear.report.units import ENGINEERING, Units, plain, units_named
+from solidgear.report.words import DASH, hertz
+
+
+def write_nonlinear(
+    folder: Path,
+    found: Any,
+    title: str,
+    train: Mapping[str, Any],
+    units: str | Units = ENGINEERING,
+    cautions: Sequence[str] = (),
+) -> list[Path]:
+    """``nonlinear.csv`` of the branch of the first mix, ``nonlinear.json``, its chart and page.
+
+    Parameters
+    ----------
+    found : BacklashTold
+    train : mapping
+        What is known of the train, as plain data.
+    units : str or Units
+        Of chart and page; all else is SI.
+    """
+    shown = units_named(units)
+    teeth = found.teeth
+    gap = shown.text(2 * teeth.half_gap, "m moved", 4)
+    error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)
+    lead = (
+        f"Backlash {gap}, mean mesh force {shown.text(teeth.mean_force, 'N', 4)} ({teeth.source}), "
+        f"transmission error {error}; {found.judge.label}."
+    )
+    return write_files(
+        folder,
+        "nonlinear",
+        title,
+        lead,
+        [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
+        {"title": title, **found.as_dict(), "cautions": list(cautions)},
+        lines={"nonlinear": branch(found)},
+        charts={"nonlinear": partial(backlash_chart, found, title, shown)},
+        cautions=cautions,
+        verdict=found.sentences(),
+    )
+
+
+def branch(found: Any) -> Table:
+    """The branch of the first mix in its order, in SI."""
+    one = found.judge
+    there = {
+        "frequency [Hz]": one.frequency_hz,
+        "pinion speed [rpm]": 60 * one.frequency_hz / found.train.pinion.teeth,
+        "dynamic mesh force [N]": one.force,
+        "largest mesh force [N]": one.highest,
+        "share of the cycle in contact": one.driving,
+        "share on the other flank": one.backside,
+        "stable": one.stable.astype(float),
+        "largest multiplier": np.abs(one.multiplier),
+    }
+    rows = np.column_stack(list(there.values())).tolist()
+    return Table("", [Column(head, write=figures) for head in there], rows)
+
+
+def mixes(found: Any, units: Units = ENGINEERING) -> Table:
+    """Jumps and largest force of every mix."""
+
+    def jumps(one: Any, rising: bool) -> str:
+        own = [hertz(j.frequency_hz) for j in one.jumps if j.rising is rising]
+        return ", ".join(own) or DASH
+
+    columns = [
+        text("shafts", lambda one: one.label),
+        text("jump up, Hz", lambda one: jumps(one, True)),
+        text("jump down, Hz", lambda one: jumps(one, False)),
+        Column(f"largest, {units.unit('N')}", lambda one: _force(one.loudest[1], units)),
+        Column("at, Hz", lambda one: hertz(one.loudest[0])),
+        Column(f"linear, {units.unit('N')}", lambda one: _force(one.linear_loudest[1], units)),
+        Column("at, Hz", lambda one: hertz(one.linear_loudest[0])),
+    ]
+    return Table("Jumps and largest dynamic mesh force", columns, found.found, style="bare")
+
+
+def over_force(found: Any, units: Units = ENGINEERING) -> Table:
+    """Jumps over the mean force of the teeth."""
+
+    def jumps(one: Any, rising: bool) -> str:
+        return ", ".join(hertz(hz) for hz, up in one.jumps_hz if up is rising) or DASH
+
+    columns = [
+        Column(f"mean force, {units.unit('N')}", lambda one: _force(one.mean_force, units)),
+        Column(
+            f"torque, {units.unit('N m')}",
+            lambda one: plain(units.value(one.mean_force * found.lever, "N m"), 4),
+        ),
+        text("jump up, Hz", lambda one: jumps(one, True)),
+        text("jump down, Hz", lambda one: jumps(one, False)),
+        Column(f"largest, {units.unit('N')}", lambda one: _force(one.largest, units)),
+    ]
+    return Table("Jumps over the torque of the pinion", columns, found.over_force, style="bare")
+
+
+def _force(value: float, units: Units) -> str:
+    return plain(units.value(value, "N"), 4)

@@ -1,0 +1,262 @@
+"""Teeth with backlash over speed: what a branch of periodic motions says of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.nonlinear.balance import Balance
+from solidgear.nonlinear.continuation import Branch, Point
+from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.stability import ON
+
+#: points at which the linear answer is told
+LINEAR = 1500
+#: imaginary part of a multiplier that is rounding
+REAL = 1e-6
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """What the teeth of a train do beside their stiffness.
+
+    Attributes
+    ----------
+    half_gap : float
+        b, half of the backlash along the line of action, m.
+    mean_force : float
+        N, along the line of action.
+    errors : tuple of float
+        Unloaded transmission error by orders of the mesh, m.
+    source : str
+        Of the mean force.
+    cycle : tuple of (float, float)
+        How the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts.
+    """
+
+    half_gap: float
+    mean_force: float
+    errors: tuple[float, ...]
+    source: str
+    cycle: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Range:
+    """Frequencies from one to another, Hz."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A turning point of the branch, where a sweep falls off it.
+
+    Attributes
+    ----------
+    rising : bool
+        Whether it is met as the speed rises.
+    force : float
+        Dynamic mesh force just before, N.
+    """
+
+    frequency_hz: float
+    rising: bool
+    force: float
+
+
+@dataclass(frozen=True)
+class AtForce:
+    """Jumps at another mean force of the teeth.
+
+    Attributes
+    ----------
+    mean_force : float
+        N.
+    jumps_hz : tuple of (float, bool)
+        Each with whether the speed rises.
+    largest : float
+        Largest dynamic mesh force of any periodic motion, N.
+    """
+
+    mean_force: float
+    jumps_hz: tuple[tuple[float, bool], ...]
+    largest: float
+
+
+@dataclass(frozen=True, eq=False)
+class Backlash:
+    """Periodic motion of a train by two models, over frequency.
+
+    Attributes
+    ----------
+    branch : Branch
+        In order; more than one point may lie at one frequency.
+    seconds : float
+        Processor time, of the branch and its stability.
+    """
+
+    pinion: str
+    gear: str
+    teeth: Teeth
+    stiffness: float
+    remainder: Remainder = field(repr=False)
+    branch: Branch = field(repr=False)
+    multiplier: np.ndarray = field(repr=False)
+    seconds: float
+
+    @property
+    def label(self) -> str:
+        """Of both models."""
+        same = self.pinion == self.gear
+        return f"both {self.gear}" if same else f"pinion {self.pinion}, gear {self.gear}"
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Of the branch."""
+        return self.branch.points
+
+    @cached_property
+    def frequency_hz(self) -> np.ndarray:
+        """(p,) mesh frequency."""
+        return self.branch.omega / (2 * np.pi)
+
+    @cached_property
+    def _waves(self) -> list[np.ndarray]:
+        return [point.forces()[:, 0] for point in self.points]
+
+    @cached_property
+    def force(self) -> np.ndarray:
+        """(p,) dynamic mesh force: half of its swing over a cycle, N."""
+        return np.array([np.ptp(wave) / 2 for wave in self._waves])
+
+    @cached_property
+    def highest(self) -> np.ndarray:
+        """(p,) largest mesh force, mean included, N."""
+        return np.array([wave.max() for wave in self._waves])
+
+    @cached_property
+    def driving(self) -> np.ndarray:
+        """(p,) share of the cycle in which the flank that carries the mean touches."""
+        return np.array([np.mean(wave > 0) for wave in self._waves])
+
+    @cached_property
+    def backside(self) -> np.ndarray:
+        """(p,) share of the cycle in which the other flank touches."""
+        return np.array([np.mean(wave < 0) for wave in self._waves])
+
+    @cached_property
+    def stable(self) -> np.ndarray:
+        """(p,) bool."""
+        return np.abs(self.multiplier) <= 1 + ON
+
+    @cached_property
+    def linear(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies and dynamic mesh force of the same train without backlash."""
+        ends = self.frequency_hz.min(), self.frequency_hz.max()
+        near = self.remainder.omega / (2 * np.pi)
+        hz = np.concatenate([np.geomspace(*ends, LINEAR), near])
+        hz = np.unique(hz[(hz >= ends[0]) & (hz <= ends[1])])
+        return hz, np.array([self.linear_force(f) for f in hz])
+
+    def linear_force(self, hz: float) -> float:
+        """Dynamic mesh force without backlash at one frequency, N."""
+        balance = Balance(self.remainder, len(self.teeth.errors))
+        wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
+        return float(self.stiffness * np.ptp(wave[:, 0]) / 2)
+
+    @cached_property
+    def loudest(self) -> tuple[float, float]:
+        """Frequency and size of the largest dynamic mesh force of stable motions."""
+        size = np.where(self.stable, self.force, 0.0)
+        return float(self.frequency_hz[size.argmax()]), float(size.max())
+
+    @cached_property
+    def linear_loudest(self) -> tuple[float, float]:
+        """The same of the linear answer."""
+        hz, size = self.linear
+        return float(hz[size.argmax()]), float(size.max())
+
+    @cached_property
+    def jumps(self) -> tuple[Jump, ...]:
+        """Turning points, in order."""
+        out = []
+        for k in self.branch.turning:
+            rising = bool(self.branch.points[k - 1].tangent[-1] > 0)
+            out.append(Jump(float(self.frequency_hz[k]), rising, float(self.force[k])))
+        return tuple(out)
+
+    @cached_property
+    def lost(self) -> tuple[Range, ...]:
+        """Where the teeth part for some of the cycle; nowhere without a gap."""
+        half = self.teeth.half_gap
+        if half == 0:
+            return ()
+        gone = self.driving < 1
+        ends = self.branch.crossings(lambda p: float(p.waves()[0].min()) - half)
+        return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])
+
+    @cached_property
+    def both_flanks(self) -> tuple[Range, ...]:
+        """Where the other flank touches as well."""
+        return _ranges(self.frequency_hz, self.backside > 0, [])
+
+    @cached_property
+    def wandering(self) -> tuple[tuple[str, Range], ...]:
+        """Where a periodic motion is unstable other than between turning points, and how."""
+        kinds = np.full(len(self.points), "", dtype=object)
+        loose = ~self.stable
+        kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
+        real = loose & (np.abs(self.multiplier.imag) <= REAL)
+        kinds[real & (self.multiplier.real < 0)] = "two mesh periods"
+        found = {kind: kinds == kind for kind in ("a second frequency", "two mesh periods")}
+        return tuple(
+            (kind, one)
+            for kind, where in found.items()
+            for one in _ranges(self.frequency_hz, where, [])
+        )
+
+    def off(self, decibels: float) -> tuple[tuple[Range, float], ...]:
+        """Where the linear answer is off by more than some decibels, and by how much at most there;
+        above is positive.
+        """
+        size = np.array([self.linear_force(f) for f in self.frequency_hz])
+        error = 20 * np.log10(size / self.force)
+        far = self.stable & (np.abs(error) > decibels)
+        out = []
+        for one in _ranges(self.frequency_hz, far, []):
+            inside = far & (self.frequency_hz >= one.low) & (self.frequency_hz <= one.high)
+            out.append((one, float(error[inside][np.abs(error[inside]).argmax()])))
+        return tuple(out)
+
+    def spectrum(self) -> np.ndarray:
+        """(o,) amplitudes of the mesh force by orders of the mesh from 1, where it is largest, N."""
+        k = int(np.where(self.stable, self.force, 0.0).argmax())
+        wave = self._waves[k]
+        return 2 * np.abs(np.fft.rfft(wave))[1 : self.points[k].balance.count + 1] / len(wave)
+
+
+def _ranges(hz: np.ndarray, inside: np.ndarray, ends: Sequence[float]) -> tuple[Range, ...]:
+    """Ranges of neighbours that are inside, widened to the ends found between points, those that
+    overlap as one.
+    """
+    found = []
+    edges = np.flatnonzero(np.diff(np.r_[False, inside, False].astype(int)))
+    for first, after in edges.reshape(-1, 2):
+        own = hz[first:after].tolist()
+        for k in (first, after):
+            if 0 < k < len(hz):
+                beside = sorted((hz[k - 1], hz[k]))
+                own += [end for end in ends if beside[0] <= end <= beside[1]]
+        found.append(Range(float(min(own)), float(max(own))))
+    out: list[Range] = []
+    for one in sorted(found, key=lambda r: r.low):
+        if out and one.low <= out[-1].high:
+            out[-1] = Range(out[-1].low, max(one.high, out[-1].high))
+        else:
+            out.append(one)
+    return tuple(out)

@@ -1,0 +1,244 @@
+"""Backlash of a train told: sentences, which model is enough for jumps and force, plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from solidgear.scene.train import Train
+from solidgear.studies.train.backlash import AtForce, Backlash, Jump, Range, Teeth
+from solidgear.studies.train.nonlinear import InTime
+
+#: of motions that repeat themselves otherwise than every mesh period
+WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
+PHASES = (
+    "The file gives no phases of the transmission error: its orders are cosines that begin where the "
+    "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
+)
+
+
+@dataclass(frozen=True)
+class Sufficiency:
+    """A mix of models beside the first one.
+
+    Attributes
+    ----------
+    jumps : float or None
+        Largest relative error of the frequency of a jump; None where there are more or fewer.
+    count : int
+        Of its jumps.
+    force : float
+        Relative error of the largest dynamic mesh force.
+    at : float
+        Relative error of where it is.
+    lost : float or None
+        Largest relative error of an end of the ranges in which teeth part; None as above.
+    enough : bool
+        Jumps within the tolerance, all of them there, and the force within the decibels.
+    """
+
+    label: str
+    jumps: float | None
+    count: int
+    force: float
+    at: float
+    lost: float | None
+    enough: bool
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class BacklashTold:
+    """A train with backlash by several mixes of models, the first one the judge of the others.
+
+    Attributes
+    ----------
+    lever : float
+        Torque of the pinion over mesh force, m.
+    in_time : tuple of InTime
+        Of the first.
+    over_force : tuple of AtForce
+        Of the first.
+    """
+
+    train: Train
+    found: tuple[Backlash, ...]
+    lever: float
+    in_time: tuple[InTime, ...] = ()
+    over_force: tuple[AtForce, ...] = ()
+
+    @property
+    def judge(self) -> Backlash:
+        """The first mix."""
+        return self.found[0]
+
+    @property
+    def teeth(self) -> Teeth:
+        """What all mixes share."""
+        return self.judge.teeth
+
+    def _at(self, hz: float) -> str:
+        return f"{hz:.1f} Hz ({self._rpm(hz):.0f} rpm)"
+
+    def _rpm(self, hz: float) -> float:
+        return 60 * hz / self.train.pinion.teeth
+
+    def _range(self, one: Range) -> str:
+        return f"{one.low:.0f} to {one.high:.0f} Hz ({self._rpm(one.low):.0f} to {self._rpm(one.high):.0f} rpm)"
+
+    def sentences(self) -> list[str]:
+        """What the first mix says, and which of the others is enough."""
+        own = self.judge
+        calm = not own.lost and not own.teeth.cycle
+        if calm:
+            return [
+                "The teeth keep contact in all of the range: the linear answer holds to the last "
+                "digit.",
+                *self._verdict(),
+            ]
+        if own.lost:
+            lines = [f"The teeth part from {'; from '.join(map(self._range, own.lost))}."]
+        else:
+            lines = ["The teeth keep contact in all of the range."]
+        if own.both_flanks and own.lost:
+            lines.append(
+                f"The other flank is hit from {'; from '.join(map(self._range, own.both_flanks))}."
+            )
+        lines += self._jumped(own.jumps)
+        lines += [WANDERS.format(self._range(one), kind) for kind, one in own.wandering]
+        at, size = own.loudest
+        there, linear = own.linear_loudest
+        lines.append(
+            f"Largest dynamic mesh force {size:.0f} N at {self._at(at)}; the linear answer says "
+            f"{linear:.0f} N at {self._at(there)}."
+        )
+        if not own.teeth.cycle:
+            lines.append(
+                f"At mean forces above {linear:.0f} N ({linear * self.lever:.0f} N m on the pinion) "
+                "the teeth never part in this range."
+            )
+        lines += self._off()
+        lines += [*self._checked(), *self._verdict()]
+        if own.teeth.cycle or len(own.teeth.errors) > 1:
+            lines.append(PHASES)
+        lines.append(
+            "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
+            "are followed to 1e-4 of the largest."
+        )
+        return lines
+
+    def _jumped(self, jumps: Sequence[Jump]) -> list[str]:
+        ways = [
+            f"jumps at {self._at(jump.frequency_hz)} as the speed {'rises' if jump.rising else 'falls'}"
+            for jump in jumps
+        ]
+        return [f"The motion {', and '.join(ways)}."] if ways else ["The motion does not jump."]
+
+    def _off(self) -> list[str]:
+        band = self.train.ask.decibels
+        far = self.judge.off(band)
+        if not far:
+            return [f"The linear answer is off by less than {band:g} dB everywhere."]
+        return [
+            f"The linear answer is off by {abs(most):.1f} dB at most, too "
+            f"{'high' if most > 0 else 'low'}, from {self._rpm(one.low):.0f} to "
+            f"{self._rpm(one.high):.0f} rpm ({one.low:.0f} to {one.high:.0f} Hz)."
+            for one, most in far
+        ]
+
+    def _checked(self) -> list[str]:
+        periodic = [one for one in self.in_time if one.cycle == 1]
+        if not self.in_time:
+            return []
+        if not periodic:
+            return ["In time no motion came to repeat itself every mesh period."]
+        worst = max(periodic, key=lambda one: abs(one.off))
+        lines = [
+            f"Integration in time agrees within {100 * abs(worst.off):.2g} % in mesh force at "
+            f"{len(periodic)} of {len(self.in_time)} speeds, swept up and down."
+        ]
+        longer = sorted({one.cycle for one in self.in_time if one.cycle > 1})
+        for cycle in longer:
+            at = [self._at(one.frequency_hz) for one in self.in_time if one.cycle == cycle]
+            lines.append(f"It repeats itself after {cycle} mesh periods at {', '.join(at)}.")
+        never = [self._at(one.frequency_hz) for one in self.in_time if one.cycle == 0]
+        if never:
+            lines.append(f"It came to no steady motion at {', '.join(never)}.")
+        return lines
+
+    def sufficiency(self) -> tuple[Sufficiency, ...]:
+        """Each further mix beside the first."""
+        return tuple(self._beside(one) for one in self.found[1:])
+
+    def _beside(self, one: Backlash) -> Sufficiency:
+        ask, judge = self.train.ask, self.judge
+        ours, theirs = (sorted(j.frequency_hz for j in f.jumps) for f in (one, judge))
+        jumps = _worst(ours, theirs)
+        lost = _worst(*([e for r in f.lost for e in (r.low, r.high)] for f in (one, judge)))
+        force = one.loudest[1] / judge.loudest[1] - 1
+        factor = 10 ** (ask.decibels / 20)
+        close = 1 / factor <= 1 + force <= factor
+        return Sufficiency(
+            one.label,
+            jumps,
+            len(ours),
+            force,
+            one.loudest[0] / judge.loudest[0] - 1,
+            lost,
+            jumps is not None and jumps <= ask.tolerance and close,
+            one.seconds,
+        )
+
+    def _verdict(self) -> list[str]:
+        ask, lines = self.train.ask, []
+        for one in self.sufficiency():
+            expected = len(self.judge.jumps)
+            if one.jumps is None:
+                jumps = f"{one.count} jumps instead of {expected}"
+            else:
+                jumps = f"jumps off by {100 * one.jumps:.1f} %" if expected else "no jump, as here"
+            what = "enough" if one.enough else "not enough"
+            lines.append(
+                f"{one.label[0].upper()}{one.label[1:]}: {what} ({jumps}, largest force "
+                f"{100 * one.force:+.1f} %; asked {100 * ask.tolerance:g} % and {ask.decibels:g} dB)."
+            )
+        return lines
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        return {
+            "teeth": asdict(self.teeth),
+            "sentences": self.sentences(),
+            "mixes": [self._plain(one) for one in self.found],
+            "beside_the_first": [asdict(one) for one in self.sufficiency()],
+            "over_mean_force": [asdict(one) for one in self.over_force],
+            "in_time": [asdict(one) | {"off": one.off} for one in self.in_time],
+        }
+
+    def _plain(self, one: Backlash) -> dict[str, Any]:
+        at, size = one.loudest
+        there, linear = one.linear_loudest
+        return {
+            "pinion": one.pinion,
+            "gear": one.gear,
+            "points": len(one.points),
+            "harmonics": max(point.balance.count for point in one.points),
+            "parts": [asdict(r) for r in one.lost],
+            "other_flank": [asdict(r) for r in one.both_flanks],
+            "jumps": [asdict(jump) for jump in one.jumps],
+            "unstable": [{"by": kind, **asdict(r)} for kind, r in one.wandering],
+            "largest": {"frequency_hz": at, "force": size},
+            "linear_largest": {"frequency_hz": there, "force": linear},
+            "linear_off": [
+                {**asdict(r), "decibels": most} for r, most in one.off(self.train.ask.decibels)
+            ],
+            "orders_at_largest": one.spectrum().tolist(),
+        }
+
+
+def _worst(ours: Sequence[float], theirs: Sequence[float]) -> float | None:
+    """Largest relative difference of pairs in order; None where one has more."""
+    if len(ours) != len(theirs):
+        return None
+    return max((abs(a / b - 1) for a, b in zip(ours, theirs)), default=0.0)

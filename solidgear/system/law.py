@@ -1,0 +1,260 @@
+r"""Laws of force on a link: teeth with backlash, Hertzian contact, impacts, bearings with clearance.
+
+A law gives the force of a link over its stretch s and its rate.  The linear stiffness of the link is
+the tangent of its law at the operating point, so that motions that stay on one piece of a law are
+those of the linear system.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.system.matrices import not_negative, positive
+
+
+class Force(NamedTuple):
+    """Force of r rows at T instants, with both tangents."""
+
+    value: np.ndarray  #: (T, r)
+    by_stretch: np.ndarray  #: (T, r, r)
+    by_rate: np.ndarray  #: (T, r, r)
+
+
+class Law(Protocol):
+    """Interface of a law on the r rows of a link."""
+
+    @property
+    def pieces(self) -> bool:
+        """Straight pieces alone, each with a tangent of its own, parted at ``edges``."""
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Stretches at which pieces meet, ascending; none of a law that has no pieces."""
+
+    @property
+    def drags(self) -> bool:
+        """Whether the force depends on the rate."""
+
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """Stretches at which the slope jumps, each row by itself, and by how much, N/m."""
+
+    def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
+        """Force at T instants, from stretches and rates (T, r)."""
+
+    def stiffness(self, force: float) -> float:
+        """Tangent where the law carries a force, N/m."""
+
+    def damping(self, force: float) -> float:
+        """Tangent over the rate where the law carries a force, N s/m."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    r"""Contact on both sides of a gap: backlash of teeth, a stop, a seat with play.
+
+    With the depth ``d = |s| - half_gap`` of the side that touches,
+
+        k d^exponent + c(d) ds/dt        d > 0, else none,
+
+    and c(d) grows from zero to `damper` over the depth `ramp` as ``3 u^2 - 2 u^3``, so that an impact
+    begins without a jump.
+
+    Attributes
+    ----------
+    drive : float
+        Stiffness k of the side of positive stretch, N/m^exponent.
+    half_gap : float
+        b, m: the gap is 2 b wide, around the stretch zero.
+    coast : float, optional
+        Stiffness of the other side; that of the first without it, 0 for none.
+    exponent : float
+        1 for straight pieces, 1.5 for Hertz.
+    damper : float
+        N s/m, in contact alone.
+    ramp : float
+        Depth of full damping, m.
+    rounding : float
+        Width over which the edge is rounded, m; the force is then off by ``rounding / 2`` times its
+        slope at most, at the edge itself.
+
+    Raises
+    ------
+    SolidgearError
+        For a stiffness or gap that is negative, or an exponent below 1.
+
+    Examples
+    --------
+    >>> teeth = Gap(2.5e8, 50e-6)
+    >>> teeth.force(np.array([[70e-6], [0.0], [-60e-6]]), np.zeros((3, 1))).value[:, 0].round(6)
+    array([ 5000.,     0., -2500.])
+    >>> teeth.stiffness(5000.0)
+    250000000.0
+    """
+
+    drive: float
+    half_gap: float
+    coast: float | None = None
+    exponent: float = 1.0
+    damper: float = 0.0
+    ramp: float = 0.0
+    rounding: float = 0.0
+
+    def __post_init__(self):
+        positive("the stiffness of the driving side", self.drive)
+        for name in ("half_gap", "damper", "ramp", "rounding"):
+            not_negative(f"{name.replace('_', ' ')} of a contact", getattr(self, name))
+        if self.coast is not None:
+            not_negative("the stiffness of the coast side", self.coast)
+        if not 1 <= self.exponent <= 5:
+            raise SolidgearError(
+                f"the exponent of a contact is {self.exponent:g}; 1 is linear, 1.5 is Hertz"
+            )
+
+    @property
+    def pieces(self) -> bool:
+        """Whether it is linear on either side."""
+        return self.exponent == 1 and self.rounding == 0 and (self.ramp == 0 or self.damper == 0)
+
+    @property
+    def drags(self) -> bool:
+        """Whether it has a damper."""
+        return self.damper > 0
+
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """Both ends of the gap of straight sides; a curved one sets in without a jump."""
+        if self.exponent > 1 or self.rounding:
+            return ()
+        coast = self.drive if self.coast is None else self.coast
+        return (-self.half_gap, -coast), (self.half_gap, self.drive)
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Both ends of the gap; one where it has no width."""
+        if not self.pieces:
+            return ()
+        return (-self.half_gap, self.half_gap) if self.half_gap else (0.0,)
+
+    def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
+        """Force and tangents; rows are independent of each other."""
+        drive, coast = self.drive, self.drive if self.coast is None else self.coast
+        side = np.where(stretch >= 0, 1.0, -1.0)
+        stiffness = np.where(stretch >= 0, drive, coast)
+        depth = side * stretch - self.half_gap
+        if self.rounding:
+            root = np.hypot(depth, self.rounding)
+            slope = (1 + depth / root) / 2
+            depth = (depth + root) / 2
+        else:
+            slope = (depth > 0).astype(float)
+            depth = np.maximum(depth, 0.0)
+        if self.exponent == 1:
+            value, tangent = stiffness * depth, stiffness * slope
+        else:
+            power = stiffness * depth ** (self.exponent - 1)
+            value, tangent = power * depth, self.exponent * power * slope
+        value = side * value
+        lost = np.zeros_like(value)
+        if self.damper:
+            part = np.minimum(depth / self.ramp, 1.0) if self.ramp else 1.0 * (depth > 0)
+            on = (slope > 0) & (stiffness > 0)
+            lost = self.damper * part * part * (3 - 2 * part) * on
+            value = value + lost * rate
+            if self.ramp:
+                tangent = tangent + side * slope * on * rate * (
+                    6 * self.damper * part * (1 - part) / self.ramp
+                )
+        eye = np.eye(stretch.shape[-1])
+        return Force(value, tangent[..., None] * eye, lost[..., None] * eye)
+
+    def depth(self, force: float) -> float:
+        """Stretch at which it carries a force, m."""
+        side = 1.0 if force >= 0 else -1.0
+        stiffness = self.drive if force >= 0 or self.coast is None else self.coast
+        return side * (self.half_gap + (abs(force) / stiffness) ** (1 / self.exponent))
+
+    def _at(self, force: float) -> Force:
+        if force < 0 and self.coast == 0:
+            raise SolidgearError("a contact that holds on one side alone carries no force back")
+        inside = self.depth(force) * (1 + 1e-12) if self.pieces else self.depth(force)
+        return self.force(np.array([[inside]]), np.zeros((1, 1)))
+
+    def stiffness(self, force: float) -> float:
+        """Tangent where it carries a force; of straight pieces that of the side."""
+        if self.pieces:
+            return self.drive if force >= 0 or self.coast is None else self.coast
+        return float(self._at(force).by_stretch[0, 0, 0])
+
+    def damping(self, force: float) -> float:
+        """Damper where it carries a force."""
+        return self.damper if self.pieces else float(self._at(force).by_rate[0, 0, 0])
+
+
+@dataclass(frozen=True)
+class RadialGap:
+    """Clearance all around, of a bearing or a seal that rubs, on two rows across each other.
+
+    Attributes
+    ----------
+    radial : float
+        Stiffness of the contact, N/m.
+    clearance : float
+        m, from the middle to contact.
+
+    Examples
+    --------
+    >>> seat = RadialGap(1e7, 20e-6)
+    >>> seat.force(np.array([[18e-6, 24e-6]]), np.zeros((1, 2))).value.round(9)
+    array([[60., 80.]])
+    """
+
+    radial: float
+    clearance: float
+
+    def __post_init__(self):
+        positive("the stiffness of a seat with clearance", self.radial)
+        not_negative("a radial clearance", self.clearance)
+
+    @property
+    def pieces(self) -> bool:
+        """None are straight."""
+        return False
+
+    @property
+    def drags(self) -> bool:
+        """Not at all."""
+        return False
+
+    @property
+    def kinks(self) -> tuple[tuple[float, float], ...]:
+        """None that a single row tells."""
+        return ()
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
+        """Force along the motion from the middle."""
+        away = np.linalg.norm(stretch, axis=-1)
+        on = away > self.clearance
+        safe = np.where(on, away, 1.0)
+        share = np.where(on, 1 - self.clearance / safe, 0.0)
+        turned = stretch[..., :, None] * stretch[..., None, :]
+        bend = np.where(on, self.clearance / safe**3, 0.0)[..., None, None] * turned
+        tangent = self.radial * (share[..., None, None] * np.eye(2) + bend)
+        return Force(self.radial * share[..., None] * stretch, tangent, np.zeros_like(tangent))
+
+    def stiffness(self, force: float) -> float:
+        """That of the contact, at any force."""
+        return self.radial
+
+    def damping(self, force: float) -> float:
+        """None."""
+        return 0.0

@@ -1,0 +1,149 @@
+"""Stiffness that varies over the mesh cycle, curved laws, and several links at once: tongues,
+harmonic balance against integration in time, energy.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import mathieu_a, mathieu_b
+
+from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.model import remainder
+from solidgear.nonlinear.motion import Integrated, settled
+from solidgear.nonlinear.stability import multipliers
+from solidgear.nonlinear.varying import edges, growth, hill
+from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System
+from solidgear.system.law import Gap, RadialGap
+
+ALONG = [0, 0, 1, 0, 0, 0]
+
+
+def pair(law, mean=0.0, error=0.0, depth=0.0, damping=0.0):
+    """A unit mass on a link with a law, its stiffness varying by a share."""
+    link = RowSpring("gear", ALONG, law.stiffness(mean), law=law)
+    system = System({"gear": Inertia(1.0, "z")}, {"mesh": link})
+    return remainder(
+        system,
+        load=np.array([mean]),
+        errors={"mesh": [error]},
+        cycles={"mesh": [depth]},
+        loss={"mesh": 2 * damping},
+        kind="viscous",
+        matched_hz=1 / (2 * np.pi),
+    )
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.5])
+@pytest.mark.parametrize(("tongue", "low", "high"), [(1, 1.5, 2.6), (2, 0.8, 1.2)])
+def test_tongues_of_mathieu_by_hill_and_by_floquet(depth, tongue, low, high):
+    own = pair(Gap(1.0, 0.0), depth=depth)
+
+    def apart(w, number):  # y'' + (a - 2 q cos 2z) y = 0 with a = 4 / w^2, q = 2 depth / w^2
+        return number(tongue, 2 * depth / w**2) - 4 / w**2
+
+    true = sorted(brentq(apart, low, high, args=(f,)) for f in (mathieu_a, mathieu_b))
+    np.testing.assert_allclose(edges(own, low, high, half=tongue == 1), true, rtol=1e-10)
+    # Floquet: asked 1e-4 of the frequency, and the narrowest tongue is 25 times that wide
+    inside, outside = np.array(true) + [1e-4, -1e-4], np.array(true) + [-1e-4, 1e-4]
+    assert all(abs(growth(own, w)) > 1 + 1e-5 for w in inside)
+    assert all(abs(growth(own, w)) < 1 + 1e-9 for w in outside)
+
+
+def test_losses_close_a_tongue_where_hill_says():
+    own = pair(Gap(1.0, 0.0), depth=0.3, damping=0.05)
+    for w in edges(own, 1.5, 2.6, half=True):
+        assert abs(growth(own, w)) == pytest.approx(1.0, abs=1e-4)
+    # first tongue: open above a depth of four damping ratios (to first order)
+    assert edges(pair(Gap(1.0, 0.0), depth=0.19, damping=0.05), 1.5, 2.6, half=True) == ()
+    assert hill(replace(own, cycle=0 * own.cycle), 2.0, half=True) == pytest.approx(1.0)
+
+
+LAWS = {
+    "backlash and cycle": (Gap(1.0, 1.0), 0.2),
+    "hertz": (Gap(1.0, 0.05, exponent=1.5), 0.0),
+    "impact": (Gap(1.0, 1.0, damper=0.3, ramp=0.2), 0.0),
+    "two stiffnesses": (Gap(1.0, 0.02, coast=0.3), 0.0),
+}
+
+
+LONG = {"hertz", "two stiffnesses"}
+
+
+@pytest.mark.parametrize(
+    "law", [pytest.param(n, marks=pytest.mark.long if n in LONG else ()) for n in LAWS]
+)
+def test_balance_and_time_agree_on_every_law(law):
+    law, depth = LAWS[law]
+    own = pair(law, mean=0.1, error=0.05, depth=depth, damping=0.05)
+    slow = np.sqrt(own.stiffness[0, 0])
+    point = follow(own, 0.45 * slow, 1.1 * slow).at(0.85 * slow)[-1]
+    assert point.forces().min() < 0.02, "this is to be a motion that leaves its piece"
+    found = settled(replace(own), point.omega, point.state(), steady=1e-4)
+    assert found.cycle == 1
+    assert found.rms[0] == pytest.approx(point.rms[0], rel=1e-3)
+
+
+def test_a_mass_gains_over_a_cycle_what_it_loses():
+    own = pair(Gap(1.0, 1.0), mean=0.1, error=0.05, depth=0.2, damping=0.05)
+    point = follow(own, 0.5, 0.9).points[-1]
+    state = point.state()
+    for _ in range(30):
+        state, *_ = Integrated(own, point.omega, 1, 1e-9).period(state)
+    run = Integrated(own, point.omega, 2048, 1e-9)
+    _, s, v = run.period(state)
+    angle = 2 * np.pi * np.arange(run.looks) / run.looks
+    force = own.forces(s, v, own.factor(angle)).value[:, 0]
+    # s'' + 2 zeta s' + f = F_m - e'': inertia and mean load give nothing back over a cycle
+    given = 0.05 * point.omega**2 * np.cos(angle) * v[:, 0]
+    lost = (2 * 0.05 * v[:, 0] + force) * v[:, 0]
+    assert np.mean(given) > 0
+    assert np.mean(lost) == pytest.approx(np.mean(given), rel=1e-6)
+
+
+def rotor(clearance):
+    """A disc of 10 kg on a shaft of 1e7 N/m, off its seat's middle, in a seat with clearance."""
+    disc = RigidBody(np.diag([10.0, 10.0, 10.0, 0.1, 0.2, 0.1]), {"hub": (0, 0, 0)})
+    law = RadialGap(3e7, clearance)
+    across = np.eye(6)[[0, 2]]
+    links = {
+        "shaft": BearingSpring("disc.hub", np.diag([1e7, 1e8, 1e7, 1e5, 1e5, 1e5])),
+        "seat": RowSpring("disc.hub", across, law.radial, law=law),
+    }
+    system = System({"disc": disc}, links)
+    turning = system.load({"disc.hub": [1, 0, 0, 0, 0, 0]}) - 1j * system.load(
+        {"disc.hub": [0, 0, 1, 0, 0, 0]}
+    )
+    return remainder(
+        system,
+        loss={"shaft": 0.1},
+        kind="viscous",
+        matched_hz=160.0,
+        load=system.load({"disc.hub": [0, 0, -100.0, 0, 0, 0]}),
+        forces=[10.0 * 2e-6 * turning],
+        unbalance=True,
+    )
+
+
+def test_a_rotor_that_rubs_moves_alike_by_balance_and_in_time():
+    own = rotor(20e-6)
+    branch = follow(own, 500.0, 1080.0, step=0.1)
+    free, rubbing = branch.points[0], branch.points[-1]
+    assert not free.forces().any() and rubbing.forces().any()
+    # in the clearance it is the shaft alone: m e w^2 / (k - m w^2 + i w c)
+    c = 0.1 * 1e7 / (2 * np.pi * 160.0)
+    alone = 2e-5 * 500.0**2 / abs(1e7 - 10 * 500.0**2 + 500j * c)
+    np.testing.assert_allclose(free.rms, alone / np.sqrt(2), rtol=1e-8)
+    found = settled(own, rubbing.omega, rubbing.state(), steady=1e-4)
+    assert found.cycle == 1
+    np.testing.assert_allclose(found.rms, rubbing.rms, rtol=1e-3)
+
+
+def test_a_curved_law_has_multipliers_too():
+    own = pair(Gap(1.0, 0.05, exponent=1.5), mean=0.1, error=0.005, damping=0.05)
+    slow = np.sqrt(own.stiffness[0, 0])
+    point = follow(own, 0.6 * slow, 0.5 * slow).points[0]
+    left = np.exp(-own.losses[0, 0] * 2 * np.pi / point.omega)
+    # the product is what damping leaves (Liouville), whatever the law: within the midpoint rule
+    assert abs(np.prod(multipliers(point))) == pytest.approx(left, rel=1e-3)

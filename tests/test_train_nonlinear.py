@@ -1,0 +1,195 @@
+"""A train whose teeth have backlash, held against its linear answer and against motion in time."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.errors import SceneError
+from solidgear.nonlinear.balance import Balance
+from solidgear.nonlinear.model import remainder
+from solidgear.nonlinear.motion import sweep
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.nonlinear import (
+    backlash_model,
+    in_time,
+    over_force,
+    parting,
+    teeth_of,
+    with_backlash,
+)
+from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.respond import Drive
+
+OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
+BEAMS = "timoshenko", "timoshenko"
+SOLIDS = "harmonic", "harmonic"
+
+
+@pytest.fixture(scope="module")
+def shop():
+    train = sg.load_train(OVERHUNG)
+    mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
+    return Workshop(train.with_changes(mesh=mesh))
+
+
+@pytest.fixture(scope="module")
+def teeth(shop):
+    return teeth_of(shop, 5000.0)
+
+
+@pytest.fixture(scope="module")
+def solids(shop, teeth):
+    return with_backlash(shop, *SOLIDS, teeth, 1100.0, 300.0)
+
+
+def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
+    first, second = solids.lost
+    assert first.low == pytest.approx(572.0, abs=1.0)
+    assert second.high == pytest.approx(961.0, abs=1.0)
+    up, down = solids.jumps
+    assert up.rising and up.frequency_hz == pytest.approx(684.6, abs=0.3)
+    assert not down.rising and down.frequency_hz == pytest.approx(654.9, abs=0.3)
+    at, size = solids.loudest
+    assert size == pytest.approx(7460.0, rel=5e-3)
+    assert at == pytest.approx(720.0, abs=2.0)
+    # a viscous ratio for each mode beside a loss factor: alike at resonance alone
+    assert solids.linear_loudest[1] == pytest.approx(16_060.0, rel=5e-3)
+
+
+def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
+    others = [with_backlash(shop, m, m, teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
+    lumped, beams = BacklashTold(shop.train, (solids, *others), 0.044).sufficiency()
+    assert lumped.enough and lumped.jumps < 0.01 and abs(lumped.force) < 0.015
+    assert not beams.enough and beams.force == pytest.approx(0.30, abs=0.01)
+
+
+def test_the_upper_motion_loses_its_stability_before_it_turns(solids):
+    ((kind, where),) = solids.wandering
+    assert kind == "a second frequency"
+    assert where.low == pytest.approx(654.9, abs=0.3) and 656.5 < where.high < 658.5
+
+
+def test_in_time_the_speed_rises_over_the_jump_that_the_branch_foretells(solids):
+    hz = np.array([684.4, 685.0])
+    begin = solids.branch.at(2 * np.pi * hz[0])[0]
+    below, above = sweep(solids.remainder, 2 * np.pi * hz, state=begin.state(), steady=1e-4)
+    force = np.ptp(begin.forces()) / 2
+    # asked: a thousandth; both solve the same law, and what is left of transients is a tenth of it
+    assert np.ptp(below.force) / 2 == pytest.approx(force, rel=1e-3)
+    assert np.ptp(above.force) / 2 > 1.2 * force
+
+
+def test_no_motion_jumps_at_a_torque_above_the_linear_peak(solids):
+    low, high = over_force(solids, 2)
+    assert high.mean_force == pytest.approx(solids.linear_loudest[1]) and not high.jumps_hz
+    # at half of the linear peak teeth part, and where they do is where sweeps jump
+    (up, _), (down, _) = low.jumps_hz
+    assert [rising for _, rising in low.jumps_hz] == [True, False] and down < up
+    assert low.largest > low.mean_force
+
+
+@pytest.mark.long
+def test_sweeps_in_time_agree_with_the_branch(solids):
+    assert max(abs(one.off) for one in in_time(solids, 4)) < 1e-3
+
+
+@pytest.mark.parametrize("highest", [np.inf, 4000.0])
+def test_without_backlash_the_answer_is_the_linear_one(shop, teeth, highest):
+    drive = Drive(shop, *BEAMS, "viscous", 800.0)
+    system = parting(drive.system, replace(teeth, half_gap=0.0))
+    own = remainder(
+        system,
+        loss=shop.losses(),
+        kind="viscous",
+        matched_hz=800.0,
+        errors={"mesh": teeth.errors},
+        highest_hz=highest,
+    )
+    hz = np.array([300.0, 700.0, 812.0, 1500.0])
+    dte = drive.motion(hz, drive.row[None])[:, 0]
+    expected = np.abs(dte - drive.amplitude(hz))
+    balance = Balance(own, 3)
+    found = [balance.solve(balance.linear(w), w) for w in 2 * np.pi * hz]
+    size = [abs(complex(m[1], -m[4])) for m in found]
+    # modes above 4 kHz as flexibility: what their inertia and losses do at 1.5 kHz
+    np.testing.assert_allclose(size, expected, rtol=1e-8 if highest == np.inf else 2e-2)
+
+
+def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
+    arguments = ["nonlinear", str(OVERHUNG), "--pinion", "timoshenko", "--gear", "timoshenko"]
+    arguments += ["--backlash", "100 um", "--mean-force", "5 kN", "--error", "10 um"]
+    arguments += ["--against", "lumped/timoshenko+lumped/timoshenko", "--max-frequency", "700"]
+    arguments += ["--min-frequency", "450", "--out", str(tmp_path / "out")]
+    code, out, _ = run(*arguments)
+    assert code == 0 and "Jumps" not in out.splitlines()[0]
+    assert "The motion jumps at 615.7 Hz (2639 rpm) as the speed rises" in out
+    told = json.loads((tmp_path / "out" / "nonlinear.json").read_text())
+    assert told["teeth"]["half_gap"] == 50e-6
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {
+        f"nonlinear.{kind}" for kind in ("html", "csv", "json", "png", "svg")
+    }
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--backlash", "-1 um", "--mean-force", "5 kN"], "must not be negative"),
+        (["--backlash", "100 um"], "no mean force is given"),
+        (["--mean-force", "5 kN"], "no backlash is given"),
+        (["--backlash", "100 um", "--mean-force", "5 kN", "--min-frequency", "-3"], "above 0"),
+        (["--backlash", "1e-4 m", "--mean-force", "-5 kN"], "holds no teeth"),
+    ],
+)
+def test_teeth_that_cannot_be_are_refused(run, more, says):
+    code, out, err = run("nonlinear", OVERHUNG, "--pinion", "euler", "--gear", "euler", *more)
+    assert code == 1 and out == "" and says in err
+
+
+PITCH = 2 * np.pi / 14
+
+
+def cycle(shop, depth=0.1, **changes):
+    """The train with a stiffness that is largest at both ends of a tooth pitch of the pinion."""
+    at = np.linspace(0.0, PITCH, 41)
+    table = {"angle": at, "stiffness": 2.5e8 * (1 + depth * np.cos(14 * at))} | changes
+    table = {key: np.asarray(values).tolist() for key, values in table.items()}
+    mesh = shop.train.mesh.with_changes(stiffness_cycle=table)
+    return shop.with_train(shop.train.with_changes(mesh=mesh))
+
+
+def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(shop, teeth):
+    varied = cycle(shop, 1e-3)
+    found = teeth_of(varied, 5000.0)
+    assert found.cycle[0] == pytest.approx((1e-3, 0.0), rel=5e-3, abs=1e-12)
+    # a small share c of k under the force F acts as a transmission error c F / k
+    system = parting(varied.system(*BEAMS), found)
+    own = backlash_model(varied, *BEAMS, replace(found, errors=(0.0,)), 4000.0)
+    other = backlash_model(shop, *BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
+    assert system.links["mesh"].stiffness == 2.5e8
+    for hz in (400.0, 1000.0):
+        w = 2 * np.pi * hz
+        first, second = Balance(own, 3), Balance(other, 3)
+        swing = [
+            np.ptp(own.forces(*b.stretch(b.solve(b.start(w), w), w), b.factor).value)
+            for b in (first, second)
+        ]
+        assert swing[0] == pytest.approx(swing[1], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"stiffness": 2.5e8 * np.linspace(1.0, 1.1, 41)}, "is not periodic"),
+        ({"stiffness": -2.5e8 * np.ones(41)}, "greater than zero"),
+        ({"angle": np.linspace(0.0, 2 * np.pi / 15, 41)}, "one of its 14 teeth takes"),
+        ({"angle": np.linspace(PITCH, 0.0, 41)}, "angles must ascend"),
+        ({"stiffness": [2.5e8, 2.5e8]}, "2 stiffnesses for 41 angles"),
+    ],
+)
+def test_a_stiffness_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
+    with pytest.raises(SceneError, match=says):
+        cycle(shop, **changes)
