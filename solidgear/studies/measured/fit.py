@@ -122,20 +122,27 @@ class Fit:
 
     def exchanges(self) -> list[np.ndarray]:
         """Changes of the logarithms of entries by which two modes of a family change places, as two
-        bearings do that are nearly alike; those that fit best first.
+        bearings do that are nearly alike, or one takes a resonance that was left out; those that fit
+        best first.
         """
-        out = []
-        logs = np.log(self.frequencies)
+        logs = [math.log(one.frequency) for one in self.measured.modes]
         family = [self.computed.modes[j].name.family for _, j in self.pairs]
-        for a, b in combinations(range(len(logs)), 2):
-            if family[a] != family[b]:
-                continue
+        mine = [logs[i] for i, _ in self.pairs]
+        left_out = set(range(len(logs))) - {i for i, _ in self.pairs}
+        moves = [
+            {a: mine[b] - mine[a], b: mine[a] - mine[b]}
+            for a, b in combinations(range(len(mine)), 2)
+            if family[a] == family[b]
+        ] + [{a: logs[k] - mine[a]} for a in range(len(mine)) for k in left_out]
+        out = []
+        for move in moves:
             aim = self.residual.copy()
-            aim[[a, b]] += [logs[b] - logs[a], logs[a] - logs[b]]
+            for k, by in move.items():
+                aim[k] += by
             change = self.step(aim)
             left = aim - self.rows @ change
-            far = EXCHANGED * abs(logs[b] - logs[a])
-            if max(abs(left[[a, b]])) < far and SAME < self.apart(change):
+            done = all(abs(left[k]) < EXCHANGED * abs(by) for k, by in move.items())
+            if done and SAME < self.apart(change):
                 out.append((float(np.sum((left * self.weight) ** 2)), change))
         return [change for _, change in sorted(out, key=lambda one: one[0])][:STARTS]
 
