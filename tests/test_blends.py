@@ -190,7 +190,7 @@ def test_hexahedra_have_it_within_the_gate_and_are_counted():
 
 def test_tetrahedra_fold_nowhere_and_have_it_within_the_gate():
     scene = everywhere()
-    body = sg.build(scene, "solid", element="tet10", refinement=0.45)
+    body = sg.build(scene, "solid", element="tet10", refinement=0.35)
     assert inertias(body) == pytest.approx(exact(scene), rel=2e-3)  # eight elements around
 
 

@@ -24,7 +24,7 @@ LIGHT = {
     "euler": {},
     "timoshenko": {},
     "harmonic": {"order": 3, "layers": 1},
-    "solid": {"layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8},
+    "solid": {"layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8, "relative_size": 3.0},
 }
 STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
 
