@@ -21,6 +21,16 @@ pin()
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+# Five thousand tests are half a million objects that stay: what looks for garbage passes them over.
+gc.disable()
+
+
+def pytest_collection_finish():
+    gc.collect()
+    gc.freeze()
+    gc.enable()
+
+
 def pytest_collection_modifyitems(items):
     """A test is `long` or `slow`: otherwise `-m long`, which CI runs, would run slow ones as well."""
     for item in items:

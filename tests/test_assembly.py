@@ -341,7 +341,7 @@ def harmonic_by_skfem(scene, body, order, n):
 )
 def test_harmonic_blocks_match_skfem(order, bore):
     scene = stepped(bore)
-    further = (2, 3) if order < 6 else ()  # scikit-fem's own vector forms take seconds at order 6
+    further = (2, 3) if order < 4 else ()  # scikit-fem's own vector forms take seconds from order 4
     body = sg.build(
         scene, "harmonic", order=order, layers=1 if order < 4 else 0, size=0.05, ovalising=further
     )

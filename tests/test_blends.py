@@ -159,10 +159,11 @@ def test_bars_beside_a_chamfer_hold_against_the_same_outline_as_a_cone():
     scene, cones = chamfer_and_cone()
     asked = ["C_zz", "C_thx"]
     found = sg.answer(scene, tol=1e-3, ask=asked)
-    truth = sg.answer(cones, tol=1e-5, ask=asked)
+    fine = sg.build(cones, "harmonic", order=6, layers=4, edge_layers=3, relative_size=4.0)
+    c = sg.condense(fine, cones, "port").compliance
     assert found.reached
-    for one in found.values:
-        assert abs(one.value / truth[one.quantity] - 1) <= one.bar < 1e-3
+    for one, truth in zip(found.values, (c[2, 2], c[3, 3])):
+        assert abs(one.value / truth - 1) <= one.bar < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -189,7 +190,7 @@ def test_hexahedra_have_it_within_the_gate_and_are_counted():
 
 def test_tetrahedra_fold_nowhere_and_have_it_within_the_gate():
     scene = everywhere()
-    body = sg.build(scene, "solid", element="tet10", refinement=0.45)
+    body = sg.build(scene, "solid", element="tet10", refinement=0.35)
     assert inertias(body) == pytest.approx(exact(scene), rel=2e-3)  # eight elements around
 
 
@@ -217,8 +218,8 @@ def test_first_bending_falls_exponentially_with_the_order(radius, least):
 
 @pytest.mark.long
 def test_a_sharp_shoulder_does_not():
-    f = [first_bending(stepped(), order=p, layers=0, edge_layers=0) for p in (4, 5, 6)]
-    reference = first_bending(stepped(), order=6, layers=6, edge_layers=0)
+    f = [first_bending(stepped(), order=p, layers=0, edge_layers=0) for p in (3, 4, 5)]
+    reference = first_bending(stepped(), order=5, layers=5, edge_layers=0)
     errors = np.array(f) / reference - 1
     assert np.all(errors[:-1] < 2.5 * errors[1:])
 

@@ -99,7 +99,7 @@ def test_spectral_elements_twist_a_bar_exactly():
 
 
 @pytest.mark.parametrize(
-    "tie", ["average", "rigid", pytest.param("section", marks=pytest.mark.long)]
+    "tie", ["average", "rigid", pytest.param("section", marks=pytest.mark.slow)]
 )
 def test_spectral_elements_agree_with_the_product(tie):
     scene = stepped(tie, bore=0.01)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import re
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -31,7 +30,6 @@ from solidgear.report.race_rows import (
 )
 from solidgear.report.race_tables import front_rows, section
 from tests.charted import texts_of, words_of
-from tests.made_up_run import fixture_results
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
@@ -277,15 +275,6 @@ def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, t
     other = {"scene": raced.scene | {"name": "another"}, "models": {}}
     assert SPEED not in render_page(other, tmp_path)
     assert SPEED not in render_page(results)
-
-
-@pytest.mark.long
-def test_section_numbers_in_the_report_are_those_of_its_contents(raced):
-    # a record as the command leaves one, so that the part for the customer and the appendix have sections
-    page = render_page(fixture_results())
-    contents = re.findall(r'<a href="#(\w+)">(A?\d+)', page)
-    headings = re.findall(r'<h2 id="(\w+)">(A?\d+)', page)
-    assert contents == headings and len(contents) > 10
 
 
 # ------------------------------------------------------------------------------------------------- command

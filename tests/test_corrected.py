@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_features import KEY, shaft
 
 import solidgear as sg
 from solidgear.models import corrected as module
@@ -63,12 +64,14 @@ def test_the_effect_of_a_keyway(scene, plain, body):
 
 
 @pytest.mark.long
-def test_check_judges_it_where_there_are_features(scene, plain, body):
+def test_check_judges_it_where_there_are_features():
     """Models made for features are judged with them, and not named without them."""
     from solidgear.studies.check import check_scene
 
-    keyed = check_scene(scene, body)["verdicts"]
-    bare = check_scene(scene.plain, plain)["verdicts"]
+    # on the surface, as beams and solids alike see it
+    scene = shaft(KEY).with_port(y=0.0475)
+    body = sg.build(scene.plain, "timoshenko")
+    keyed, bare = (check_scene(s, body)["verdicts"] for s in (scene, scene.plain))
     assert keyed["corrected"]["verdict"] == keyed["solid"]["verdict"] == "holds"
     assert keyed["harmonic"]["verdict"] == "will not hold"
     assert "corrected" not in bare
@@ -253,18 +256,18 @@ def test_a_part_without_a_mirror_plane():
     """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
     from solidgear.scene import CrossHole, Flat
 
-    rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
+    rod = sg.Segment.cylinder("rod", length=0.13, diameter=0.06)
     firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9}
     scene = sg.Scene.from_parts(
         [rod],
         bearings=[
-            sg.Bearing(name=n, y=y, seat_width=0.03, stiffness=firm)
-            for n, y in (("a", 0.02), ("b", 0.18))
+            sg.Bearing(name=n, y=y, seat_width=0.02, stiffness=firm)
+            for n, y in (("a", 0.01), ("b", 0.12))
         ],
-        port=sg.Port(name="gear", y=0.1, lo=0.09, hi=0.11),
+        port=sg.Port(name="gear", y=0.065, lo=0.055, hi=0.075),
         features=[
-            Flat(name="flat", segment="rod", y=0.04, length=0.03, depth=0.008, angle="50 deg"),
-            CrossHole(name="hole", segment="rod", y=0.14, diameter=0.014, inclination="20 deg"),
+            Flat(name="flat", segment="rod", y=0.023, length=0.03, depth=0.008, angle="50 deg"),
+            CrossHole(name="hole", segment="rod", y=0.092, diameter=0.014, inclination="15 deg"),
         ],
     )
     own = sg.build(scene, "corrected", order=3, layers=1, edge_layers=1, refinement=0.3, modes=8)

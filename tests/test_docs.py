@@ -42,6 +42,7 @@ LONG = {
     "guide/tolerance.md",
     "guide/trains.md",
     "guide/real_parts.md",
+    "guide/large.md",
     "guide/stiffness.md",
     "guide/sweeps.md",
 }
@@ -90,7 +91,7 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/compare.md", "guide/large.md", "guide/points.md"}
+SECONDS = {"guide/compare.md", "guide/points.md"}
 
 
 @pytest.mark.parametrize(

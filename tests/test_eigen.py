@@ -27,7 +27,7 @@ def scene():
 
 @pytest.fixture(scope="module")
 def solid(scene):
-    return sg.build(scene, "solid", refinement=0.4)
+    return sg.build(scene, "solid", refinement=0.3)
 
 
 @pytest.fixture(scope="module")

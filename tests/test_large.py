@@ -22,7 +22,7 @@ SCENES = {
     for name in ("pinion_overhung", "pinion_keyed", "pinion_toothed", "shaft_step")
 }
 PARDISO = pytest.mark.skipif(bool(missing("pardiso")), reason=missing("pardiso") or "-")
-SMALL = {"element": "hex20", "refinement": 0.45}
+SMALL = {"element": "hex20", "refinement": 0.3}
 
 
 @pytest.fixture(autouse=True)
@@ -77,8 +77,7 @@ def test_equal_to_a_double_factor_in_memory(usual, options, backend, monkeypatch
 
 def test_a_border_of_rigid_seats_is_refined_as_well(usual):
     scene = SCENES["pinion_overhung"].with_attachment("rigid")
-    small = {**SMALL, "refinement": 0.25}
-    double, one = (solved(scene, **small, **more) for more in ({}, {"precision": "single"}))
+    double, one = (solved(scene, **SMALL, **more) for more in ({}, {"precision": "single"}))
     assert one[0].blocks[0].border == 18
     # twice the rounding of the other: once on either side of the border
     assert one[2].frequency_hz == pytest.approx(double[2].frequency_hz, rel=1e-11)
@@ -129,17 +128,29 @@ def test_files_of_a_factor_go_with_it():
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
     def sizes(scene):
-        body = sg.build(scene, "solid", refinement=0.85)
-        asked = ({}, {"precision": "single"}, {"out_of_core": True})
-        return [needed_mb(body, Factoring(**more)) for more in asked]
+        body = sg.build(scene, "solid", refinement=0.6)
+        return [needed_mb(body, Factoring(**more)) for more in ({}, {"precision": "single"})]
 
     whole = sizes(SCENES["pinion_overhung"].with_attachment("rigid"))
-    # of half the digits numbers take half, and the work by the entry nearly all; in files that alone
-    assert whole[0] > 1.3 * whole[1] and whole[1] > 1.2 * whole[2]
+    # of half the digits numbers take half, and the work by the entry nearly all
+    assert whole[0] > 1.3 * whole[1]
     # without rigid seats a double factor is made in pieces, of a quarter of the fill: less than a whole
     # one of half the digits
-    double, single, _ = sizes(SCENES["pinion_overhung"])
+    double, single = sizes(SCENES["pinion_overhung"])
     assert single > 1.2 * double
+
+
+@PARDISO
+@pytest.mark.long
+def test_in_files_a_large_factor_takes_less_than_with_half_the_digits():
+    scene = SCENES["pinion_overhung"].with_attachment("rigid")
+    body = sg.build(scene, "solid", refinement=0.85)
+    half, files = (
+        needed_mb(body, Factoring(**more))
+        for more in ({"precision": "single"}, {"out_of_core": True})
+    )
+    # the work by the entry alone is left in memory
+    assert half > 1.2 * files
 
 
 # ------------------------------------------------------------------------------------------------- refusals
@@ -195,8 +206,8 @@ OFFERED = (
         ["--set half=true", "-f corrected", "--set refinement=", *SMALLER],
         (),
     ),
-    ("pinion_toothed", {"refinement": 0.5}, ["-f sector", "--set refinement=", *SMALLER], ()),
-    ("shaft_step", {"refinement": 0.6}, ["--set refinement=", *SMALLER], ["-f "]),
+    ("pinion_toothed", {"refinement": 0.35}, ["-f sector", "--set refinement=", *SMALLER], ()),
+    ("shaft_step", {"refinement": 0.45}, ["--set refinement=", *SMALLER], ["-f "]),
 )
 
 
@@ -214,7 +225,7 @@ def test_a_refusal_offers_what_fits(scene, options, wanted, no, monkeypatch):
 
 @PARDISO
 def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
-    given = {"element": "tet10", "refinement": 0.9}
+    given = {"element": "tet10", "refinement": 0.6}
     message, free = refused("pinion_overhung", monkeypatch, 0.7, **given)
     room = free + of_body(sg.build(SCENES["pinion_overhung"], "solid", **given)).matrices_mb
     refinement = float(message.split("--set refinement=")[1].split()[0])

@@ -81,7 +81,7 @@ def test_against_dense_eigenvalues(name, fidelity):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param("pinion_overhung", marks=pytest.mark.long), "shaft_hollow"]
+    "name", [pytest.param("pinion_overhung", marks=pytest.mark.slow), "shaft_hollow"]
 )
 def test_small_and_large_solvers_agree(name):
     # below 400 unknowns a block is solved densely, above by Lanczos

@@ -207,7 +207,7 @@ def written(body, path, digits=9):
     [
         ("msh", 9),
         pytest.param("inp", 9, marks=pytest.mark.slow),
-        pytest.param("vtu", 9, marks=pytest.mark.long),
+        pytest.param("vtu", 9, marks=pytest.mark.slow),
         pytest.param("bdf", 8, marks=pytest.mark.long),
     ],
 )

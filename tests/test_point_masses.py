@@ -24,7 +24,7 @@ LIGHT = {
     "euler": {},
     "timoshenko": {},
     "harmonic": {"order": 3, "layers": 1},
-    "solid": {"layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8},
+    "solid": {"layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8, "relative_size": 3.0},
 }
 STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
 
@@ -174,7 +174,7 @@ def test_a_heavy_tip_mass_by_closed_form():
     assert found.named("bending 1").frequency_hz == pytest.approx(exact, rel=1e-5)
 
 
-@pytest.mark.parametrize("length", [0.2, pytest.param(2.0, marks=pytest.mark.long)])
+@pytest.mark.parametrize("length", [0.2, pytest.param(2.0, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_modes_rest_where_a_shaft_is_clamped(length):
     """A seat that slips by 1e-10 of the motion counts with 1e22 N/m: residuals of 1e-3 to 1e-1, and

@@ -268,7 +268,7 @@ def test_models_are_judged_at_every_point():
     scene = Scene.from_parts(parts, bearings=ends, port=gear, further_ports=(disc,))
     solutions = {
         "timoshenko": study(scene, "timoshenko", evidence=False),
-        "harmonic": study(scene, "harmonic", {"order": 4, "layers": 1}, evidence=False),
+        "harmonic": study(scene, "harmonic", {"order": 3, "layers": 1}, evidence=False),
     }
     record = recorded(scene, solutions, {}, [], {}, [], True)
     assert "C_thx@disc" in record.verdict.judged and record.verdict.trust == "harmonic"

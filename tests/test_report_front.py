@@ -203,13 +203,13 @@ def test_without_trust_page_one_says_so():
 
 
 # ------------------------------------------------------------------------------------------------- sections
-def test_no_section_is_empty_and_the_contents_name_all_that_are_there():
-    page = render_page(fixture_results())
-    there = re.findall(r'<h2 id="([^"]+)">', page)
+def test_no_section_is_empty_and_the_contents_name_and_number_all_that_are_there(made_up_charts):
+    page = render_page(fixture_results(), drawn=made_up_charts)
+    there, numbers = zip(*re.findall(r'<h2 id="([^"]+)">(A?\d+)', page))
     # one point, no open input, no pictures, no chart of speed, and no synthesis asked for
     empty = ("points", "open", "shapes", "between", "renders", "speed", "lumped")
-    assert there == [anchor for anchor in (*CUSTOMER, *APPENDIX) if anchor not in empty]
-    assert re.findall(r'<a href="#([^"]+)">', page) == there
+    assert list(there) == [anchor for anchor in (*CUSTOMER, *APPENDIX) if anchor not in empty]
+    assert re.findall(r'<a href="#([^"]+)">(A?\d+)', page) == [*zip(there, numbers)]
     assert "not available" not in page
     assert render_page({}).count("<h2") == 0
 

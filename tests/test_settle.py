@@ -174,14 +174,14 @@ def test_the_highest_mode_of_a_family_has_no_bar(scene):
 # --------------------------------------------------------------------------- not reached
 @pytest.mark.parametrize("command", ["stiffness", "modes"])
 def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes, command):
-    code, out, err = run(command, SCENE, "--tol", "1e-8", "--json")
+    code, out, err = run(command, SCENE, "--tol", "1e-6", "--json")
     found = json.loads(out)
     assert code == 3 and err == "" and found["reached"] is False
-    assert found[command] and max(found["bars"].values()) > 1e-8
+    assert found[command] and max(found["bars"].values()) > 1e-6
 
 
 def test_what_is_not_reached_is_said(run, two_meshes):
-    code, out, _ = run("stiffness", SCENE, "--tol", "1e-8")
+    code, out, _ = run("stiffness", SCENE, "--tol", "1e-6")
     assert code == 3 and "Not reached: " in out and "2 meshes did not do" in out
     assert "K_thx" in out and "compliance, engineering units" in out
 

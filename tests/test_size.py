@@ -91,7 +91,7 @@ def test_the_law_is_near_the_analysis(scene, options):
 
 
 # ------------------------------------------------------------------------------------------------- refusals
-@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.7})])
+@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.5})])
 def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, options):
     scene = SCENES["pinion_overhung"]
     body = sg.build(scene, model, **options)
@@ -119,7 +119,7 @@ def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, opt
 
 def test_all_factors_of_a_body_are_refused_together(monkeypatch):
     """Each half of a keyed part would fit by itself."""
-    body = sg.build(SCENES["pinion_keyed"], "solid", refinement=0.5)
+    body = sg.build(SCENES["pinion_keyed"], "solid", refinement=0.35)
     need = needed_mb(body, body.factoring)
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", str(0.8 * need))
     with pytest.raises(NoRoom):

@@ -166,7 +166,8 @@ def test_check_is_never_the_opposite_of_compare(name, compared, checked):
     "name",
     [
         "input_shaft",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("motor_rotor", "hypoid_pinion")),
+        pytest.param("hypoid_pinion", marks=pytest.mark.long),
+        pytest.param("motor_rotor", marks=pytest.mark.slow),
     ],
 )
 def test_an_ordinary_shaft_needs_no_large_mesh(name):

@@ -339,6 +339,11 @@ def test_misalignment_of_parallel_shafts_is_that_of_both(helical):
     assert told["in plane"] == pytest.approx(slope @ normal / np.linalg.norm(normal), rel=1e-9)
 
 
+@pytest.fixture(scope="module")
+def bevel():
+    return Workshop(sg.load_train(GEOMETRY / "axle_overhung.toml"))
+
+
 @pytest.mark.parametrize(
     "motion, told",
     [
@@ -348,18 +353,13 @@ def test_misalignment_of_parallel_shafts_is_that_of_both(helical):
         ([0, 0, 0, 0, 0, 1], {"shaft angle": -1.0}),
     ],
 )
-def test_misalignment_of_bevel_gears_by_rigid_motions(motion, told):
+def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
     """Motions about the crossing point of the axes, x_p = -y_g, of the overhung pair."""
-    train = sg.load_train(GEOMETRY / "axle_overhung.toml")
-    shop = Workshop(train)
-    system = shop.system("rigid", "rigid")
-    found = {m.name: m.row for m in misalignment(shop, system)}
+    system = bevel.system("rigid", "rigid")
+    found = {m.name: m.row for m in misalignment(bevel, system)}
     port = system.port("pinion.pinion")
-    crossing = (
-        -shop.contact.origin + port.point
-    )  # apex to apex: middles of faces, back from the gear
-    # the pinion's own axis passes the crossing at x = z = 0
-    crossing = np.array([0.0, _apex(shop), 0.0])
+    # the pinion's own axis passes the crossing at x = z = 0, beneath the gear's lumped point
+    crossing = np.array([0.0, system.port("gear.gear").point[1], 0.0])
     arm = port.point - crossing
     u, t = np.array(motion[:3], float), np.array(motion[3:], float)
     at_port = np.r_[u + np.cross(t, arm), t]
@@ -371,18 +371,12 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(motion, told):
         assert row @ coordinates == pytest.approx(expected[name], abs=1e-9), name
 
 
-def _apex(shop):
-    """Place along the pinion's shaft where both axes cross: beneath the gear's lumped point."""
-    system = shop.system("rigid", "rigid")
-    return float(system.port("gear.gear").point[1])
-
-
 # ----------------------------------------------------------------------- bars and verdict
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
     coarse = Workshop(helical, settings={"harmonic": {"order": 2}})
-    here = deflection(coarse, point, "harmonic", "harmonic")
-    there = deflection(Workshop(helical), point, "harmonic", "harmonic")
+    finer = Workshop(helical, settings={"harmonic": {"order": 3}})
+    here, there = (deflection(w, point, "harmonic", "harmonic") for w in (coarse, finer))
     pairs = [*zip(here.misalignment, there.misalignment)]
     pairs += zip(here.displacement["pinion"][:4], there.displacement["pinion"][:4])
     for mine, fine in pairs:
@@ -391,10 +385,9 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
 
 
 def test_verdict_names_the_cheapest_model_that_holds(helical):
-    shop, point = Workshop(helical), OperatingPoint(torque=100.0)
-    loose = Workshop(helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5)))
-    loose._made.update(shop._made)
-    found = deflect_train(loose, point)
+    loose = helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5))
+    shop = Workshop(loose, settings={"harmonic": {"order": 2}})
+    found = deflect_train(shop, OperatingPoint(torque=100.0))
     standing = {one.model: one.verdict for one in found.standings}
     assert standing["timoshenko"] == "within" and found.cheapest is not None
     assert found.cheapest.model in found.verdict()
