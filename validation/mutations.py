@@ -770,6 +770,31 @@ MUTATIONS = (
         "tests/test_train_operation.py::test_deflection_of_a_stepped_shaft_is_that_of_castigliano",
     ),
     Mutation(
+        "harmonic balance: what lies between two instants at a kink has the wrong sign",
+        "solidgear/nonlinear/balance.py",
+        "Balance._parts",
+        "jump / 4",
+        "-jump / 4",
+        "tests/test_nonlinear_pair.py::test_three_motions_live_at_one_speed",
+    ),
+    Mutation(
+        "motion in time: a tooth that touches pushes back a little less",
+        "solidgear/nonlinear/pieces.py",
+        "Pieces._piece",
+        "push[:, 2 * r] -= f",
+        "push[:, 2 * r] -= 0.98 * f",
+        "tests/test_nonlinear_pair.py"
+        "::test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns",
+    ),
+    Mutation(
+        "Floquet: where damping sets in, small motions leap the other way",
+        "solidgear/nonlinear/stability.py",
+        "_saltation",
+        "-own.seen.T @ jump @ rate",
+        "own.seen.T @ jump @ rate",
+        "tests/test_nonlinear_pair.py::test_multipliers_are_how_a_disturbed_motion_fades",
+    ),
+    Mutation(
         "misalignment: the gear's own tilt is left out",
         "solidgear/studies/train/misalignment.py",
         "_parallel",
