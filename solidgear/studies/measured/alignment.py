@@ -206,6 +206,8 @@ class _Lattice:
         self.like = [[self._like(one, mode) for mode in computed] for one in measured]
         shaped = np.zeros((n, m)) if seen is None else seen.log_likelihoods(computed, scatter)
         self.shaped = shaped.tolist()
+        #: that a sum of two shapes is within noise of one alone: of its angle
+        self.chance = 0.0 if seen is None else math.log(2 * seen.noise / math.pi)
         self.steps = {at: self._steps(*at) for at in product(range(n + 1), range(m + 1))}
         self.forward = np.full((n + 1, m + 1), -np.inf).tolist()
         self.backward = np.full((n + 1, m + 1), -np.inf).tolist()
@@ -253,8 +255,9 @@ class _Lattice:
             log = like[i][j] + like[i + 1][j] + shaped[i][j] + shaped[i + 1][j] + math.log(SPLIT)
             out.append((2, 1, log, ((i, j), (i + 1, j))))
         if j + 1 < m:
-            # the one shape that was measured there is one of both, or lies between them
+            # a shape of both at once is within noise of one alone by chance
             one = max(shaped[i][j], shaped[i][j + 1])
+            one += self.chance if one > 0 else 0.0
             log = like[i][j] + like[i][j + 1] + one + math.log(MERGED)
             out.append((1, 2, log, ((i, j), (i, j + 1))))
         if i + 1 < n and j + 1 < m:
