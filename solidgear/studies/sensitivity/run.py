@@ -243,7 +243,7 @@ def sensitivities(
         path = label_of(keys, tables)
         try:
             sides = around(scene, tables, keys, where)
-            fine, *rest = [d.by(sides.low, sides.high, sides.step) for d in found]
+            fine, *rest = [d.by(sides.low, sides.high, sides.step).tolist() for d in found]
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
