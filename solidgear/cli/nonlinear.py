@@ -71,7 +71,7 @@ def nonlinear(
 ) -> None:
     """Teeth with backlash: where they part, jumps over speed, and how far off the linear answer is."""
     from solidgear.report.folder import held
-    from solidgear.report.nonlinear_files import mixes, over_force, write_nonlinear
+    from solidgear.report.nonlinear_files import lead, mixes, over_force, write_nonlinear
     from solidgear.report.units import units_named
     from solidgear.studies.train import nonlinear as study
     from solidgear.studies.train.comparison import described
@@ -106,7 +106,7 @@ def nonlinear(
         print(json.dumps(told.as_dict() | {"cautions": cautions}, allow_nan=False))
         return
     shown = units_named(run.units)
-    say(f"{title}; {found[0].label}", *told.sentences(), *map(caution, cautions))
+    say(f"{title}.", lead(told, shown), *told.sentences(), *map(caution, cautions))
     say(mixes(told, shown), soft_wrap=False)
     say(*unpublished_lines(shop.train.unpublished()))
     if mapped:

@@ -18,6 +18,18 @@ from solidgear.report.units import ENGINEERING, Units, plain, units_named
 from solidgear.report.words import DASH, hertz
 
 
+def lead(found: Any, shown: Units) -> str:
+    """What the teeth are given as, and the models that answer, in a sentence."""
+    teeth = found.teeth
+    gap = shown.text(2 * teeth.half_gap, "m moved", 4)
+    error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)
+    force = shown.text(teeth.mean_force, "N", 4)
+    return (
+        f"Backlash {gap}, mean mesh force {force} ({teeth.source}), transmission error {error}; "
+        f"{found.judge.label}."
+    )
+
+
 def write_nonlinear(
     folder: Path,
     found: Any,
@@ -37,18 +49,11 @@ def write_nonlinear(
         Of chart and page; all else is SI.
     """
     shown = units_named(units)
-    teeth = found.teeth
-    gap = shown.text(2 * teeth.half_gap, "m moved", 4)
-    error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)
-    lead = (
-        f"Backlash {gap}, mean mesh force {shown.text(teeth.mean_force, 'N', 4)} ({teeth.source}), "
-        f"transmission error {error}; {found.judge.label}."
-    )
     return write_files(
         folder,
         "nonlinear",
         title,
-        lead,
+        lead(found, shown),
         [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
         lines={"nonlinear": branch(found)},
