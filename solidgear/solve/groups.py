@@ -214,14 +214,23 @@ def further_parts(
             max(2, n // 8),
             first=FURTHER + waves,
         )
+        known = alone.cache.get(_Solved, _Solved)
         while True:
-            part.solved = lowest(part.supported, part.ask, method)
+            # no spring reaches them: what was solved of them stands for all springs
+            key = part.ask, method
+            if key not in known:
+                known[key] = lowest(part.supported, part.ask, method)
+            part.solved = known[key]
             # Two shapes for every value: half of n is all that the list has room for.
             if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
                 break
             part.ask = min(2 * part.ask, n // 2 + 2)
         found.append(part)
     return found, sorted(left, key=lambda u: u.n)
+
+
+class _Solved(dict[tuple[int, str | None], Solved]):
+    """Eigenpairs of a family by how many were asked for, and how."""
 
 
 def _hz(value: float) -> float:

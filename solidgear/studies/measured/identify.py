@@ -144,6 +144,8 @@ class _Study:
         what was computed before.
         """
         highest = self.measured.modes[-1].frequency
+        # springs are brought to the data within a round
+        early = 1 if self.on_springs else EARLY
         self.x = x
         for turn in range(ROUNDS):
             scene = self.scene_at(self.x)
@@ -153,7 +155,7 @@ class _Study:
                 self.progress(f"round {turn + 1}")
                 computed = computed_like(computed, scene)
             # far from the data pairs are doubtful, and the likelier half of them leads there
-            sure = LIKELY if turn < EARLY else SURE
+            sure = LIKELY if turn < early else SURE
             slopes = self.derivatives(computed)
             fit = Fit(self.measured, self.varied, self.x, computed, slopes, sure)
             if turn == 0 and not fit.determined:
@@ -165,7 +167,7 @@ class _Study:
             for end in known:
                 if fit.apart(self.x + step - end.x) < SAME:
                     return end
-            if turn >= EARLY and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
+            if turn >= early and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
                 self.x = self.x + step
                 return End(self.x, fit, step)
             self.x = self.x + (self._nearer(fit) if self.on_springs else _short(step))
@@ -177,6 +179,8 @@ class _Study:
     def exchanged(self, best: End, known: list[End]) -> list[End]:
         """Ends that are known, and those that other pairs than the best one's lead to."""
         for change in best.fit.exchanges():
+            if abs(change).max() > LONGEST * ROUNDS:
+                continue  # further than a search goes
             start = np.clip(best.x + change, self.low, self.high)
             try:
                 end = self.settled(start, best.fit.computed, known)
