@@ -47,13 +47,16 @@ class SurfacePoints:
     """
 
     def __init__(self, body: Body, numbers: Sequence[int], points: np.ndarray):
-        self.body = body
-        self.corners, self.weights = _places(body.surface({}), numbers, points)
+        self.body, self.still = body, body.surface({})
+        self.corners, self.weights = _places(self.still, numbers, points)
 
     def of(self, vector: Mapping[int, np.ndarray]) -> np.ndarray:
         """(p, 3) displacements by unknowns of blocks."""
-        moved = self.body.surface(vector).displacement[self.corners]
-        return np.einsum("pc,pcx->px", self.weights, moved)
+        return self.at(self.body.surface(vector).displacement)
+
+    def at(self, moved: np.ndarray) -> np.ndarray:
+        """(p, 3) displacements by those of all points of the surface."""
+        return np.einsum("pc,pcx->px", self.weights, moved[self.corners])
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,8 @@ class OnPoints:
 
     def __init__(self, measured: Shapes, noise: float, computed: Computed):
         body = computed.body
-        still = body.surface({})
-        corners, weights = _places(still, measured.numbers.tolist(), measured.points)
+        places = SurfacePoints(body, measured.numbers.tolist(), measured.points)
+        still = places.still
         seen = np.any(measured.values != 0, axis=0)
         tried = np.unique(np.linspace(0, len(still.points) - 1, TRIED).astype(int))
         self.tried = still.points[tried]
@@ -104,8 +107,7 @@ class OnPoints:
 
         for mode in computed.modes:
             all_ = [moved(vector) for vector in mode.vectors]
-            on = [np.einsum("pc,pcx->px", weights, u[corners])[seen] for u in all_]
-            self.shapes.append(np.column_stack(on))
+            self.shapes.append(np.column_stack([places.at(u)[seen] for u in all_]))
             self.more.append(np.stack([u[tried] for u in all_], axis=-1))
         spans = [_basis(one) for one in self.shapes]
         rows = measured.values[:, seen]
