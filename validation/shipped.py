@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from solidgear.scene.shaft import resolved
-from solidgear.scene.toml_file import is_train
+from solidgear.scene.toml_file import is_train, parse
 from solidgear.studies.loading import load
 
 GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
@@ -18,12 +18,12 @@ def shipped_shafts() -> list[Path]:
     return [path for path in paths if not is_train(path)]
 
 
-def shafts_of_revolution() -> list[Path]:
-    """Those that a model of revolution holds."""
-    return [path for path in shipped_shafts() if _of_revolution(path)]
+def drawn_shafts() -> list[Path]:
+    """Those of segments: a part from a file is read in a process of its own, which takes seconds."""
+    return [path for path in shipped_shafts() if "body" not in parse(str(path))]
 
 
 @cache
-def _of_revolution(path: Path) -> bool:
-    # a part from a file is read in a process of its own
-    return not resolved(load(path))
+def shafts_of_revolution() -> tuple[Path, ...]:
+    """Those that a model of revolution holds."""
+    return tuple(path for path in drawn_shafts() if not resolved(load(path)))
