@@ -644,7 +644,7 @@ MUTATIONS = (
     Mutation(
         "planetary: teeth of a ring lean like those of a sun",
         "solidgear/system/gear_mesh.py",
-        "spur_mesh",
+        "cylindrical_mesh",
         "leans = -pressure_angle if internal else pressure_angle",
         "leans = pressure_angle",
         "tests/test_planetary.py::test_an_internal_mesh_pushes_the_mate_inwards_and_turns_both_alike",
@@ -652,7 +652,7 @@ MUTATIONS = (
     Mutation(
         "planetary: a planet turns in a ring as on a sun",
         "solidgear/system/gear_mesh.py",
-        "spur_mesh",
+        "cylindrical_mesh",
         "other = mate_radius if internal else -mate_radius",
         "other = -mate_radius",
         "tests/test_planetary.py::test_three_planets_have_the_published_frequencies_to_every_digit",
