@@ -1,6 +1,5 @@
 """A ring that bends: against Love's free ring, in the rigid limit, and in a stage."""
 
-
 import numpy as np
 import pytest
 import scipy.linalg as sla
@@ -154,3 +153,6 @@ def test_what_is_no_elastic_ring_is_told():
         sg.elastic_ring(scene, TEETH, 10e-3, waves=(1, 2))
     with pytest.raises(SolidgearError, match="a face of 50 mm around y = 10 mm is not on"):
         sg.elastic_ring(scene, TEETH, 50e-3, **LIGHT)
+    part = sg.elastic_ring(scene, TEETH, 10e-3, **LIGHT)
+    with pytest.raises(SolidgearError, match="the ring is an elastic body; terms of a turning"):
+        stage(part).turning_terms(10.0)

@@ -1,6 +1,7 @@
 """Planetary stages whose members have six motions: helical teeth, symmetry, and the locked plane."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,15 +9,16 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.frames import cross_matrix
+from solidgear.frames import cross_matrix, rotation, shift
+from solidgear.reduction.superelement import PortMotion
 from solidgear.system.gear_mesh import cylindrical_mesh, line_of_action
 from tests.test_planetary import frequencies, of_kind, published
 
 # eigenvalues of 36 to 54 coordinates, whose stiffness spans four decades
 ROUNDING = 1e-9
-TEETH = sg.PlanetaryTeeth(17, 34, 85, module=2.5e-3)
-PRESSURE, HELIX, FACE = TEETH.pressure_angle, np.radians(16.0), 25e-3
-BASE_HELIX = np.arctan(np.tan(HELIX) * np.cos(PRESSURE))
+PRESSURE, HELIX, FACE = np.radians(20.0), np.radians(16.0), 25e-3
+TEETH = sg.PlanetaryTeeth(17, 34, 85, 2.5e-3, pressure_angle=PRESSURE, helix=HELIX)
+BASE_HELIX = TEETH.base_helix
 SUN_MESH, RING_MESH = 2e8, 3e8
 #: mass, about the axis, about a diameter: kg, kg m^2
 INERTIA = {
@@ -181,6 +183,25 @@ def test_a_planet_between_helical_meshes_is_tilted_but_not_pushed_along_its_axis
     )
 
 
+def test_parts_of_ones_own_make_the_same_stage():
+    """Bodies with a port at every planet, anywhere and in axes of its own."""
+    own = stage(3)
+    parts = {}
+    for name in ("sun", "ring", "carrier"):
+        member = getattr(own, name)
+        ports = {"centre": PortMotion(np.eye(6), np.zeros(3), np.eye(3))}
+        for k in (1, 2, 3):
+            axes, place = rotation(k - 1, 0.4 * k)[:3, :3], np.array([0.03 * k, 0.01, -0.02])
+            rows = np.kron(np.eye(2), axes.T) @ shift(place)
+            ports[f"planet {k}"] = PortMotion(rows, place, axes)
+        mass, about, across = INERTIA[name]
+        body = np.diag([mass, mass, mass, across, about, across])
+        part = SimpleNamespace(mass=body, strain=np.zeros((0, 6)), ports=ports)
+        parts[name] = sg.CentralMember.of(part, member.radius, member.bearing)
+    moved = frequencies(replace(own, **parts))
+    assert moved[1:] == pytest.approx(frequencies(own)[1:], rel=ROUNDING)
+
+
 PIN_THAT_BRAKES = PIN + np.diag([0, 0, 0, 0, 1.0, 0])
 
 
@@ -196,6 +217,11 @@ PIN_THAT_BRAKES = PIN + np.diag([0, 0, 0, 0, 1.0, 0])
             "diametral of sun is 3e-05 kg m\\^2; about a diameter no body",
         ),
         ("ring", {"part": sg.Inertia(1.0)}, "the part of ring needs a port 'centre'; it has end"),
+        (
+            "carrier",
+            {"part": sg.Placed(sg.RigidBody(np.eye(6)), origin=[0, 0.02, 0])},
+            r"the port 'centre' of the part of carrier is at \[0.0, 0.02, 0.0\] m or turned",
+        ),
         ("stage", {"base_helix": 1.6}, "base_helix, its sign apart, is 1.6 rad"),
         ("stage", {"face_width": -1.0}, "face_width is -1.0; it must be finite and not negative"),
     ],

@@ -45,6 +45,12 @@ from solidgear.system.matrices import not_negative
 from solidgear.system.parts import Part, Placed
 from solidgear.system.planetary_members import CentralMember, Planet, body_of, checked
 from solidgear.system.planetary_modes import CENTRAL, SAME, PlanetaryMode, named_modes
+from solidgear.system.planetary_turning import (
+    TurningMode,
+    TurningTerms,
+    turning_modes,
+    turning_terms,
+)
 from solidgear.system.system import System
 
 #: relative to the distance of both axes, of two lines of action that are typed to be one
@@ -252,3 +258,24 @@ class PlanetaryStage:
     def modes(self) -> list[PlanetaryMode]:
         """All modes, by ascending frequency, those of one frequency and kind together."""
         return named_modes(self)
+
+    def turning_terms(self, carrier: float, ring: float = 0.0) -> TurningTerms:
+        """Gyroscopic and centrifugal terms in axes that turn with the carrier, of rigid members.
+
+        Parameters
+        ----------
+        carrier, ring : float
+            Speeds about +y, turns a second.
+
+        Raises
+        ------
+        SolidgearError
+            For an elastic member, or a speed that is not finite.
+        """
+        return turning_terms(self, carrier, ring)
+
+    def turning_modes(self, carrier: float, ring: float = 0.0) -> list[TurningMode]:
+        """All modes in axes that turn with the carrier, by ascending frequency; as
+        :meth:`turning_terms`.
+        """
+        return turning_modes(self, carrier, ring)

@@ -21,7 +21,7 @@ from solidgear.system.parts import Part, PlanarBody, RigidBody
 
 #: x and z of six motions
 ACROSS = [0, 2]
-#: a body has at least half its moment of inertia about any diameter; typed digits are so far off
+#: m, and relative: how far typed digits may be off
 TYPED = 1e-6
 MAY_BE_ZERO = ("turning", "diametral", "sun_mesh", "ring_mesh")
 
@@ -44,8 +44,9 @@ class CentralMember:
     diametral : float
         Moment of inertia about a diameter, kg m^2; without it the member is locked in the plane.
     part : Part, optional
-        Instead of a rigid body: with a port ``centre``, where teeth or pins are carried rigidly but
-        for ports of their own, ``planet 1`` and so on.  See :meth:`of`.
+        Instead of a rigid body, such as a reduced elastic one, with a port ``centre`` at its origin.
+        It carries teeth or pins rigidly but for ports of their own, ``planet 1`` and so on.  See
+        :meth:`of`.
 
     Examples
     --------
@@ -75,10 +76,7 @@ class CentralMember:
         >>> round(member.mass, 9), round(member.inertia, 9), round(member.diametral, 9)
         (3.0, 0.04, 0.02)
         """
-        if "centre" not in part.ports:
-            raise SolidgearError(
-                f"a member of a planetary stage needs a port 'centre'; it has {', '.join(part.ports)}"
-            )
+        _centred("a member", part)
         free = sla.null_space(part.strain) if len(part.strain) else np.eye(len(part.mass))
         unit = np.linalg.pinv(part.ports["centre"].rows @ free)
         own = np.diag(unit.T @ free.T @ part.mass @ free @ unit)
@@ -112,7 +110,7 @@ class Planet:
     diametral : float
         Moment of inertia about a diameter, kg m^2; without it the planet is locked in the plane.
     part : Part, optional
-        Instead of a rigid body, in the planet's axes with a port ``centre``.
+        Instead of a rigid body, in the planet's axes with a port ``centre`` at its origin.
 
     Examples
     --------
@@ -120,6 +118,16 @@ class Planet:
     >>> one = sg.Planet(0.66, 1.5e-3, 50e-3, pin=1e8, sun_mesh=5e8, ring_mesh=5e8)
     >>> [round(planet.azimuth, 3) for planet in one.spaced(3)]
     [0.0, 2.094, 4.189]
+
+    On a catalogue bearing, at the tooth forces that it carries forward:
+
+    >>> from dataclasses import replace
+    >>> from solidgear.bearings.catalogued import catalogued
+    >>> from solidgear.scene.catalogue import Catalogue
+    >>> bearing = catalogued(Catalogue(designation="NJ 2204")).bearing
+    >>> pin = bearing.tangent(bearing.motion([0, 0, -1500.0, 0, 0, 0]))
+    >>> round(float(replace(one, pin=pin, diametral=9e-4).support[2, 2] / 1e8), 1)
+    3.9
     """
 
     mass: float
@@ -188,10 +196,8 @@ def checked(name: str, member: CentralMember | Planet) -> None:
             f"diametral of {name} is {member.diametral:g} kg m^2; about a diameter no body has less "
             f"than half of what it has about its axis, {member.inertia:g}"
         )
-    if member.part is not None and "centre" not in member.part.ports:
-        raise SolidgearError(
-            f"the part of {name} needs a port 'centre'; it has {', '.join(member.part.ports)}"
-        )
+    if member.part is not None:
+        _centred(name, member.part)
     if isinstance(member, CentralMember):
         return
     pin = member.support
@@ -203,4 +209,17 @@ def checked(name: str, member: CentralMember | Planet) -> None:
     if pin[4].any():
         raise SolidgearError(
             f"the pin of {name} resists its spin; row and column thy of its stiffness must be 0"
+        )
+
+
+def _centred(name: str, part: Part) -> None:
+    centre = part.ports.get("centre")
+    if centre is None:
+        raise SolidgearError(
+            f"the part of {name} needs a port 'centre'; it has {', '.join(part.ports)}"
+        )
+    if not (np.allclose(centre.point, 0, atol=TYPED) and np.allclose(centre.axes, np.eye(3))):
+        raise SolidgearError(
+            f"the port 'centre' of the part of {name} is at {np.round(centre.point, 6).tolist()} m "
+            "or turned; place the part so that it is at the origin, in the axes of the stage"
         )
