@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
 from tests.test_planetary import (
     PIN,
     frequencies,
@@ -127,6 +128,34 @@ def test_modes_in_turning_axes_are_motions_in_space(place, kind):
     wanted = (shape * np.exp(rate * seconds)).real
     assert mode.kind == kind
     assert found == pytest.approx(wanted, abs=1e-4 * size)
+
+
+def test_a_helical_stage_obeys_the_equations_of_rotors_in_space():
+    """Bodies there know of their spin alone, ``J t'' - I w y x t'``; springs turn with the carrier.
+    Rates of change from differences of ninth order."""
+    own = stage(3)
+    about, system = 2 * np.pi * FAST, own.system
+    turns = own.ring.radius / np.array([own.sun.radius] + [-p.radius for p in own.planets])
+    spins = dict(zip(["sun", "planet 1", "planet 2", "planet 3"], about * (1 + turns)))
+    spins["carrier"] = about
+    gyroscope = np.zeros((system.size, system.size))
+    for name, spin in spins.items():
+        place = system.place(name).start
+        polar = system.mass[place + 4, place + 4]
+        gyroscope[place + 3, place + 5] -= polar * spin
+        gyroscope[place + 5, place + 3] += polar * spin
+    stiffness = system.stiffness + own.turning_terms(FAST).pull
+    weight = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
+    curve = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
+    for mode in own.turning_modes(FAST)[4:30:5]:
+        rate = 2 * np.pi * mode.frequency_hz
+        step = 0.05 / (rate + about)
+        time = step * np.arange(-4, 5)
+        turn = [np.kron(np.eye(system.size // 6), rotation(1, about * t)) for t in time]
+        moved = [a @ (mode.shape * np.exp(1j * rate * t)) for a, t in zip(turn, time)]
+        speed, growth = weight @ moved / step, curve @ moved / step**2
+        felt = system.mass @ growth + gyroscope @ speed + stiffness @ moved[4]
+        assert np.abs(felt).max() < 1e-6 * np.abs(stiffness @ moved[4]).max()
 
 
 def test_a_free_stage_stays_free_for_its_planets_pull_turns_with_it():

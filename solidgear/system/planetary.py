@@ -95,6 +95,20 @@ class PlanetaryStage:
     >>> {m.name: (round(m.frequency_hz), m.multiplicity) for m in stage.modes()[:4]}
     {'rotational 1': (0, 1), 'translational 1': (727, 2), 'translational 2': (1091, 2), 'rotational 2': (1537, 1)}
 
+    Helical teeth need members that move along the axis and tilt:
+
+    >>> from dataclasses import replace
+    >>> held = np.diag([1e8, 5e7, 1e8, 1e5, 0.0, 1e5])
+    >>> sun, carrier = (replace(m, bearing=held, diametral=m.inertia) for m in (sun, carrier))
+    >>> ring = replace(ring, bearing=held, diametral=0.6 * ring.inertia)
+    >>> pin = np.diag([1e8, 5e7, 1e8, 5e4, 0.0, 5e4])
+    >>> planet = replace(planet, pin=pin, diametral=0.6 * planet.inertia)
+    >>> helical = sg.PlanetaryStage(
+    ...     sun, ring, carrier, planet.spaced(4), np.radians(24.6), base_helix=0.2, face_width=0.03
+    ... )
+    >>> [(m.name, m.multiplicity) for m in helical.modes()[1:3]]
+    [('translational-tilting 1', 2), ('translational-tilting 2', 2)]
+
     Further parts and links join it in a system of one's own:
 
     >>> shaft = sg.torsion_spring("carrier.centre", 1e5, "load")
