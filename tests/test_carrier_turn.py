@@ -127,6 +127,10 @@ def test_a_helical_sun_that_cannot_tilt_is_modulated_in_closed_form():
     own = replace(own, face_width=0.0)
     path = own.path_stiffness[0]
     assert path < 0.9 * stage().path_stiffness[0]  # planets tilt on their pins
+    hard = replace(own.planets[0], pin=np.diag([1e20, 1e20, 1e20, 4e4, 0, 4e4]))
+    assert (
+        path < replace(own, planets=(hard,)).path_stiffness[0] < 1.2e8
+    )  # 1 / (1/2 + 1/3), tilting
     held = np.diag([support, STILL, support, STILL, 0, STILL])
     fixed = sg.FixedSupport(held, [0, 0, SHIFT, 0, 0, 0])
     turn = sg.carrier_turn(own, TORQUE, {"sun": fixed})
@@ -171,9 +175,13 @@ def test_a_helical_sun_without_a_thrust_bearing_is_told():
         sg.carrier_turn(in_space(HELIX), TORQUE, {"sun": sg.FixedSupport(1e7)})
 
 
-def test_a_floating_sun_gives_three_planets_one_share_whatever_the_pins():
+@pytest.mark.parametrize("floats", ["sun", "carrier"])
+def test_a_floating_member_gives_three_planets_one_share_whatever_the_pins(floats):
     errors = [sg.PlanetError((5e-6, 40e-6)), sg.PlanetError(sun_tooth=8e-6), sg.PlanetError()]
-    turn = sg.carrier_turn(stage(), TORQUE, errors=errors, positions=1)
+    own = stage(sun=0.0 if floats == "sun" else STILL)
+    if floats == "carrier":
+        own = replace(own, carrier=replace(own.carrier, bearing=0.0))
+    turn = sg.carrier_turn(own, TORQUE, errors=errors, positions=1)
     assert turn.sun_mesh == pytest.approx(TORQUE / (3 * TEETH.base_radii[0]), rel=1e-9)
 
 

@@ -1,5 +1,7 @@
 """A ring that bends: against Love's free ring, in the rigid limit, and in a stage."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg as sla
@@ -156,3 +158,10 @@ def test_what_is_no_elastic_ring_is_told():
     part = sg.elastic_ring(scene, TEETH, 10e-3, **LIGHT)
     with pytest.raises(SolidgearError, match="the ring is an elastic body; terms of a turning"):
         stage(part).turning_terms(10.0)
+    with pytest.raises(SolidgearError, match="the ring has no port for planet 4, though"):
+        own = stage(part)
+        replace(own, planets=(*own.planets, replace(own.planets[0], azimuth=1.0)))
+    with pytest.raises(
+        SolidgearError, match="port of the ring for planet 1 lies 21.1 mm beside it"
+    ):
+        replace(own, planets=tuple(replace(p, azimuth=p.azimuth + 0.2) for p in own.planets))

@@ -661,7 +661,7 @@ MUTATIONS = (
         "planetary: planets lie in the axes of the carrier",
         "solidgear/system/planetary.py",
         "PlanetaryStage.parts",
-        "Placed(body_of(planet, {}), turn, pins[name])",
+        "Placed(body_of(planet, {}), planet.axes, pins[name])",
         "Placed(body_of(planet, {}), np.eye(3), pins[name])",
         "tests/test_planetary.py::test_three_planets_have_the_published_frequencies_to_every_digit",
     ),

@@ -37,7 +37,6 @@ from math import cos, pi, sqrt
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.frames import rotation
 from solidgear.reduction.superelement import PortMotion
 from solidgear.system.gear_mesh import MeshVector, cylindrical_mesh
 from solidgear.system.links import BearingSpring, Link, RowSpring
@@ -55,7 +54,9 @@ from solidgear.system.system import System
 
 #: relative to the distance of both axes, of two lines of action that are typed to be one
 ONE_LINE = 1e-6
-#: of N/m of a pin: what it does not resist
+#: of its distance from the axis, how far a port may lie beside its planet: a small part of a tooth
+ONE_PLACE = 1e-3
+#: relative: a load that a pin does not resist
 GIVES = 1e-9
 
 
@@ -152,6 +153,27 @@ class PlanetaryStage:
             )
         for k in range(len(self.planets)):
             self.meshes(k)
+        for name in CENTRAL:
+            self._meets(name)
+
+    def _meets(self, name: str) -> None:
+        """Refusal of an elastic member whose ports are not where planets are."""
+        part = getattr(self, name).part
+        ports = {} if part is None or not len(part.strain) else part.ports
+        if not any(planet in ports for planet in self._names):
+            return
+        for planet, one in zip(self._names, self.planets):
+            if planet not in ports:
+                raise SolidgearError(
+                    f"the {name} has no port for {planet}, though it has one for others"
+                )
+            place = one.axes.T @ ports[planet].point
+            if abs(place[2]) > ONE_PLACE * place[0]:
+                raise SolidgearError(
+                    f"the port of the {name} for {planet} lies {1e3 * abs(place[2]):.3g} mm beside "
+                    f"it, for it is at {np.degrees(one.azimuth):.6g} deg; "
+                    f"make the {name} for planets of these angles"
+                )
 
     @property
     def _names(self) -> list[str]:
@@ -189,9 +211,11 @@ class PlanetaryStage:
             moves = [0, 1, 2, 3, 5] if planet.diametral else [0, 2]
             carried = np.sum([inner.vector for _, inner in self.meshes(k).values()], axis=0)[moves]
             pin = planet.support[np.ix_(moves, moves)]
-            moved = np.linalg.lstsq(pin, carried, rcond=GIVES)[0]
-            give = float(carried @ moved)
-            if np.abs(pin @ moved - carried).max() > GIVES * np.abs(carried).max():
+            size = np.sqrt(np.where(np.diag(pin) > 0, np.diag(pin), 1.0))
+            unit, load = pin / np.outer(size, size), carried / size
+            moved = np.linalg.lstsq(unit, load, rcond=GIVES)[0]
+            give = float(load @ moved)
+            if np.abs(unit @ moved - load).max() > GIVES * np.abs(load).max():
                 give = np.inf
             with np.errstate(divide="ignore"):
                 give += 1 / np.float64(planet.sun_mesh) + 1 / np.float64(planet.ring_mesh)
@@ -220,9 +244,8 @@ class PlanetaryStage:
         pins = {}
         out: dict[str, Part] = {}
         for name, planet in zip(self._names, self.planets):
-            turn = rotation(1, planet.azimuth)[:3, :3]
-            pins[name] = turn @ [self.carrier.radius, 0.0, 0.0]
-            out[name] = Placed(body_of(planet, {}), turn, pins[name])
+            pins[name] = planet.axes @ [self.carrier.radius, 0.0, 0.0]
+            out[name] = Placed(body_of(planet, {}), planet.axes, pins[name])
         points = {"sun": {}, "ring": {}, "carrier": pins}
         return {n: body_of(getattr(self, n), points[n]) for n in CENTRAL} | out
 

@@ -16,6 +16,7 @@ import scipy.linalg as sla
 from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
 from solidgear.system.matrices import not_negative, positive, spd
 from solidgear.system.parts import Part, PlanarBody, RigidBody
 
@@ -145,6 +146,11 @@ class Planet:
         if count < 1:
             raise SolidgearError(f"{count} is not a number of planets; ask for 1 or more")
         return tuple(replace(self, azimuth=self.azimuth + 2 * pi * k / count) for k in range(count))
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3) its own axes as columns: away from the sun, along the axis, backwards."""
+        return rotation(1, self.azimuth)[:3, :3]
 
     @property
     def support(self) -> np.ndarray:

@@ -29,7 +29,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.errors import SolidgearError
-from solidgear.frames import cross_matrix, rotation
+from solidgear.frames import cross_matrix
 from solidgear.system.planetary_members import CentralMember, Planet
 from solidgear.system.planetary_modes import CENTRAL, Phases
 
@@ -112,8 +112,7 @@ def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> T
         centrifugal += about**2 * one.mass * shifts.T @ ROUND @ shifts
         centrifugal += about * (across - polar) * tilts.T @ ROUND @ tilts
         if isinstance(one, Planet):
-            turn = rotation(1, one.azimuth)[:3, :3]
-            apart, out = turn @ shifts - carried[:3], turn[:, 0]
+            apart, out = one.axes @ shifts - carried[:3], one.axes[:, 0]
             force = one.mass * about**2 * stage.carrier.radius
             turned = -force * apart.T @ cross_matrix(out) @ carried[3:]
             lever = stage.carrier.radius * (np.eye(3) - np.outer(out, out))
