@@ -149,6 +149,18 @@ def count(own):
     }
 
 
+def test_a_ring_that_bends_shares_the_load_of_a_sun_off_its_place():
+    support, amplitude = {"sun": sg.FixedSupport(1e8, (10e-6, 0))}, []
+    for thick in (30e-3, 3e-3):
+        own = stage(sg.elastic_ring(rim(thick, 20e-3), TEETH, 15e-3, **LIGHT))
+        turn = sg.carrier_turn(own, 20.0, support)
+        assert sum(turn.torque.values()) == pytest.approx(0, abs=1e-10 * 20.0)
+        assert turn.sun_mesh.sum(axis=1) == pytest.approx(20.0 / TEETH.base_radii[0], rel=1e-9)
+        amplitude.append(turn.amplitude(1)[0])
+    # waves give by (radius / thickness)^3
+    assert amplitude[1] < 0.1 * amplitude[0]
+
+
 def test_what_is_no_elastic_ring_is_told():
     scene = rim(3e-3, 20e-3)
     with pytest.raises(SolidgearError, match="1 is no number of waves around a ring"):
