@@ -23,7 +23,7 @@ What there is, each with an example in its help:
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
-                 PlanetError
+                 PlanetError, elastic_ring
     errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
@@ -69,6 +69,7 @@ _WHERE = {
     "FixedSupport": "solidgear.system",
     "PlanetError": "solidgear.system",
     "carrier_turn": "solidgear.system",
+    "elastic_ring": "solidgear.studies.elastic_ring",
     "Planet": "solidgear.system",
     "MeshVector": "solidgear.system",
     "grounded": "solidgear.system",
@@ -126,6 +127,7 @@ __all__ = [
     "compare",
     "condense",
     "craig_bampton",
+    "elastic_ring",
     "grounded",
     "load",
     "load_train",
@@ -166,6 +168,7 @@ if TYPE_CHECKING:
     from solidgear.solve.statics import condense
     from solidgear.studies.budget import budget
     from solidgear.studies.comparison import compare
+    from solidgear.studies.elastic_ring import elastic_ring
     from solidgear.studies.loading import load, load_train
     from solidgear.studies.optimise import optimise
     from solidgear.studies.sensitivity.run import sensitivities

@@ -8,6 +8,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
+from solidgear.frames import rotation
 
 TORQUE, SHIFT = 20.0, 10e-6
 #: N/m, N m/rad: members that stand still give by 1e-12 of what teeth give
@@ -16,6 +17,8 @@ STILL = 1e20
 ROUNDING = 1e-10
 TEETH = sg.PlanetaryTeeth(17, 34, 85, module=2.5e-3)
 PATH = 5.15e7
+#: on the base cylinders
+HELIX = 0.3
 
 
 def stage(planets=3, pin=2e8, sun_mesh=2e8, ring_mesh=3e8, sun=0.0):
@@ -94,9 +97,91 @@ def test_a_support_of_two_stiffnesses_is_that_of_a_stage_built_at_every_position
     assert np.ptp(turn.shift["sun"][:, 0]) > 1e-8  # the sun does not stand still
 
 
-def test_a_floating_sun_gives_three_planets_one_share_whatever_the_pins():
+def in_space(helix=0.0):
+    """The stage with six motions of every member; ring and carrier stand still."""
+    flat, still = stage(), STILL * np.diag([1.0, 1, 1, 1, 0, 1])
+    held = {"sun": 0.0, "ring": still, "carrier": still}
+    central = {n: getattr(flat, n) for n in held}
+    central = {
+        n: replace(m, bearing=held[n], diametral=0.6 * m.inertia) for n, m in central.items()
+    }
+    pin = np.diag([2e8, 8e7, 2e8, 4e4, 0, 4e4])
+    planets = tuple(replace(p, pin=pin, diametral=0.6 * p.inertia) for p in flat.planets)
+    return replace(flat, **central, planets=planets, base_helix=helix, face_width=20e-3)
+
+
+def test_a_spur_stage_in_space_turns_as_in_the_plane():
+    held = np.diag([1e7, 3e6, 1e7, 2e3, 0, 2e3])
+    shift = np.array([SHIFT, 0, 0, 0, 0, 0])
+    errors = [sg.PlanetError((5e-6, 9e-6), tilt=(1e-4, 0)), sg.PlanetError(), sg.PlanetError()]
+    wide = sg.carrier_turn(in_space(), TORQUE, {"sun": sg.FixedSupport(held, shift)}, errors)
+    flat = sg.carrier_turn(stage(), TORQUE, {"sun": sg.FixedSupport(1e7, shift[:2])}, errors)
+    for name in ("sun_mesh", "ring_mesh", "pin"):
+        assert getattr(wide, name) == pytest.approx(getattr(flat, name), rel=ROUNDING, abs=1e-7)
+    assert wide.shift["sun"][:, [0, 2]] == pytest.approx(flat.shift["sun"][:, [0, 2]], abs=1e-15)
+
+
+def test_a_helical_sun_that_cannot_tilt_is_modulated_in_closed_form():
+    support, across = 3e7, cos(HELIX)
+    own = in_space(HELIX)
+    own = replace(own, face_width=0.0)
+    path = own.path_stiffness[0]
+    assert path < 0.9 * stage().path_stiffness[0]  # planets tilt on their pins
+    hard = replace(own.planets[0], pin=np.diag([1e20, 1e20, 1e20, 4e4, 0, 4e4]))
+    assert (
+        path < replace(own, planets=(hard,)).path_stiffness[0] < 1.2e8
+    )  # 1 / (1/2 + 1/3), tilting
+    held = np.diag([support, STILL, support, STILL, 0, STILL])
+    fixed = sg.FixedSupport(held, [0, 0, SHIFT, 0, 0, 0])
+    turn = sg.carrier_turn(own, TORQUE, {"sun": fixed})
+    closed = path * across * SHIFT * support / (support + 3 * path * across**2 / 2)
+    assert turn.amplitude(1) == pytest.approx(closed, rel=1e-9)
+    mean = TORQUE / (3 * across * TEETH.base_radii[0])
+    assert turn.sun_mesh.mean(axis=0) == pytest.approx(mean, rel=ROUNDING)
+    # a right-handed sun that drives about +y is pushed along +y
+    assert turn.support["sun"][:, 1] == pytest.approx(3 * mean * np.sin(HELIX), rel=ROUNDING)
+    assert sum(turn.torque.values()) == pytest.approx(0, abs=ROUNDING * TORQUE)
+
+
+def test_a_support_of_six_stiffnesses_is_that_of_a_helical_stage_built_at_every_position():
+    root = np.random.default_rng(34).normal(size=(6, 5)) * np.array([3e3, 2e3, 3e3, 40, 40])
+    root[3:] *= 0.02
+    root[4] = 0.0
+    support, shift = root @ root.T, np.array([7e-6, 2e-6, -4e-6, 3e-5, 0, -1e-5])
+    own = in_space(HELIX)
+    turn = sg.carrier_turn(own, TORQUE, {"sun": sg.FixedSupport(support, shift)}, positions=3)
+    for k, angle in enumerate(turn.angle):
+        back = rotation(1, -angle)
+        seen = sg.BearingSpring("sun.centre", back @ support @ back.T)
+        built = sg.System(own.parts, {**own.links, "support": seen})
+        load = built.load(
+            {
+                "sun.centre": back @ support @ shift + [0, 0, 0, 0, TORQUE, 0],
+                "carrier.centre": [0, 0, 0, 0, -TORQUE * TEETH.speed_ratio, 0],
+            }
+        )
+        moved = built.static(load)
+        rows, where = built.strains
+        for planet, one in enumerate(own.planets, 1):
+            strain = rows[where[f"planet {planet} sun mesh"]] @ moved
+            force = np.sqrt(one.sun_mesh / 2) * strain.sum()
+            assert turn.sun_mesh[k, planet - 1] == pytest.approx(force, rel=1e-8)
+        at = back.T @ built.motion("sun.centre") @ moved
+        assert turn.shift["sun"][k, [0, 1, 2, 3, 5]] == pytest.approx(at[[0, 1, 2, 3, 5]], rel=1e-6)
+
+
+def test_a_helical_sun_without_a_thrust_bearing_is_told():
+    with pytest.raises(SolidgearError, match="the load works on a motion that nothing resists"):
+        sg.carrier_turn(in_space(HELIX), TORQUE, {"sun": sg.FixedSupport(1e7)})
+
+
+@pytest.mark.parametrize("floats", ["sun", "carrier"])
+def test_a_floating_member_gives_three_planets_one_share_whatever_the_pins(floats):
     errors = [sg.PlanetError((5e-6, 40e-6)), sg.PlanetError(sun_tooth=8e-6), sg.PlanetError()]
-    turn = sg.carrier_turn(stage(), TORQUE, errors=errors, positions=1)
+    own = stage(sun=0.0 if floats == "sun" else STILL)
+    if floats == "carrier":
+        own = replace(own, carrier=replace(own.carrier, bearing=0.0))
+    turn = sg.carrier_turn(own, TORQUE, errors=errors, positions=1)
     assert turn.sun_mesh == pytest.approx(TORQUE / (3 * TEETH.base_radii[0]), rel=1e-9)
 
 
@@ -127,7 +212,7 @@ def test_what_is_no_support_or_error_is_told():
         sg.carrier_turn(stage(), TORQUE, {"planet 1": sg.FixedSupport(1e7)})
     with pytest.raises(SolidgearError, match="2 errors for 3 planets; give each its own"):
         sg.carrier_turn(stage(), TORQUE, errors=[sg.PlanetError()] * 2)
-    with pytest.raises(SolidgearError, match="a support of -1.0 N/m is no spring"):
+    with pytest.raises(SolidgearError, match="the stiffness of a support has -1 on its diagonal"):
         sg.FixedSupport(-1.0)
     with pytest.raises(SolidgearError, match="the torque on the sun contains NaN or infinity"):
         sg.carrier_turn(stage(), np.nan)

@@ -10,7 +10,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.system.gear_mesh import spur_mesh
+from solidgear.system.gear_mesh import cylindrical_mesh
 
 # both are eigenvalues of the same 18 to 27 coordinates, whose stiffness spans four decades
 ROUNDING = 1e-9
@@ -140,7 +140,7 @@ def test_of_every_pair_one_mode_leaves_a_soft_mesh_alone_and_the_other_falls():
 def test_an_internal_mesh_pushes_the_mate_inwards_and_turns_both_alike():
     # force on the mate, along the line of action, of a gear that drives about +y: mate on its +x side
     for internal, inwards, lever in ((False, -1, -0.02), (True, 1, 0.02)):
-        gear, mate = spur_mesh(0.06, 0.02, ALPHA, internal=internal)
+        gear, mate = cylindrical_mesh(0.06, 0.02, ALPHA, internal=internal)
         assert np.array_equal(gear.normal, mate.normal)
         assert gear.normal == pytest.approx([-inwards * np.sin(ALPHA), 0, -np.cos(ALPHA)])
         assert (gear.lever, mate.lever) == pytest.approx((0.06, lever))
@@ -148,7 +148,7 @@ def test_an_internal_mesh_pushes_the_mate_inwards_and_turns_both_alike():
 
 def test_both_points_of_a_mesh_lie_on_one_line_where_circles_and_axes_fit():
     for internal, distance in ((False, 0.08), (True, 0.04)):
-        gear, mate = spur_mesh(0.06, 0.02, ALPHA, 0.7, internal=internal)
+        gear, mate = cylindrical_mesh(0.06, 0.02, ALPHA, 0.7, internal=internal)
         axis = distance / np.cos(ALPHA) * np.array([np.cos(0.7), 0, -np.sin(0.7)])
         assert np.cross(axis + mate.point - gear.point, gear.normal) == pytest.approx(0, abs=1e-15)
 

@@ -15,6 +15,7 @@ A harmonic has a cosine and a sine form of the same matrices.  With the patch at
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,7 +26,7 @@ from solidgear.frames import shift
 from solidgear.machine.threads import pinned
 from solidgear.reduction.moments import free_shapes
 from solidgear.reduction.rubin import lowest_shapes, residual_block
-from solidgear.reduction.superelement import PortMotion, ReducedMotions, Superelement, assemble
+from solidgear.reduction.superelement import PortMotion, ReducedMotions, Superelement
 from solidgear.solve.modes import modes
 from solidgear.solve.shifted import factors
 
@@ -45,6 +46,9 @@ def with_waves(
     kept: int = KEPT,
 ) -> Superelement:
     """A superelement with harmonics n >= 2, and a port that feels them.
+
+    Harmonics that it has already are taken as they are: patches that lie alike along the shaft, at
+    whatever angles, have their fields in common and each a port of its own.
 
     Parameters
     ----------
@@ -75,20 +79,33 @@ def with_waves(
             "call it otherwise"
         )
     angle = np.arctan2(axes[0, 0], axes[2, 0])
-    blocks, local = list(part.blocks), [np.zeros((3, part.size))]
+    blocks = list(part.blocks)
     for n, own in rows.items():
-        value, shapes, truncation = _reduced(body.family(n), own, kept)
-        still = np.zeros((6, len(part.ports), len(value)))
-        c, s = np.cos(n * angle), np.sin(n * angle)
-        for index, turn in ((FURTHER + n, [c, -s, c]), (SINE + n, [s, c, s])):
-            blocks.append(ReducedMotions(index, value, shapes, still, truncation))
-            local.append(axes @ (np.array(turn)[:, None] * (own @ shapes)))
-    whole = assemble(part.kind, body, {p: body.port_index(p) for p in part.ports}, blocks)
-    carrier = whole.ports[at]
+        if all(block.index != FURTHER + n for block in blocks):
+            value, shapes, truncation = _reduced(body.family(n), own, kept)
+            still = np.zeros((6, len(part.ports), len(value)))
+            for index in (FURTHER + n, SINE + n):
+                blocks.append(ReducedMotions(index, value, shapes, still, truncation))
+    local = np.hstack([_local(block, angle, axes, rows) for block in blocks])
+    added = ((0, 0), (0, local.shape[1] - part.size))
+    ports = {
+        p: replace(motion, rows=np.pad(motion.rows, added)) for p, motion in part.ports.items()
+    }
+    carrier = ports[at]
     motion = shift(offset) @ carrier.rows
-    motion[:3] += np.hstack(local)
+    motion[:3] += local
     port = PortMotion(motion, carrier.point + carrier.axes @ offset, carrier.axes)
-    return Superelement(part.kind, part.fidelity, whole.blocks, {**whole.ports, name: port})
+    return Superelement(part.kind, part.fidelity, tuple(blocks), {**ports, name: port})
+
+
+def _local(block: ReducedMotions, angle: float, axes: np.ndarray, rows) -> np.ndarray:
+    """(3, m) motion that a block of waves adds to a patch; none by other blocks."""
+    n = block.index % FURTHER
+    if block.index < FURTHER or n not in rows:
+        return np.zeros((3, len(block.value)))
+    c, s = np.cos(n * angle), np.sin(n * angle)
+    turn = np.array([s, c, s] if block.index > SINE else [c, -s, c])
+    return axes @ (turn[:, None] * (rows[n] @ block.shapes))
 
 
 def _reduced(family: Body, rows: np.ndarray, kept: int):

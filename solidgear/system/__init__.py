@@ -16,7 +16,9 @@ from solidgear.system.links import (
 )
 from solidgear.system.modes import SystemModes
 from solidgear.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
-from solidgear.system.planetary import CentralMember, Planet, PlanetaryMode, PlanetaryStage
+from solidgear.system.planetary import PlanetaryStage
+from solidgear.system.planetary_members import CentralMember, Planet
+from solidgear.system.planetary_modes import PlanetaryMode
 from solidgear.system.planetary_teeth import PlanetaryTeeth
 from solidgear.system.system import System
 

@@ -6,7 +6,7 @@ errors make of it, both on a mean bearing k, a support K fixed in space, whose s
 
     (1 + C (K' - k)) u = u_0 + C K' e',        K' = R' K R,    e' = R' e,
 
-at every position R: two equations for each such support, whatever the size of the stage.
+at every position R: six equations for each such support, whatever the size of the stage.
 
 With the other members held, N >= 3 equal planets at equal angles are to the sun one spring, the same
 in all directions: ``N k_e / 2`` with ``k_e`` the stiffness through one planet
@@ -15,24 +15,29 @@ in all directions: ``N k_e / 2`` with ``k_e`` the stiffness through one planet
 
     k_e e k_s / (k_s + N k_e / 2),
 
-with phases ``2 pi / N`` apart and sum zero.
+with phases ``2 pi / N`` apart and sum zero.  That is of a sun locked in the plane, and of spur teeth;
+a helical sun that is held against tilting has ``N k_e cos^2(b) / 2`` and forces by ``cos b``, b its
+base helix angle.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import cos
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solidgear.errors import SolidgearError, listed
 from solidgear.frames import rotation
-from solidgear.system.matrices import frozen
-from solidgear.system.planetary import CENTRAL, ONE_LINE, PlanetaryStage
+from solidgear.springs import root_of
+from solidgear.system.matrices import frozen, spd
+from solidgear.system.planetary import ONE_LINE, PlanetaryStage
+from solidgear.system.planetary_members import ACROSS
+from solidgear.system.planetary_modes import CENTRAL
 from solidgear.system.system import System
 
-ACROSS = [0, 2]
 #: rad; of a free motion, less is rounding
 TURNS = 1e-9
 
@@ -43,37 +48,43 @@ class FixedSupport:
 
     Attributes
     ----------
-    stiffness : float or (2, 2) array_like
-        On x and z, N/m.
-    shift : (2,) array_like
-        Of its seat along x and z, m.
+    stiffness : float, (2, 2) or (6, 6) array_like
+        On x and z, N/m, or on all motions of the member's centre.
+    shift : (2,) or (6,) array_like
+        Of its seat along x and z, m, or in all motions.
 
     Examples
     --------
     >>> import solidgear as sg
-    >>> sg.FixedSupport(2e7, (10e-6, 0)).matrix
-    array([[20000000.,        0.],
-           [       0., 20000000.]])
+    >>> support = sg.FixedSupport(2e7, (10e-6, 0))
+    >>> support.matrix[0, 0], support.off[0]
+    (np.float64(20000000.0), np.float64(1e-05))
     """
 
     stiffness: ArrayLike
     shift: ArrayLike = (0.0, 0.0)
 
     def __post_init__(self):
-        frozen("the shift of a support", self.shift, (2,))
-        matrix = self.matrix
-        if not np.allclose(matrix, matrix.T) or np.linalg.eigvalsh(matrix)[0] < 0:
-            raise SolidgearError(
-                f"a support of {self.stiffness!r} N/m is no spring; "
-                "give a stiffness that is not negative, or a symmetric 2x2 of such"
-            )
+        name = "the shift of a support"
+        frozen(name, self.shift, (6,) if np.shape(self.shift) == (6,) else (2,))
+        spd("the stiffness of a support", self.matrix, definite=False)
 
     @property
     def matrix(self) -> np.ndarray:
-        """(2, 2) stiffness."""
+        """(6, 6) stiffness."""
         given = np.asarray(self.stiffness, float)
-        full = given * np.eye(2) if given.ndim == 0 else given
-        return frozen("the stiffness of a support", full, (2, 2))
+        if given.shape == (6, 6):
+            return given
+        full = np.zeros((6, 6))
+        own = given * np.eye(2) if given.ndim == 0 else given
+        full[np.ix_(ACROSS, ACROSS)] = frozen("the stiffness of a support", own, (2, 2))
+        return full
+
+    @property
+    def off(self) -> np.ndarray:
+        """(6,) shift of its seat."""
+        given = np.asarray(self.shift, float)
+        return given if given.shape == (6,) else np.insert(np.zeros(4), [0, 1], given)
 
 
 @dataclass(frozen=True)
@@ -84,6 +95,8 @@ class PlanetError:
     ----------
     pin : (2,) sequence of float
         Of the pin, away from the sun and forward.
+    tilt : (2,) sequence of float
+        Of the pin about these two directions, rad; of no effect on a planet locked in the plane.
     sun_tooth, ring_tooth : float
         Thickness along the line of action in the mesh with sun and ring; more presses.
 
@@ -98,9 +111,11 @@ class PlanetError:
     pin: Sequence[float] = (0.0, 0.0)
     sun_tooth: float = 0.0
     ring_tooth: float = 0.0
+    tilt: Sequence[float] = (0.0, 0.0)
 
     def __post_init__(self):
         frozen("the error of a pin", self.pin, (2,))
+        frozen("the tilt of a pin", self.tilt, (2,))
         frozen("the error of teeth at a planet", (self.sun_tooth, self.ring_tooth), (2,))
 
 
@@ -114,12 +129,12 @@ class CarrierTurn:
         Of the carrier, rad.
     sun_mesh, ring_mesh : (a, N) ndarray
         Of every planet, N; negative ones would need teeth that pull.
-    pin : (a, N, 2) ndarray
-        Of every planet on the carrier, away from the sun and forward, N.
-    shift : mapping of str to (a, 2) ndarray
-        Of members on fixed supports, along x and z in space, m.
-    support : mapping of str to (a, 2) ndarray
-        Force of those members on their supports, in space, N.
+    pin_load : (a, N, 6) ndarray
+        Force and moment of every planet on the carrier, in the planet's axes, N and N m.
+    shift : mapping of str to (a, 6) ndarray
+        Of members on fixed supports, in space, m and rad.
+    support : mapping of str to (a, 6) ndarray
+        Force and moment of those members on their supports, in space, N and N m.
     torque : mapping of str to (a,) ndarray
         Of the planets on sun, ring and carrier, N m; their sum is zero.
     """
@@ -127,10 +142,15 @@ class CarrierTurn:
     angle: np.ndarray
     sun_mesh: np.ndarray
     ring_mesh: np.ndarray
-    pin: np.ndarray
+    pin_load: np.ndarray
     shift: Mapping[str, np.ndarray] = field(repr=False)
     support: Mapping[str, np.ndarray] = field(repr=False)
     torque: Mapping[str, np.ndarray] = field(repr=False)
+
+    @property
+    def pin(self) -> np.ndarray:
+        """(a, N, 2) force of every planet on the carrier, away from the sun and forward, N."""
+        return self.pin_load[:, :, ACROSS] * [1.0, -1.0]
 
     def amplitude(self, order: int) -> np.ndarray:
         """(N,) amplitude of every mesh force with the sun at a multiple of the carrier's frequency,
@@ -206,21 +226,29 @@ def carrier_turn(
         raise SolidgearError(
             f"{len(errors)} errors for {len(stage.planets)} planets; give each its own"
         )
-    mean = {name: np.trace(own.matrix) / 2 for name, own in supports.items()}
+    mean = {name: _mean(own.matrix) for name, own in supports.items()}
+    members = {name: getattr(stage, name) for name in supports}
     held = replace(
         stage,
         **{
-            name: replace(getattr(stage, name), bearing=getattr(stage, name).bearing + spring)
-            for name, spring in mean.items()
+            name: replace(one, bearing=one.support + mean[name], turning=0.0)
+            for name, one in members.items()
         },
     ).system
     strains, where = held.strains
     gaps = _gaps(len(strains), where, stage, errors)
-    at = [held.motion(f"{name}.centre")[ACROSS] for name in supports]
-    rows = np.vstack([np.zeros((0, held.size)), *at])
+    at = [held.motion(f"{name}.centre") for name in supports]
+    roots = [root_of(own) for own in mean.values()]
+    rows = np.vstack([np.zeros((0, held.size)), *(root.T @ one for root, one in zip(roots, at))])
     moved = held.static(np.column_stack([_torques(held, torque) - strains.T @ gaps, rows.T]))
     angle = 2 * np.pi * np.arange(positions) / positions
-    shift, pushed, support = _supported(angle, supports, mean, rows @ moved)
+    turns = np.array([rotation(1, a) for a in angle])
+    pushed = _pushed(turns, list(supports.values()), roots, rows @ moved)
+    shift, support = {}, {}
+    for (name, own), one in zip(supports.items(), at):
+        seen = one @ moved
+        shift[name] = np.einsum("aij,aj->ai", turns, seen[:, 0] + pushed @ seen[:, 1:].T)
+        support[name] = (shift[name] - own.off) @ own.matrix
     stretch = strains @ moved
     stretch[:, 0] += gaps
     springs = stretch[:, :1] + stretch[:, 1:] @ pushed.T
@@ -243,8 +271,8 @@ def _torques(held: System, torque: float) -> np.ndarray:
     for name in ("carrier", "ring"):
         motion = held.motion(f"{name}.centre")[4]
         freely = motion @ held.free
-        if held.free.shape[1] == 1 and abs(freely[0]) > TURNS:
-            return load - motion * (load @ held.free[:, 0]) / freely[0]
+        if np.linalg.norm(freely) > TURNS:
+            return load - motion * (load @ held.free @ freely) / (freely @ freely)
     return load
 
 
@@ -252,55 +280,65 @@ def _gaps(size: int, where, stage: PlanetaryStage, errors: Sequence[PlanetError]
     """(r,) strain of rows that errors make where nothing moves."""
     out = np.zeros(size)
     for k, (planet, error) in enumerate(zip(stage.planets, errors), 1):
-        out[where[f"planet {k} pin"]] = -np.sqrt(planet.pin) * np.asarray(error.pin)
+        (away, forward), (about_away, about_forward) = error.pin, error.tilt
+        off = np.array([away, 0.0, -forward, about_away, 0.0, -about_forward])
+        out[where[f"planet {k} pin"]] = -root_of(planet.support).T @ off
         for mate in ("sun", "ring"):
-            thicker = getattr(error, f"{mate}_tooth")
+            own = where[f"planet {k} {mate} mesh"]
             stiffness = getattr(planet, f"{mate}_mesh")
-            out[where[f"planet {k} {mate} mesh"]] = np.sqrt(stiffness) * thicker
+            out[own] = _each(stiffness, own) * getattr(error, f"{mate}_tooth")
     return out
 
 
-def _supported(angle, supports: Mapping[str, FixedSupport], mean, seen: np.ndarray):
-    """Shifts in space by name, loads (a, 2 s) on the stage beyond its mean bearings, and forces on
-    supports in space, at every position; from shifts (2 s, 1 + 2 s) under load and unit forces.
+def _each(stiffness: float, rows: slice) -> float:
+    """Root of the share that each of the springs of a mesh has in its stiffness."""
+    return float(np.sqrt(stiffness / max(rows.stop - rows.start, 1)))
+
+
+def _mean(matrix: np.ndarray) -> np.ndarray:
+    """(6, 6) mean of a stiffness over a turn: of its two harmonics a quarter turn leaves none."""
+    quarters = [rotation(1, k * np.pi / 2) for k in range(4)]
+    mean = sum((turn.T @ matrix @ turn for turn in quarters), np.zeros((6, 6))) / 4
+    return (mean + mean.T) / 2
+
+
+def _pushed(
+    turns: np.ndarray, supports: Sequence[FixedSupport], roots: Sequence[np.ndarray], seen
+) -> np.ndarray:
+    """(a, s) loads on the stage beyond its mean bearings ``L L'``, in the coordinates ``L'u`` in
+    which these are one; from ``L'u`` (s, 1 + s) under load and unit loads.
     """
-    size = 2 * len(supports)
-    turns = np.array([rotation(1, a)[np.ix_(ACROSS, ACROSS)] for a in angle])
-    stiffness = np.zeros((len(angle), size, size))
-    off = np.zeros((len(angle), size))
-    for k, own in enumerate(supports.values()):
-        place = slice(2 * k, 2 * k + 2)
-        stiffness[:, place, place] = turns.transpose(0, 2, 1) @ own.matrix @ turns
-        off[:, place] = np.asarray(own.shift, float) @ turns
-    beyond = stiffness - np.diag(np.repeat(list(mean.values()), 2).astype(float))
-    start, give = seen[:, 0], seen[:, 1:]
-    pressed = np.einsum("aij,aj->ai", stiffness, off)
-    right = start + pressed @ give.T
+    size = len(seen)
+    stiffness, pressed = np.zeros((len(turns), size, size)), np.zeros((len(turns), size))
+    start = 0
+    for own, root in zip(supports, roots):
+        place = slice(start, start := start + root.shape[1])
+        into = np.linalg.pinv(root) @ turns.transpose(0, 2, 1)
+        stiffness[:, place, place] = into @ own.matrix @ into.transpose(0, 2, 1)
+        pressed[:, place] = into @ (own.matrix @ own.off)
+    beyond = stiffness - np.eye(size)
+    give = seen[:, 1:]
+    right = seen[:, 0] + pressed @ give.T
     moved = np.linalg.solve(np.eye(size) + give @ beyond, right[..., None])[..., 0]
-    pushed = pressed - np.einsum("aij,aj->ai", beyond, moved)
-    carried = np.einsum("aij,aj->ai", stiffness, moved) - pressed
-    shift, support = {}, {}
-    for k, name in enumerate(supports):
-        place = slice(2 * k, 2 * k + 2)
-        shift[name] = np.einsum("aij,aj->ai", turns, moved[:, place])
-        support[name] = np.einsum("aij,aj->ai", turns, carried[:, place])
-    return shift, pushed, support
+    return pressed - np.einsum("aij,aj->ai", beyond, moved)
 
 
 def _turn(stage: PlanetaryStage, angle, springs: np.ndarray, where, shift, support) -> CarrierTurn:
     """Forces from the strains (a, r) of all rows."""
-    forces: dict[str, list[np.ndarray]] = {"sun mesh": [], "ring mesh": [], "pin": []}
+    forces: dict[str, list[np.ndarray]] = {"sun": [], "ring": []}
+    pins = []
     for k, planet in enumerate(stage.planets, 1):
-        sizes = (planet.sun_mesh, planet.ring_mesh, planet.pin)
-        for (name, found), stiffness in zip(forces.items(), sizes):
-            own = springs[:, where[f"planet {k} {name}"]]
-            none = np.zeros((len(angle), 1))
-            found.append(np.sqrt(stiffness) * (own if own.shape[1] else none))
-    sun, ring = (np.hstack(forces[name]) for name in ("sun mesh", "ring mesh"))
-    pin = np.stack(forces["pin"], axis=1)
+        for mate, found in forces.items():
+            own = where[f"planet {k} {mate} mesh"]
+            each = _each(getattr(planet, f"{mate}_mesh"), own)
+            found.append(each * springs[:, own].sum(axis=1))
+        pins.append(springs[:, where[f"planet {k} pin"]] @ root_of(planet.support).T)
+    sun, ring = (np.column_stack(found) for found in forces.values())
+    pin = np.stack(pins, axis=1)
+    across = cos(stage.base_helix)
     torque = {
-        "sun": -sun.sum(axis=1) * stage.sun.radius,
-        "ring": -ring.sum(axis=1) * stage.ring.radius,
-        "carrier": pin[:, :, 1].sum(axis=1) * stage.carrier.radius,
+        "sun": -sun.sum(axis=1) * across * stage.sun.radius,
+        "ring": -ring.sum(axis=1) * across * stage.ring.radius,
+        "carrier": -pin[:, :, 2].sum(axis=1) * stage.carrier.radius,
     }
     return CarrierTurn(angle, sun, ring, pin, shift, support, torque)

@@ -1,5 +1,5 @@
-r"""Line of action, mesh point and mesh vector of a bevel gear pair, and of spur gears, one of which
-may be a ring.
+r"""Line of action, mesh point and mesh vector of a bevel gear pair, and of cylindrical gears, one of
+which may be a ring.
 
 Each member has its own frame, right-handed, y along its shaft from the pitch apex towards its back,
 z up for both. Seen from above, z towards the reader, crossing axes at 90 degrees, O the pitch
@@ -302,29 +302,34 @@ class MeshVector:
         return float(self.vector[4])
 
 
-def spur_mesh(
+def cylindrical_mesh(
     radius: float,
     mate_radius: float,
     pressure_angle: float,
     azimuth: float = 0.0,
     *,
     internal: bool = False,
+    base_helix: float = 0.0,
 ) -> tuple[MeshVector, MeshVector]:
-    """Mesh vectors of two spur gears on parallel axes, of one physical direction.
+    """Mesh vectors of two spur or helical gears on parallel axes, of one physical direction.
 
-    Their line of action is the one of a gear that drives its mate about +y; each point is its foot
-    from the gear's own axis.
+    Their line of action is the one of a gear that drives its mate about +y; their point is the
+    pitch point, as seen from each axis.
 
     Parameters
     ----------
     radius, mate_radius : float
         Of the base circles, m.
     pressure_angle : float
-        At work, 0 to below pi/2, rad.
+        Transverse, at work, 0 to below pi/2, rad.
     azimuth : float
         Of the mate's axis as seen from the gear's, right-handed about y from x, rad.
     internal : bool
         For a ring, whose mate turns inside it.
+    base_helix : float
+        Helix angle on the base cylinder, ``tan b = tan(helix) cos(pressure angle)`` on any other,
+        rad; positive where the gear is right-handed.  The mate outside has the other hand, that
+        inside a ring the same.
 
     Returns
     -------
@@ -340,11 +345,12 @@ def spur_mesh(
     --------
     An internal mesh turns both gears the same way:
 
-    >>> ring, planet = spur_mesh(0.06, 0.02, np.radians(20), internal=True)
+    >>> ring, planet = cylindrical_mesh(0.06, 0.02, np.radians(20), internal=True)
     >>> round(ring.lever, 12), round(planet.lever, 12)
     (0.06, 0.02)
     """
     _angle("pressure_angle", pressure_angle)
+    _angle("base_helix, its sign apart,", abs(base_helix))
     if not 0 < mate_radius < (radius if internal else np.inf):
         raise SolidgearError(
             f"a base circle of {mate_radius} m does not mesh with one of {radius} m; "
@@ -352,10 +358,12 @@ def spur_mesh(
         )
     leans = -pressure_angle if internal else pressure_angle
     turn = rotation(1, azimuth)[:3, :3]
-    normal = turn @ [sin(leans), 0.0, -cos(leans)]
-    foot = turn @ [cos(leans), 0.0, sin(leans)]
+    across = cos(base_helix)
+    # the tooth of a right-handed screw that turns about +y pushes its mate back along -y
+    normal = turn @ [across * sin(leans), -sin(base_helix), -across * cos(leans)]
+    pitch = turn @ [1 / cos(pressure_angle), 0.0, 0.0]
     other = mate_radius if internal else -mate_radius
-    return MeshVector(normal, radius * foot), MeshVector(normal, other * foot)
+    return MeshVector(normal, radius * pitch), MeshVector(normal, other * pitch)
 
 
 def _angle(name: str, value: float, closed: bool = False) -> None:

@@ -1,149 +1,63 @@
-r"""Planetary stages as systems of bodies and meshes, in the plane across their axis.
+r"""Planetary stages as systems of bodies and meshes.
 
-Sun, ring, carrier and planets move in x and z and turn about y (Lin and Parker 1999).  Azimuths are
-right-handed about y from x, in axes that turn with the carrier; in these a stage does not change
-with time.  Coordinates of a planet are its own x, which points away from the sun, z, and thy.
+Sun, ring, carrier and planets have six motions each, or are locked in the plane across their axis,
+where they move in x and z and turn about y: that is the stage of Lin and Parker (1999).  Azimuths
+are right-handed about y from x, in axes that turn with the carrier; in these a stage does not
+change with time.  Axes of a planet are its own: x points away from the sun, y along the axis.
 
-A mesh gives along its line of action and passes through neither pin nor bearing.  With n the
-direction of the tooth force and levers r of the base circles, its stretch is
+A mesh gives along its line of action and passes through neither pin nor bearing.  With h =
+{n, r x n}, n the direction of the tooth force and r the pitch point in the middle of the face, its
+stretch is
 
-    (n u_1 + r_1 th_1) - (n u_2 + r_2 th_2),
+    h_1 q_1 - h_2 q_2,
 
-positive where teeth press while the sun drives about +y.  Tooth stiffnesses are means over a mesh
-period, contact is never lost, and no teeth are there to be counted.
+positive where teeth press while the sun drives about +y.  Teeth over a face width b are as two
+springs of half the stiffness at b / sqrt(12) to both sides, which resist tilting as an even
+distribution does, ``k b^2 cos^2 / 12``.  Tooth stiffnesses are means over a mesh period, contact is
+never lost, and no teeth are there to be counted.
 
-Turning axes add ``W G q' - W^2 C q`` to the equations of motion at carrier speed W, of the order of
-W over a natural frequency.  They are left out: modes are those of a carrier that stands still.
+Modes are those of a carrier that stands still; :mod:`solidgear.system.planetary_turning` tells what
+its turning adds.
 
 References
 ----------
 Lin and Parker, Analytical characterization of the unique properties of planetary gear free
 vibration, Journal of Vibration and Acoustics 121, 1999, p. 316-321.
+Eritenel and Parker, Modal properties of three-dimensional helical planetary gears, Journal of Sound
+and Vibration 325, 2009, p. 397-420.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from functools import cached_property
-from math import cos, isclose, pi
-from typing import NamedTuple
+from math import cos, pi, sqrt
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.frames import rotation
-from solidgear.system.gear_mesh import MeshVector, spur_mesh
-from solidgear.system.links import BearingSpring, Link, RowSpring, mesh_spring
-from solidgear.system.matrices import not_negative, positive
-from solidgear.system.parts import Part, Placed, PlanarBody
+from solidgear.reduction.superelement import PortMotion
+from solidgear.system.gear_mesh import MeshVector, cylindrical_mesh
+from solidgear.system.links import BearingSpring, Link, RowSpring
+from solidgear.system.matrices import not_negative
+from solidgear.system.parts import Part, Placed
+from solidgear.system.planetary_members import CentralMember, Planet, body_of, checked
+from solidgear.system.planetary_modes import CENTRAL, SAME, PlanetaryMode, named_modes
+from solidgear.system.planetary_turning import (
+    TurningMode,
+    TurningTerms,
+    turning_modes,
+    turning_terms,
+)
 from solidgear.system.system import System
 
-CENTRAL = ("sun", "ring", "carrier")
-#: share of a mode's kinetic energy below which a motion is rounding
-NO_SHARE = 1e-9
-#: relative; natural frequencies of a symmetric stage that are one differ by rounding alone
-SAME = 1e-9
 #: relative to the distance of both axes, of two lines of action that are typed to be one
 ONE_LINE = 1e-6
-
-
-@dataclass(frozen=True)
-class CentralMember:
-    """Sun, ring or carrier of a planetary stage.
-
-    Attributes
-    ----------
-    mass, inertia : float
-        kg, and kg m^2 about the axis; of a carrier without the planets.
-    radius : float
-        Of the base circle, of a carrier that of its pins, m.
-    bearing : float
-        Radial stiffness to ground, N/m; one without floats.
-    turning : float
-        Torsional stiffness to ground, N m/rad.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> sg.CentralMember(mass=0.4, inertia=5.8e-4, radius=38.71e-3, bearing=1e8).turning
-    0.0
-    """
-
-    mass: float
-    inertia: float
-    radius: float
-    bearing: float = 0.0
-    turning: float = 0.0
-
-
-@dataclass(frozen=True)
-class Planet:
-    """Planet on a pin of the carrier, in mesh with sun and ring.
-
-    Attributes
-    ----------
-    mass, inertia : float
-        kg, and kg m^2 about the pin.
-    radius : float
-        Of the base circle, m.
-    pin : float
-        Stiffness of pin and bearing, the same radially and tangentially, N/m.
-    sun_mesh, ring_mesh : float
-        Stiffness of the teeth along the line of action, N/m.
-    azimuth : float
-        Of the pin, right-handed about y from x, rad.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> one = sg.Planet(0.66, 1.5e-3, 50e-3, pin=1e8, sun_mesh=5e8, ring_mesh=5e8)
-    >>> [round(planet.azimuth, 3) for planet in one.spaced(3)]
-    [0.0, 2.094, 4.189]
-    """
-
-    mass: float
-    inertia: float
-    radius: float
-    pin: float
-    sun_mesh: float
-    ring_mesh: float
-    azimuth: float = 0.0
-
-    def spaced(self, count: int) -> tuple[Planet, ...]:
-        """So many of it, at equal angles from its own on."""
-        if count < 1:
-            raise SolidgearError(f"{count} is not a number of planets; ask for 1 or more")
-        return tuple(replace(self, azimuth=self.azimuth + 2 * pi * k / count) for k in range(count))
-
-
-class PlanetaryMode(NamedTuple):
-    """Modes of a stage at one natural frequency.
-
-    Attributes
-    ----------
-    kind : str
-        ``rotational`` (central members turn only), ``translational`` (they shift only), ``planet``
-        (they rest), or ``mixed``, which a stage of equal planets at equal angles has none of.
-    number : int
-        Among those of its kind, from 1.
-    multiplicity : int
-        Of equal frequencies; 2 of ``translational``, N - 3 of ``planet`` in a stage of N equal
-        planets at equal angles.
-    shapes : (n, multiplicity) ndarray
-        On the coordinates of the stage's system, mass-normalised.
-    """
-
-    kind: str
-    number: int
-    frequency_hz: float
-    multiplicity: int
-    shapes: np.ndarray
-
-    @property
-    def name(self) -> str:
-        """Kind and number."""
-        return f"{self.kind} {self.number}"
+#: of its distance from the axis, how far a port may lie beside its planet: a small part of a tooth
+ONE_PLACE = 1e-3
+#: relative: a load that a pin does not resist
+GIVES = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +72,12 @@ class PlanetaryStage:
     sun, ring, carrier : CentralMember
     planets : tuple of Planet
     pressure_angle : float or (float, float)
-        At work in all meshes, or in those with the sun and those with the ring, rad.
+        Transverse, at work in all meshes, or in those with the sun and those with the ring, rad.
+    base_helix : float
+        Helix angle on the base cylinders, rad; positive of a right-handed sun, whose planets and
+        ring are left-handed.
+    face_width : float
+        Of all meshes, m; without it teeth press at the middle alone.
 
     Raises
     ------
@@ -177,6 +96,20 @@ class PlanetaryStage:
     >>> {m.name: (round(m.frequency_hz), m.multiplicity) for m in stage.modes()[:4]}
     {'rotational 1': (0, 1), 'translational 1': (727, 2), 'translational 2': (1091, 2), 'rotational 2': (1537, 1)}
 
+    Helical teeth need members that move along the axis and tilt:
+
+    >>> from dataclasses import replace
+    >>> held = np.diag([1e8, 5e7, 1e8, 1e5, 0.0, 1e5])
+    >>> sun, carrier = (replace(m, bearing=held, diametral=m.inertia) for m in (sun, carrier))
+    >>> ring = replace(ring, bearing=held, diametral=0.6 * ring.inertia)
+    >>> pin = np.diag([1e8, 5e7, 1e8, 5e4, 0.0, 5e4])
+    >>> planet = replace(planet, pin=pin, diametral=0.6 * planet.inertia)
+    >>> helical = sg.PlanetaryStage(
+    ...     sun, ring, carrier, planet.spaced(4), np.radians(24.6), base_helix=0.2, face_width=0.03
+    ... )
+    >>> [(m.name, m.multiplicity) for m in helical.modes()[1:3]]
+    [('translational-tilting 1', 2), ('translational-tilting 2', 2)]
+
     Further parts and links join it in a system of one's own:
 
     >>> shaft = sg.torsion_spring("carrier.centre", 1e5, "load")
@@ -190,19 +123,17 @@ class PlanetaryStage:
     carrier: CentralMember
     planets: tuple[Planet, ...]
     pressure_angle: float | tuple[float, float]
+    base_helix: float = 0.0
+    face_width: float = 0.0
 
     def __post_init__(self):
         if not self.planets:
             raise SolidgearError("a planetary stage needs at least one planet")
+        not_negative("face_width", self.face_width)
         for name in CENTRAL:
-            self._checked(name, getattr(self, name), ("bearing", "turning"))
+            checked(name, getattr(self, name))
         for name, planet in zip(self._names, self.planets):
-            self._checked(name, planet, ("pin", "sun_mesh", "ring_mesh", "azimuth"))
-            if not planet.pin > 0:
-                raise SolidgearError(
-                    f"{name} is on no pin: its stiffness is {planet.pin} N/m; "
-                    "give that of pin and planet bearing"
-                )
+            checked(name, planet)
         for mesh in ("sun_mesh", "ring_mesh"):
             if not any(getattr(planet, mesh) for planet in self.planets):
                 raise SolidgearError(f"{mesh} is 0 N/m of every planet; nothing is in mesh there")
@@ -222,18 +153,27 @@ class PlanetaryStage:
             )
         for k in range(len(self.planets)):
             self.meshes(k)
+        for name in CENTRAL:
+            self._meets(name)
 
-    def _checked(self, name: str, member, may_be_zero: tuple[str, ...]) -> None:
-        for one in fields(member):
-            value = getattr(member, one.name)
-            if one.name == "azimuth":
-                if not np.isfinite(value):
-                    raise SolidgearError(
-                        f"azimuth of {name} is {value}; give a finite angle in rad"
-                    )
-                continue
-            check = not_negative if one.name in may_be_zero else positive
-            check(f"{one.name} of {name}", value)
+    def _meets(self, name: str) -> None:
+        """Refusal of an elastic member whose ports are not where planets are."""
+        part = getattr(self, name).part
+        ports = {} if part is None or not len(part.strain) else part.ports
+        if not any(planet in ports for planet in self._names):
+            return
+        for planet, one in zip(self._names, self.planets):
+            if planet not in ports:
+                raise SolidgearError(
+                    f"the {name} has no port for {planet}, though it has one for others"
+                )
+            place = one.axes.T @ ports[planet].point
+            if abs(place[2]) > ONE_PLACE * place[0]:
+                raise SolidgearError(
+                    f"the port of the {name} for {planet} lies {1e3 * abs(place[2]):.3g} mm beside "
+                    f"it, for it is at {np.degrees(one.azimuth):.6g} deg; "
+                    f"make the {name} for planets of these angles"
+                )
 
     @property
     def _names(self) -> list[str]:
@@ -261,28 +201,40 @@ class PlanetaryStage:
     @property
     def path_stiffness(self) -> np.ndarray:
         """(N,) stiffness along the line of action from the sun through each planet to ring and
-        carrier that stand still, N/m.
+        carrier that stand still, N/m; without the face width.
 
-        Both tooth forces of a planet are equal, and its pin carries their sum:
+        Both tooth forces of a planet are equal, and its pin carries their sum, in the plane
         ``1 / k = 1 / k_sun + 1 / k_ring + (2 + 2 cos(a_sun + a_ring)) / k_pin``.
         """
-        pins = 2 + 2 * cos(sum(self.angles))
-        with np.errstate(divide="ignore"):
-            give = [
-                1 / np.float64(p.sun_mesh) + 1 / np.float64(p.ring_mesh) + pins / p.pin
-                for p in self.planets
-            ]
-        return 1 / np.array(give)
+        out = []
+        for k, planet in enumerate(self.planets):
+            moves = [0, 1, 2, 3, 5] if planet.diametral else [0, 2]
+            carried = np.sum([inner.vector for _, inner in self.meshes(k).values()], axis=0)[moves]
+            pin = planet.support[np.ix_(moves, moves)]
+            size = np.sqrt(np.where(np.diag(pin) > 0, np.diag(pin), 1.0))
+            unit, load = pin / np.outer(size, size), carried / size
+            moved = np.linalg.lstsq(unit, load, rcond=GIVES)[0]
+            give = float(load @ moved)
+            if np.abs(unit @ moved - load).max() > GIVES * np.abs(load).max():
+                give = np.inf
+            with np.errstate(divide="ignore"):
+                give += 1 / np.float64(planet.sun_mesh) + 1 / np.float64(planet.ring_mesh)
+            out.append(1 / give)
+        return np.array(out)
 
     def meshes(self, planet: int) -> dict[str, tuple[MeshVector, MeshVector]]:
         """Mesh vectors of sun and ring, each in its axes, with those of a planet in the planet's."""
         one = self.planets[planet]
         out = {}
         for name, angle in zip(("sun", "ring"), self.angles):
-            sizes = (getattr(self, name).radius, one.radius, angle)
             internal = name == "ring"
-            outer, _ = spur_mesh(*sizes, one.azimuth, internal=internal)
-            _, inner = spur_mesh(*sizes, internal=internal)
+            sizes = (getattr(self, name).radius, one.radius, angle)
+            # planets have the other hand than the sun, and a ring that of its planets
+            hand = -self.base_helix if internal else self.base_helix
+            (outer, _), (_, inner) = (
+                cylindrical_mesh(*sizes, at, internal=internal, base_helix=hand)
+                for at in (one.azimuth, 0.0)
+            )
             out[name] = (outer, inner)
         return out
 
@@ -292,16 +244,10 @@ class PlanetaryStage:
         pins = {}
         out: dict[str, Part] = {}
         for name, planet in zip(self._names, self.planets):
-            turn = rotation(1, planet.azimuth)[:3, :3]
-            pins[name] = turn @ [self.carrier.radius, 0.0, 0.0]
-            out[name] = Placed(_body(planet), turn, pins[name])
-        points = {"centre": (0.0, 0.0, 0.0)}
-        central: dict[str, Part] = {
-            "sun": _body(self.sun),
-            "ring": _body(self.ring),
-            "carrier": _body(self.carrier, points | pins),
-        }
-        return central | out
+            pins[name] = planet.axes @ [self.carrier.radius, 0.0, 0.0]
+            out[name] = Placed(body_of(planet, {}), planet.axes, pins[name])
+        points = {"sun": {}, "ring": {}, "carrier": pins}
+        return {n: body_of(getattr(self, n), points[n]) for n in CENTRAL} | out
 
     @cached_property
     def links(self) -> Mapping[str, Link]:
@@ -310,19 +256,36 @@ class PlanetaryStage:
         """
         out: dict[str, Link] = {}
         for name in CENTRAL:
-            one = getattr(self, name)
-            if one.bearing or one.turning:
-                spring = np.diag([one.bearing, 0.0, one.bearing, 0.0, one.turning, 0.0])
-                out[f"{name} bearing"] = BearingSpring(f"{name}.centre", spring)
+            support = getattr(self, name).support
+            if support.any():
+                out[f"{name} bearing"] = BearingSpring(f"{name}.centre", support)
         for k, (name, planet) in enumerate(zip(self._names, self.planets)):
-            out[f"{name} pin"] = RowSpring(
-                name, OUTWARD, planet.pin, f"carrier.{name}", OUTWARD @ rotation(1, -planet.azimuth)
-            )
+            carrier, _ = self._port("carrier", name)
+            out[f"{name} pin"] = BearingSpring(f"{name}.centre", planet.support, carrier)
             for mate, (outer, inner) in self.meshes(k).items():
-                stiffness = getattr(planet, f"{mate}_mesh")
-                at = f"{mate}.centre"
-                out[f"{name} {mate} mesh"] = mesh_spring(at, outer, name, inner, stiffness)
+                end, port = self._port(mate, name)
+                own = body_of(planet, {}).ports["centre"]
+                rows = self._rows(outer, port)
+                stiffness = getattr(planet, f"{mate}_mesh") / len(rows)
+                out[f"{name} {mate} mesh"] = RowSpring(
+                    end, rows, stiffness, f"{name}.centre", self._rows(inner, own)
+                )
         return out
+
+    def _port(self, member: str, planet: str) -> tuple[str, PortMotion]:
+        """Port where a central member meets a planet: one of its own, or its centre."""
+        ports = self.parts[member].ports
+        name = planet if planet in ports else "centre"
+        return f"{member}.{name}", ports[name]
+
+    def _rows(self, mesh: MeshVector, port: PortMotion) -> np.ndarray:
+        """(r, 6) stretch by motions of a port that carries the teeth, at one place or two."""
+        aside = self.face_width / sqrt(12)
+        places = [-aside, aside] if aside else [0.0]
+        normal = port.axes.T @ mesh.normal
+        from_port = port.axes.T @ (mesh.point - port.point)
+        along = port.axes.T @ [0.0, 1.0, 0.0]
+        return np.array([MeshVector(normal, from_port + y * along).vector for y in places])
 
     @cached_property
     def system(self) -> System:
@@ -331,36 +294,25 @@ class PlanetaryStage:
 
     def modes(self) -> list[PlanetaryMode]:
         """All modes, by ascending frequency, those of one frequency and kind together."""
-        found = self.system.modes()
-        kinds = [self._kind(shape) for shape in found.shapes.T]
-        out: list[PlanetaryMode] = []
-        for hz, kind, shape in zip(found.frequency_hz, kinds, found.shapes.T):
-            last = next((mode for mode in reversed(out) if mode.kind == kind), None)
-            if last and isclose(hz, last.frequency_hz, rel_tol=SAME):
-                both = np.column_stack([last.shapes, shape])
-                joined = last._replace(multiplicity=last.multiplicity + 1, shapes=both)
-                out[out.index(last)] = joined
-                continue
-            number = 1 + sum(mode.kind == kind for mode in out)
-            out.append(PlanetaryMode(kind, number, float(hz), 1, shape[:, None]))
-        return out
+        return named_modes(self)
 
-    def _kind(self, shape: np.ndarray) -> str:
-        """Kind of a mode by the kinetic energy of central members that shift and that turn."""
-        energy = np.diag(self.system.mass) * shape**2
-        own = np.array([energy[self.system.place(name)] for name in CENTRAL])
-        shifts, turns = own[:, :2].sum() > NO_SHARE, own[:, 2].sum() > NO_SHARE
-        if shifts and turns:
-            return "mixed"
-        if shifts:
-            return "translational"
-        return "rotational" if turns else "planet"
+    def turning_terms(self, carrier: float, ring: float = 0.0) -> TurningTerms:
+        """Gyroscopic and centrifugal terms in axes that turn with the carrier, of rigid members.
 
+        Parameters
+        ----------
+        carrier, ring : float
+            Speeds about +y, turns a second.
 
-#: motions of a planet away from the sun and forward, of x y z thx thy thz in its own axes
-OUTWARD = np.array([[1.0, 0, 0, 0, 0, 0], [0, 0, -1.0, 0, 0, 0]])
+        Raises
+        ------
+        SolidgearError
+            For an elastic member, or a speed that is not finite.
+        """
+        return turning_terms(self, carrier, ring)
 
-
-def _body(member: CentralMember | Planet, points: Mapping | None = None) -> PlanarBody:
-    mass = np.diag([member.mass, member.mass, member.inertia])
-    return PlanarBody(mass) if points is None else PlanarBody(mass, points)
+    def turning_modes(self, carrier: float, ring: float = 0.0) -> list[TurningMode]:
+        """All modes in axes that turn with the carrier, by ascending frequency; as
+        :meth:`turning_terms`.
+        """
+        return turning_modes(self, carrier, ring)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import cos, isclose, pi, radians, sin
+from math import atan, cos, isclose, pi, radians, sin, tan
 
 import numpy as np
 
@@ -27,13 +27,15 @@ class PlanetaryTeeth:
     sun, planet, ring : int
         Numbers of teeth.
     module : float
-        m.
+        Transverse, m.
     planets : int or tuple of float
         Number of planets at equal angles, or the azimuth of each, rad.
     pressure_angle : float
-        rad.
+        Transverse, rad.
     ratio : float, optional
         Of the speeds of sun and carrier where it is told elsewhere, to be held against the teeth.
+    helix : float
+        Helix angle at the pitch circles, rad; positive of a right-handed sun.
 
     Raises
     ------
@@ -56,6 +58,7 @@ class PlanetaryTeeth:
     planets: int | tuple[float, ...] = 3
     pressure_angle: float = radians(20)
     ratio: float | None = None
+    helix: float = 0.0
 
     def __post_init__(self):
         for one in fields(self)[:3]:
@@ -63,6 +66,8 @@ class PlanetaryTeeth:
             if not (isinstance(value, int) and value > 0):
                 raise SolidgearError(f"{one.name} has {value!r} teeth; give a whole number")
         positive("module", self.module)
+        if not abs(self.helix) < pi / 2:
+            raise SolidgearError(f"helix is {self.helix} rad; it lies between -pi/2 and pi/2")
         wanted = self.sun + 2 * self.planet
         if self.ring != wanted:
             raise SolidgearError(
@@ -138,6 +143,11 @@ class PlanetaryTeeth:
             for teeth in (self.sun, self.planet, self.ring)
         )
         return sun, planet, ring
+
+    @property
+    def base_helix(self) -> float:
+        """Helix angle on the base cylinders, rad."""
+        return atan(tan(self.helix) * cos(self.pressure_angle))
 
     def mesh_frequency(self, sun: float) -> float:
         """Of both meshes, Hz, at a speed of the sun, turns a second."""

@@ -39,12 +39,15 @@ class Patch:
         Of its middle, rad; 0 on the z axis, a quarter turn on the x axis.
     arc : float
         Of the circumference, rad.
+    inside : bool
+        On the inner surface, as of a ring.
     """
 
     first: float
     last: float
     angle: float
     arc: float
+    inside: bool = False
 
     @property
     def axes(self) -> np.ndarray:
@@ -64,7 +67,7 @@ class PatchMotion:
     Raises
     ------
     SolidgearError
-        If the body is no harmonic solid, or the shaft has no outer surface there.
+        If the body is no harmonic solid, or the shaft has no such surface there.
     """
 
     def __init__(self, scene: Scene, body: Body, patch: Patch):
@@ -81,14 +84,18 @@ class PatchMotion:
     def _along(self) -> np.ndarray:
         """(n,) mean over the meridian of the patch, weighted by area, of a scalar unknown."""
         work, first, last = self._work, self.patch.first, self.patch.last
-        ends = work.flat.points[1][work.flat.cells[1:3, work.flat.outer]]
+        inside = self.patch.inside
+        cells, side_of, at = (
+            (work.flat.inner, (0, 3), 0.0) if inside else (work.flat.outer, (1, 2), 1.0)
+        )
+        ends = work.flat.points[1][work.flat.cells[np.ix_(side_of, cells)]]
         out, area = np.zeros(work.n), 0.0
-        for cell, (one, other) in zip(work.flat.outer, ends.T):
-            # the share of the cell's outer side that lies on the patch
+        for cell, (one, other) in zip(cells, ends.T):
+            # the share of the cell's side that lies on the patch
             low, high = np.clip((np.array([first, last]) - one) / (other - one), 0.0, 1.0)
             if high - low < 1e-9:
                 continue
-            points = np.vstack([np.ones_like(work.g), low + (high - low) * work.g])
+            points = np.vstack([np.full_like(work.g, at), low + (high - low) * work.g])
             t = tabulate(_CORNERS, work._nodes(np.array([cell])), work.element, points)
             side = np.linalg.norm(t.tangent[:, :, :, 1], axis=2)[0]
             weight = side * work.gw * (high - low) * t.x[0][0]
@@ -96,8 +103,8 @@ class PatchMotion:
             area += weight.sum()
         if area == 0.0:
             raise SolidgearError(
-                f"there is no outer surface from {1e3 * first:.4g} to {1e3 * last:.4g} mm; "
-                "the patch of the teeth must lie on the shaft"
+                f"there is no {'inner' if inside else 'outer'} surface from {1e3 * first:.4g} to "
+                f"{1e3 * last:.4g} mm; the patch of the teeth must lie on the shaft"
             )
         return out / area
 
