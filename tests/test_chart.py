@@ -10,11 +10,12 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.judge.race import automatic, cases
+from solidgear.cli import chart as command
+from solidgear.judge.race import automatic
 from solidgear.judge.race import timing as racing
 from solidgear.judge.race.pareto import Race, Row
 from solidgear.judge.race.timing import race
-from solidgear.report import race_figure, race_rows, race_style
+from solidgear.report import race_rows, race_style
 from solidgear.report.html import render_page, write_report
 from solidgear.report.panel import SHAPES
 from solidgear.report.race_figure import draw, race_chart
@@ -63,10 +64,10 @@ def light():
     their size.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(cases, "plan", few)
+        patch.setattr(command, "plan", few)
         patch.setattr(racing, "SURE", 1e-2)
-        patch.setattr(cases, "setup_seconds", lambda: SETUP)
-        patch.setattr(automatic, "automatic_rows", list)
+        patch.setattr(command, "setup_seconds", lambda: SETUP)
+        patch.setattr(command, "automatic_rows", list)
         yield
 
 
@@ -80,7 +81,7 @@ def raced():
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    monkeypatch.setattr(race_figure, "draw", lambda found, path: path)
+    monkeypatch.setattr(command, "draw", lambda found, path: path)
 
 
 def panels(found):
@@ -382,6 +383,6 @@ def test_rows_are_written_as_they_come(run, tmp_path, monkeypatch, undrawn):
         real(found, folder)
         lengths.append(sum(bool(r.samples) for r in read_race(folder).rows))
 
-    monkeypatch.setattr(race_rows, "write_rows", watch)
+    monkeypatch.setattr(command, "write_rows", watch)
     run("chart", SCENE, "--out", tmp_path, "--runs", "1")
     assert lengths[:5] == [1, 2, 3, 4, 5]

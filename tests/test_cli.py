@@ -211,7 +211,7 @@ def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("solidgear.ladder.build", stop)
+    monkeypatch.setattr("solidgear.cli.shared.build", stop)
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "interrupted", code=130)
 
 
@@ -323,7 +323,7 @@ def test_bad_scene_is_refused_by_every_command(run, tmp_path):
 def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
     (tmp_path / "occupied").write_text("a file")
     monkeypatch.setattr(
-        "solidgear.studies.comparison.compare", lambda *_, **__: pytest.fail("solved first")
+        "solidgear.cli.compare.compared", lambda *_, **__: pytest.fail("solved first")
     )
     done = run("compare", SCENE, "--models", "euler", "--out", out)
     assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
@@ -360,7 +360,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     def broken(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("solidgear.ladder.build", broken)
+    monkeypatch.setattr("solidgear.cli.shared.build", broken)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
     monkeypatch.setattr(climb, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")
@@ -368,7 +368,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     def unmapped(*_, **__):
         raise ImportError("libfast.so: failed to map segment from shared object")
 
-    monkeypatch.setattr("solidgear.ladder.build", unmapped)
+    monkeypatch.setattr("solidgear.cli.shared.build", unmapped)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
 
 

@@ -99,7 +99,8 @@ TRAINS = {"system-modes", "response", "receptance", "judge-system", "nonlinear"}
 
 
 def test_what_commands_share_all_of_them_take():
-    commands = get_command(app).commands
+    door = get_command(app)
+    commands = {name: door.resolve_command(None, [name])[1] for name in door.commands}
     options = {
         name: {parameter.name for parameter in command.params} for name, command in commands.items()
     }
@@ -119,9 +120,6 @@ def test_a_field_more_is_an_option_more():
         told.append((scene, run))
 
     alone = typer.Typer()
-    # registered with the application of the test alone
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(command.__globals__, "app", alone)
-        command(paint)
+    alone.command()(command(paint))
     assert CliRunner().invoke(alone, ["one", "--colour", "blue", "--json"]).exit_code == 0
     assert told == [("one", More(as_json=True, colour="blue"))]

@@ -113,6 +113,25 @@ def test_modules_are_imported_at_the_top_or_by_a_statement(path):
     assert "__import__" not in {getattr(call.func, "id", None) for call in calls}
 
 
+def late_imports(path):
+    """Imports inside functions, each with the line above it, and its own."""
+    text = path.read_text()
+    lines = text.splitlines()
+    for function in ast.walk(ast.parse(text)):
+        if isinstance(function, ast.FunctionDef):
+            for node in ast.walk(function):
+                if isinstance(node, ast.Import | ast.ImportFrom):
+                    yield lines[node.lineno - 2].strip(), lines[node.lineno - 1].strip()
+
+
+@pytest.mark.parametrize("path", sorted((PACKAGE / "cli").rglob("*.py")), ids=lambda p: p.stem)
+def test_an_import_inside_a_function_says_why(path):
+    """An optional dependency, or start-up: what else a command needs stands at the top of its
+    module, which is imported when the command runs.
+    """
+    assert not [own for above, own in late_imports(path) if "#" not in own and above[:1] != "#"]
+
+
 def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs():
     # warnings go to the module whose line divides
     divide = "import numpy as np\ndef divide():\n    return np.zeros(2) / np.zeros(2)"

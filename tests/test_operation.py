@@ -120,11 +120,17 @@ def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
 
 
 @posix
-def test_ctrl_c_while_modules_are_read():
+@pytest.mark.parametrize("module", ["typer", "solidgear.cli.modes"])
+def test_ctrl_c_while_modules_are_read(module):
     """A breath after the start nothing has begun, and there is nothing to trace back."""
     code = "import os, signal, sys, types\n"
-    code += "class Finder:\n    def find_spec(self, name, *_):\n        if name == 'typer': os.kill(os.getpid(), signal.SIGINT)\n"
+    code += (
+        "class Finder:\n    def find_spec(self, name, *_):\n        if name == '"
+        + module
+        + "': os.kill(os.getpid(), signal.SIGINT)\n"
+    )
     code += "sys.meta_path.insert(0, Finder())\nimport solidgear.cli\n"
+    code += "sys.argv[1:] = ['modes', '--help']\nsolidgear.cli.main()\n"
     child = started(code)
     out, err = child.communicate(timeout=PATIENCE)
     assert (child.returncode, out, err) == (130, "", "solidgear: interrupted\n")

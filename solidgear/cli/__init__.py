@@ -1,4 +1,4 @@
-"""Command line: one module a group of commands."""
+"""Command line: one module a command, or a few; :mod:`solidgear.cli.app` knows which."""
 
 from __future__ import annotations
 
@@ -24,25 +24,6 @@ if _hears:
     signal.signal(signal.SIGINT, _interrupted)
 
 
-from solidgear.cli import (
-    answer,
-    bearing,
-    budget,
-    chart,
-    deflect,
-    files,
-    measured,
-    nonlinear,
-    optimise,
-    receptance,
-    sensitivities,
-    solve,
-    stiffness,
-    stress,
-    sweep,
-    train,
-    train_judge,
-)
 from solidgear.cli.app import app
 from solidgear.errors import SolidgearError, for_terminal
 from solidgear.machine.interruptible import leave

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from solidgear.cli.app import Group
+from solidgear.cli.bearing import loaded_by
 from solidgear.errors import SceneError, SolidgearError, show
-
-if TYPE_CHECKING:
-    from solidgear.report.units import Units
-    from solidgear.scene import Scene
-    from solidgear.scene.operation import OperatingPoint
-    from solidgear.scene.train import Train
+from solidgear.report.deflection_tables import DOFS, LOAD_OF
+from solidgear.report.units import Units
+from solidgear.scene import Scene
+from solidgear.scene.file import load
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.toml_file import is_train
+from solidgear.scene.train import Train
+from solidgear.studies.loading import load_train
+from solidgear.studies.train.operation import named_point
 
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
@@ -54,10 +58,6 @@ class Acting(Group):
         SolidgearError
             For options of the one on a file of the other, and a train without operating point.
         """
-        from solidgear.cli.bearing import loaded_by
-        from solidgear.scene.file import load
-        from solidgear.scene.toml_file import is_train
-
         if is_train(file):
             refuse({"--load": self.load}, "a shaft", file, "a train takes --torque")
             return self._at_point(file)
@@ -67,10 +67,6 @@ class Acting(Group):
         return scene if self.load is None else loaded_by(scene, self.load)
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
-        from solidgear.scene.operation import OperatingPoint
-        from solidgear.studies.loading import load_train
-        from solidgear.studies.train.operation import named_point
-
         if self.torque is None:
             instead = "write weight into its [operation]"
             refuse({"--weight": self.weight}, "a --torque", file, instead)
@@ -106,8 +102,6 @@ def refuse(options: dict[str, str | None], what: str, file: Path, instead: str) 
 
 def load_in_words(scene: Scene, units: Units) -> str:
     """The load of a scene, such as ``z 2000 N at pinion``."""
-    from solidgear.report.deflection_tables import DOFS, LOAD_OF
-
     six = scene.load.six if scene.load else [0.0] * 6
     parts = [
         f"{name} {units.text(float(value), si, 4)}"

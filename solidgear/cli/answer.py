@@ -7,22 +7,33 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from solidgear.cli.app import NOT_REACHED, caution, command, say
+from solidgear.cli.reading import load
 from solidgear.cli.shared import SceneFile, Shown, share
 from solidgear.errors import SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.judge.answer import Answered, Step
-    from solidgear.judge.open_record import OpenNumbers
-    from solidgear.judge.settle import Settled
-    from solidgear.judge.where import Whereabouts
-    from solidgear.quantity import Quantity
-    from solidgear.report.table import Table
-    from solidgear.scene import Scene
+from solidgear.judge.answer import Answered, Step
+from solidgear.judge.answer import answer as solve
+from solidgear.judge.open_record import OpenNumbers
+from solidgear.judge.settle import Settled
+from solidgear.judge.steps import ABOVE, BELOW
+from solidgear.judge.where import Whereabouts, where
+from solidgear.ladder.registry import LADDER
+from solidgear.models.kinds import PARTS
+from solidgear.quantity import Quantity
+from solidgear.report.open_words import columns as ranges
+from solidgear.report.open_words import remark
+from solidgear.report.plot import check_ending
+from solidgear.report.table import Column, Table, text
+from solidgear.report.units import units_named
+from solidgear.report.where_chart import draw_where, worth_naming
+from solidgear.report.words import bar_of, count, percent, seconds
+from solidgear.scene import Scene
+from solidgear.studies.budget import beside
+from solidgear.studies.guards.data import facing_one_way
 
 
 @command
@@ -56,15 +67,7 @@ def answer(
     ] = None,
     run: Shown,
 ) -> None:
-    """Numbers within a tolerance, each with its bar, from the cheapest model that can show it."""
-    from solidgear.cli.reading import load
-    from solidgear.judge.answer import answer as solve
-    from solidgear.studies.budget import beside
-    from solidgear.studies.guards.data import facing_one_way
-
     if picture is not None:
-        from solidgear.report.plot import check_ending
-
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
     for sentence in facing_one_way(loaded):
@@ -103,13 +106,6 @@ def answer(
 
 
 def _values(found: Answered, units: str, open_: OpenNumbers) -> Table:
-    from solidgear.judge.steps import ABOVE, BELOW
-    from solidgear.report.open_words import columns as ranges
-    from solidgear.report.open_words import remark
-    from solidgear.report.table import Column, Table, text
-    from solidgear.report.units import units_named
-    from solidgear.report.words import bar_of
-
     chosen = units_named(units)
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in found.values):
@@ -131,9 +127,6 @@ def _values(found: Answered, units: str, open_: OpenNumbers) -> Table:
 
 
 def _path(found: Answered) -> Table:
-    from solidgear.report.table import Column, Table, text
-    from solidgear.report.words import count, percent, seconds
-
     columns = [
         text("tried", lambda step: f"{step.rung}, chosen" if step.chosen else step.rung),
         text("mesh", lambda step: step.setting),
@@ -150,8 +143,6 @@ def _solved(found: Answered) -> list[Step]:
 
 def sentences(found: Answered | Settled) -> list[str]:
     """Plain text of the choice: the models passed over and why, the one that answered."""
-    from solidgear.report.words import percent, seconds
-
     passed: dict[str, list[str]] = {}
     for step in found.steps:
         if not step.valid:
@@ -174,10 +165,6 @@ def sentences(found: Answered | Settled) -> list[str]:
 
 def _of_round_part(scene: Scene, found: Answered) -> list[str]:
     """Remark that numbers are of the round part, where a mesh file is answered by a model of revolution."""
-    from solidgear.ladder.registry import LADDER
-    from solidgear.models.kinds import PARTS
-    from solidgear.report.words import percent
-
     body = scene.body
     if body is None or not body.one_mesh or PARTS in LADDER[found.rung].holds:
         return []
@@ -208,9 +195,6 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     SolidgearError
         For the answer of another model than the harmonic solid, or where nothing was answered.
     """
-    from solidgear.judge.where import where
-    from solidgear.ladder.registry import LADDER
-
     if found.rung != "harmonic":
         raise SolidgearError(
             f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
@@ -225,8 +209,6 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
 
 def _where_table(places: Whereabouts) -> Table:
     """Places of the error with their shares of it, the largest first."""
-    from solidgear.report.table import Column, Table
-    from solidgear.report.where_chart import worth_naming
 
     def millimetres(value: float) -> str:
         return f"{1e3 * value:.4g}"
@@ -245,8 +227,6 @@ def _sentence(places: Whereabouts) -> str:
     """Sentences on the places with most of the error, the width of the bar, and the cost of
     telling.
     """
-    from solidgear.report.words import percent, seconds
-
     total = percent(places.total, signed=False)
     return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
 
@@ -262,7 +242,5 @@ def _plain(places: Whereabouts) -> dict[str, Any]:
 
 def _draw(places: Whereabouts, picture: Path) -> None:
     """Write a picture of the mesh, every cell with its share of the error."""
-    from solidgear.report.where_chart import draw_where
-
     title = f"Bar of {places.quantity} by cells, order {places.order}"
     draw_where(picture, places.points, places.cells, places.shares, places.rows, title)

@@ -5,10 +5,13 @@ from __future__ import annotations
 import functools
 import inspect
 import sys
+import time
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
+from typer.core import TyperGroup
 
 from solidgear.machine.memory import one_command
 
@@ -18,7 +21,117 @@ if TYPE_CHECKING:
 
 R = TypeVar("R")
 
+#: line of the help of each command
+COMMANDS = {
+    "answer": (
+        "Numbers within a tolerance, each with its bar, from the cheapest model that can show it."
+    ),
+    "bearing": (
+        "Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of "
+        "a train with an \\[operation] their lives over its points."
+    ),
+    "budget": (
+        "Which unknown is worth measuring: what every open input of a scene leaves open of its "
+        "numbers."
+    ),
+    "chart": (
+        "Chart error against cost: every model and element, uniform and graded, with the Pareto "
+        "front."
+    ),
+    "deflect": (
+        "Deflection of shafts under torque: displacements, misalignment of the gears, bearing "
+        "loads."
+    ),
+    "new": "Write a short, commented scene that runs, or a train, to change into one's own.",
+    "scenes": "List the scenes that come with solidgear, or copy them into a folder.",
+    "options": (
+        "List what --set takes: every builder option, its default, its limits and what it means."
+    ),
+    "correlate": (
+        "Measured resonances beside computed modes: which is which, how sure, and how far apart."
+    ),
+    "identify": "Entries of a scene from measured resonances, and how sure they are.",
+    "nonlinear": (
+        "Teeth with backlash: where they part, jumps over speed, and how far off the linear "
+        "answer is."
+    ),
+    "optimise": "The best design within ranges, as far as error bars tell designs apart.",
+    "system-modes": (
+        "Natural frequencies of a geared rotor system, each with its name and its proven bound."
+    ),
+    "response": (
+        "Steady response to the transmission error: mesh force, reactions, motions, and a chart."
+    ),
+    "receptance": (
+        "Receptance between any two ports of a train: table, chart, and peaks with their modes."
+    ),
+    "sensitivities": (
+        "What would move a number: its derivatives by every number of the file, from one solution."
+    ),
+    "compare": (
+        "Solve a scene with every model and write a report on which to trust; a train as well, or "
+        "two of a kind beside each other."
+    ),
+    "modes": "Natural frequencies on the bearings, with the evidence for them.",
+    "render": "Draw one mode shape off-screen, or all of them in a page where they can be turned.",
+    "check": (
+        "Say what will be modelled and what will not hold, of a scene or a train; a light mesh is "
+        "the heaviest solved."
+    ),
+    "stiffness": (
+        "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
+    ),
+    "stress": (
+        "Stress of shafts at rest: section forces, nominal stress, fillets by the solid, DIN 743."
+    ),
+    "sweep": (
+        "Thousands of bearing sets on one body, or variants of a shaft or train, as rows of a file."
+    ),
+    "judge-system": (
+        "Comparison of a train with further mixes and reductions, and no folder unless asked for."
+    ),
+}
+#: modules of commands, where they have another name
+MODULES = {
+    "new": "files",
+    "scenes": "files",
+    "options": "files",
+    "correlate": "measured",
+    "identify": "measured",
+    "system-modes": "train",
+    "response": "train",
+    "judge-system": "train_judge",
+}
+
+
+class Door(TyperGroup):
+    """The commands: a module is imported when one of its commands runs or is asked for its help."""
+
+    def resolve_command(self, ctx, args):
+        """The command itself, in place of the one that has only name and help."""
+        name, known, rest = super().resolve_command(ctx, args)
+        return name, _imported(name) if name else known, rest
+
+    def invoke(self, ctx):
+        """Run a command; typer would swallow Ctrl-C without a word."""
+        try:
+            with one_command():
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            print("solidgear: interrupted", file=sys.stderr)
+            raise typer.Exit(130) from None
+
+
+def _imported(name: str) -> Any:
+    """A command with its options."""
+    module = import_module(f"solidgear.cli.{MODULES.get(name, name)}")
+    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    alone.command(name, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
+    return typer.main.get_command(alone)
+
+
 app = typer.Typer(
+    cls=Door,
     no_args_is_help=True,
     help="Shafts on their bearings, and two that mesh, as lumped model, beam, "
     "axisymmetric-harmonic solid and full 3D solid, side by side.",
@@ -29,11 +142,13 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
+for _name, _words in COMMANDS.items():
+    app.command(_name, help=_words)(lambda: None)
 
 
 def _version(asked: bool) -> None:
     if asked:
-        from importlib.metadata import version
+        from importlib.metadata import version  # start-up: for this option alone
 
         typer.echo(f"solidgear {version('solidgear')}")
         raise typer.Exit
@@ -61,7 +176,7 @@ def say(*told: RenderableType, soft_wrap: bool = True) -> None:
     """Print tables, and texts as they stand: a line of any length each, or broken at the width of
     the terminal without `soft_wrap`.
     """
-    from rich.console import Console
+    from rich.console import Console  # start-up: not before a command prints
 
     # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
     terminal = Console(highlight=False, markup=False, emoji=False)
@@ -80,13 +195,11 @@ class Progress:
     silent = False
 
     def __init__(self, quiet: bool = False):
-        import time
-
-        from rich.console import Console
+        from rich.console import Console  # start-up: as in `say`
 
         self.console = Console(stderr=True, highlight=False)
         self.quiet = quiet or self.silent
-        self.start, self.clock = time.perf_counter(), time.perf_counter
+        self.start = time.perf_counter()
         self.status: Status | None = None
 
     def __enter__(self):
@@ -102,7 +215,7 @@ class Progress:
     def __call__(self, text: str) -> None:
         if self.quiet:
             return
-        line = f"{self.clock() - self.start:6.1f} s  {text}"
+        line = f"{time.perf_counter() - self.start:6.1f} s  {text}"
         if self.status:
             self.status.update(line)
         else:
@@ -116,31 +229,24 @@ class Group:
 
 
 def command(function: Callable[..., R]) -> Callable[..., R]:
-    """Register a command, the fields of its groups among its options; typer would swallow Ctrl-C
-    without a word.
-    """
+    """A command as typer reads it: the fields of its groups are among its options."""
     parameters = inspect.signature(function, eval_str=True).parameters
     groups = {name: p.annotation for name, p in parameters.items() if _is_group(p.annotation)}
 
     @functools.wraps(function)
-    def quiet(**given: Any) -> R:
-        try:
-            with one_command():
-                for name, group in groups.items():
-                    given[name] = group(**{key.name: given.pop(key.name) for key in _fields(group)})
-                return function(**given)
-        except KeyboardInterrupt:
-            print("solidgear: interrupted", file=sys.stderr)
-            raise typer.Exit(130) from None
+    def flattened(**given: Any) -> R:
+        for name, group in groups.items():
+            given[name] = group(**{key.name: given.pop(key.name) for key in _fields(group)})
+        return function(**given)
 
     flat = [
         own
         for p in parameters.values()
         for own in (_fields(groups[p.name]) if p.name in groups else [p])
     ]
-    quiet.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
-    quiet.__annotations__ = {p.name: p.annotation for p in flat}
-    return app.command(name=function.__name__.replace("_", "-"))(quiet)
+    flattened.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
+    flattened.__annotations__ = {p.name: p.annotation for p in flat}
+    return flattened
 
 
 def _is_group(annotation: Any) -> bool:

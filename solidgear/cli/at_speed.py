@@ -6,17 +6,18 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from solidgear.cli.app import Group, say
 from solidgear.errors import SceneError, SolidgearError, show
-
-if TYPE_CHECKING:
-    from solidgear.scene.train import Train
-    from solidgear.studies.train.at_speed import AtSpeed
-    from solidgear.studies.train.modes import TrainMode
+from solidgear.report import speed_tables
+from solidgear.scene.train import Train
+from solidgear.scene.units import quantity
+from solidgear.studies.spectrum import read_spectrum
+from solidgear.studies.train.at_speed import NEAR, AtSpeed, at_speed, refuse_share, turns_of_pinion
+from solidgear.studies.train.modes import TrainMode
 
 #: rows of tables on a terminal
 MOST = 30
@@ -85,9 +86,6 @@ class Asked:
         fit: float | None,
         within: float | None,
     ):
-        from solidgear.studies.spectrum import read_spectrum
-        from solidgear.studies.train.at_speed import NEAR, refuse_share
-
         self.train, self.fit, self.within = train, fit, NEAR if within is None else within
         self.turns, self.told = 0.0, ""
         if speed is not None:
@@ -114,8 +112,6 @@ class Asked:
 
     def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
         """Orders at the speed; nothing without one."""
-        from solidgear.studies.train.at_speed import at_speed
-
         if not self.turns:
             return None
         how = self.within, self.spectrum, self.fit
@@ -123,9 +119,6 @@ class Asked:
 
 
 def _turns(train: Train, text: str, of: str) -> float:
-    from solidgear.scene.units import quantity
-    from solidgear.studies.train.at_speed import turns_of_pinion
-
     try:
         speed = quantity(text, "speed")
     except SceneError:
@@ -141,8 +134,6 @@ def _turns(train: Train, text: str, of: str) -> float:
 
 def say_at_speed(found: AtSpeed) -> None:
     """Print orders at a speed, those near natural frequencies, and measured peaks."""
-    from solidgear.report import speed_tables
-
     say(speed_tables.first_lines(found.lines))
     near = speed_tables.coincidences(found)
     say(near if near else f"{near.title}: none.")

@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 
+from solidgear.bearings.rolling import UNITS
 from solidgear.cli.app import command, say
+from solidgear.cli.bearing_life import plain_life, print_life, speed_of
 from solidgear.cli.shared import Run, SceneFile
+from solidgear.cli.train_life import show_train
 from solidgear.errors import SceneError, SolidgearError, show
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from solidgear.scene import Scene
-    from solidgear.studies.bearing_study import BearingFacts
+from solidgear.frames import DOF_NAMES
+from solidgear.report.bearing_chart import BearingPanel, draw_bearings
+from solidgear.report.plot import check_ending
+from solidgear.report.terminal import matrix_table
+from solidgear.report.words import engineering
+from solidgear.scene import Scene
+from solidgear.scene.designation import boundary
+from solidgear.scene.file import load as read
+from solidgear.scene.toml_file import describes_train, parse
+from solidgear.studies.bearing_life import bearing_lives
+from solidgear.studies.bearing_study import BearingFacts, bearing_facts, over_load, with_load
+from solidgear.studies.loading import explained, shaft
 
 
 @command
@@ -45,24 +56,11 @@ def bearing(
     ] = None,
     run: Run,
 ) -> None:
-    """Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of a
-    train with an [operation] their lives over its points.
-    """
-    from solidgear.cli.bearing_life import plain_life, print_life, speed_of
-    from solidgear.cli.train_life import show_train
-    from solidgear.scene.file import load as read
-    from solidgear.scene.toml_file import describes_train, parse
-    from solidgear.studies.bearing_life import bearing_lives
-    from solidgear.studies.bearing_study import bearing_facts
-    from solidgear.studies.loading import explained, shaft
-
     if describes_train(parse(str(scene))):
         of_scenes = {"--load": load, "--speed": speed, "--out": out}
         show_train(scene, name, of_scenes, run.as_json)
         return
     if out is not None:
-        from solidgear.report.plot import check_ending
-
         check_ending(out)
     turns = speed_of(speed)
     loaded = read(scene)
@@ -100,8 +98,6 @@ def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
     SolidgearError
         Of components that are none.
     """
-    from solidgear.studies.bearing_study import with_load
-
     try:
         return with_load(scene, _components(load), bearing)
     except SceneError as error:
@@ -125,9 +121,6 @@ def _components(text: str) -> dict[str, str | float]:
 
 
 def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
-    from solidgear.report.bearing_chart import BearingPanel, draw_bearings
-    from solidgear.studies.bearing_study import over_load
-
     curves = over_load(scene, body)
     panels = [
         BearingPanel(
@@ -144,14 +137,6 @@ def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
 
 
 def _print(fact: BearingFacts) -> None:
-    import numpy as np
-
-    from solidgear.bearings.rolling import UNITS
-    from solidgear.frames import DOF_NAMES
-    from solidgear.report.terminal import matrix_table
-    from solidgear.report.words import engineering
-    from solidgear.scene.designation import boundary
-
     what = fact.designation or fact.kind.replace("_", " ")
     ignored = boundary(fact.designation).ignored if fact.designation else ""
     unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
@@ -213,8 +198,6 @@ def _print(fact: BearingFacts) -> None:
 
 
 def _plain(fact: BearingFacts) -> dict[str, Any]:
-    import numpy as np
-
     def numbers(values) -> list:
         return [float(v) if np.isfinite(v) else None for v in values]
 

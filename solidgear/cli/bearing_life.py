@@ -5,20 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from solidgear.bearings.life import Life
 from solidgear.cli.app import say
 from solidgear.errors import SceneError, SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.bearings.life import Life
-    from solidgear.studies.bearing_life import BearingLife
+from solidgear.report.table import Column, Table
+from solidgear.report.words import engineering
+from solidgear.scene.units import quantity
+from solidgear.studies.bearing_life import BearingLife
 
 
 def speed_of(text: str | None) -> float | None:
     """Speed that was asked for, rad/s."""
-    from solidgear.scene.units import quantity
-
     if text is None:
         return None
     try:
@@ -52,8 +51,6 @@ def _lines(found: BearingLife) -> list[_Line]:
 
 def print_life(found: BearingLife) -> None:
     """Print the lives of a bearing, their range and where each number came from."""
-    from solidgear.report.table import Column, Table
-    from solidgear.report.words import engineering
 
     def number(value: float) -> str:
         return engineering(value, 3) if math.isfinite(value) else "endless"
@@ -83,8 +80,6 @@ def print_life(found: BearingLife) -> None:
 
 def _sources(one: Life) -> Iterator[str]:
     """Sentences on how the lives of a bearing come about."""
-    from solidgear.report.words import engineering
-
     p, own = one.equivalent, one.modified
     yield (
         f"L10 = (C/P)^p with P = {p.X:.3g} Fr + {p.Y:.3g} Fa = {engineering(p.load, 4)} N, Fr "

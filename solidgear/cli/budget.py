@@ -9,8 +9,14 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import command, say
+from solidgear.cli.reading import load
 from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SolidgearError, listed
+from solidgear.judge.answer import asked_for
+from solidgear.report.budget_chart import budget_chart
+from solidgear.report.open_words import budget as table
+from solidgear.report.plot import check_ending
+from solidgear.studies.budget import budget as worked_out
 
 
 @command
@@ -32,15 +38,7 @@ def budget(
     ] = None,
     run: Run,
 ) -> None:
-    """Which unknown is worth measuring: what every open input of a scene leaves open of its numbers."""
-    from solidgear.cli.reading import load
-    from solidgear.judge.answer import asked_for
-    from solidgear.report.open_words import budget as table
-    from solidgear.studies.budget import budget as worked_out
-
     if out is not None:
-        from solidgear.report.plot import check_ending
-
         check_ending(out)
     loaded = load(scene)
     names = asked_for(loaded, ask) if ask else ()
@@ -50,8 +48,6 @@ def budget(
     if absent:
         raise SolidgearError(f"--ask: no range is known of {listed(absent)}")
     if out is not None:
-        from solidgear.report.budget_chart import budget_chart
-
         chart = budget_chart(found, asked=names)
         if chart is not None:
             chart.write(out)

@@ -5,18 +5,26 @@ from __future__ import annotations
 import functools
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from solidgear.cli.app import Progress, command, say
+from solidgear.cli.reading import load
 from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.judge.race.pareto import Race
-    from solidgear.judge.record import Record
-    from solidgear.scene import Scene
+from solidgear.judge.race.automatic import automatic_rows, solved
+from solidgear.judge.race.cases import plan, setup_seconds
+from solidgear.judge.race.pareto import Race
+from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
+from solidgear.judge.record import Record
+from solidgear.report.border import as_record
+from solidgear.report.folder import clear_halves, held
+from solidgear.report.html import write_report
+from solidgear.report.race_figure import draw
+from solidgear.report.race_rows import PICTURE, left_out, records, write_rows
+from solidgear.report.race_tables import front_table
+from solidgear.scene import Scene
 
 
 @command
@@ -51,11 +59,6 @@ def chart(
     ] = None,
     run: Run,
 ) -> None:
-    """Chart error against cost: every model and element, uniform and graded, with the Pareto front."""
-    from solidgear.cli.reading import load
-    from solidgear.report.race_rows import PICTURE, left_out, records
-    from solidgear.report.race_tables import front_table
-
     found, reported = run_chart(
         load(scene), out, full=full, runs=runs, budget=budget, quiet=run.as_json
     )
@@ -109,14 +112,6 @@ def run_chart(
         comparison of it by another version of solidgear, before anything is timed; where no case
         has an answer.
     """
-    from solidgear.judge.race.automatic import automatic_rows, solved
-    from solidgear.judge.race.cases import plan, setup_seconds
-    from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
-    from solidgear.report.folder import clear_halves, held
-    from solidgear.report.html import write_report
-    from solidgear.report.race_figure import draw
-    from solidgear.report.race_rows import PICTURE, write_rows
-
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
     if budget is not None and not 0 < budget < float("inf"):
@@ -154,8 +149,6 @@ def _earlier(folder: Path, scene: Scene) -> Record | None:
     """The record of an earlier comparison of the same scene, whose report gets the chart; None
     where there is none.
     """
-    from solidgear.report.border import as_record
-
     path = folder / "results.json"
     try:
         results = json.loads(path.read_text(encoding="utf-8"))

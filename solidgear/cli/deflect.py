@@ -5,18 +5,24 @@ from __future__ import annotations
 import json
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from solidgear.cli.acting import Acting, AtRestFile, load_in_words
 from solidgear.cli.app import Progress, caution, command, say
 from solidgear.cli.shared import BY_MODEL, Shown
-
-if TYPE_CHECKING:
-    from solidgear.scene import Scene
-    from solidgear.scene.operation import OperatingPoint
-    from solidgear.scene.train import Train
+from solidgear.report import deflection_tables as tables
+from solidgear.report.deflection_files import write_deflection
+from solidgear.report.folder import held
+from solidgear.report.units import units_named
+from solidgear.scene import Scene
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.train import Train
+from solidgear.studies import deflection
+from solidgear.studies.loading import explained
+from solidgear.studies.train import deflection as of_train
+from solidgear.studies.train.models import Workshop
 
 
 @command
@@ -38,9 +44,6 @@ def deflect(
     ] = None,
     run: Shown,
 ) -> None:
-    """Deflection of shafts under torque: displacements, misalignment of the gears, bearing loads."""
-    from solidgear.report.folder import held
-
     given = acting.read(file)
     with held(out) if out else nullcontext(), run.progress() as progress:
         if isinstance(given, tuple):
@@ -63,13 +66,7 @@ def _train(
     progress: Progress,
     every: bool,
 ) -> tuple[dict, list]:
-    from solidgear.report import deflection_tables as tables
-    from solidgear.report.deflection_files import write_deflection
-    from solidgear.report.units import units_named
-    from solidgear.studies.train.deflection import MODELS, deflect_train
-    from solidgear.studies.train.models import Workshop
-
-    found = deflect_train(Workshop(train), at, models or MODELS, progress, every)
+    found = of_train.deflect_train(Workshop(train), at, models or of_train.MODELS, progress, every)
     shown, judge = units_named(units), found.judge
     over = tables.over_points(found.points, shown)
     force = shown.text(judge.mesh_force, "N", 5)
@@ -108,14 +105,8 @@ def _shaft(
     units: str,
     progress: Progress,
 ) -> tuple[dict, list]:
-    from solidgear.report import deflection_tables as tables
-    from solidgear.report.deflection_files import write_deflection
-    from solidgear.report.units import units_named
-    from solidgear.studies.deflection import MODELS, deflect_scene
-    from solidgear.studies.loading import explained
-
     with explained(file):
-        found = deflect_scene(scene, models or MODELS, progress)
+        found = deflection.deflect_scene(scene, models or deflection.MODELS, progress)
     shown, judge = units_named(units), found.shafts[-1]
     lead = f"Under {load_in_words(scene, shown)}; numbers by {judge.model}."
     lines: list[Any] = [

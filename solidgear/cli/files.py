@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from solidgear.cli.app import command, say
+from solidgear.cli.shipped import needed, shipped, title
 from solidgear.cli.starts import STARTS, start
 from solidgear.errors import SolidgearError, nearest, show
+from solidgear.ladder.model import Model
 from solidgear.ladder.registry import LADDER
-
-if TYPE_CHECKING:
-    from solidgear.ladder.model import Model
-    from solidgear.models.options import Option
-    from solidgear.report.table import Table
+from solidgear.machine.whole_file import whole
+from solidgear.models.options import Option, limits
+from solidgear.report.table import Table, text, word
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
 
@@ -25,13 +25,12 @@ def new(
     name: Annotated[Path, typer.Argument(help="Scene file to write, with or without .toml.")],
     kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
 ) -> None:
-    """Write a short, commented scene that runs, or a train, to change into one's own."""
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
-    made = {path.parent / one: text for one, text in start(kind, path.stem).items()}
+    made = {path.parent / one: content for one, content in start(kind, path.stem).items()}
     for one in made:
         _refuse_existing(one)
-    for one, text in made.items():
-        _write(one, text)
+    for one, content in made.items():
+        _write(one, content)
     beside = f" (with {', '.join(str(one) for one in made if one != path)})" * (len(made) > 1)
     typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
 
@@ -45,9 +44,6 @@ def scenes(
         Path | None, typer.Option("--to", help="Folder to copy them into, with what they refer to.")
     ] = None,
 ) -> None:
-    """List the scenes that come with solidgear, or copy them into a folder."""
-    from solidgear.cli.shipped import needed, shipped, title
-
     there = shipped()
     for one in names or []:
         if one.removesuffix(".toml") not in there:
@@ -57,8 +53,6 @@ def scenes(
             )
     asked = [one.removesuffix(".toml") for one in names or there]
     if to is None:
-        from solidgear.report.table import Table, text
-
         columns = [text("scene", str), text("what it is", lambda one: title(there[one]))]
         say(Table("", columns, asked, style="ruled"))
         return
@@ -76,14 +70,11 @@ def options(
         str, typer.Argument(help=f"{', '.join(LADDER.bodies)}; all of them by default.")
     ] = "",
 ) -> None:
-    """List what --set takes: every builder option, its default, its limits and what it means."""
     for name in (LADDER[model].name,) if model else LADDER.bodies:
         say(_options(LADDER[name]))
 
 
 def _options(model: Model) -> Table:
-    from solidgear.report.table import Table, text, word
-
     defaults, known = model.defaults(), model.options
     columns = [
         word("option", str),
@@ -95,8 +86,6 @@ def _options(model: Model) -> Table:
 
 
 def _may_be(option: Option) -> str:
-    from solidgear.models.options import limits
-
     match option.kind:
         case "flag":
             return "true or false"
@@ -126,8 +115,6 @@ def _refuse_existing(path: Path) -> None:
 
 
 def _write(path: Path, content: str | bytes) -> None:
-    from solidgear.machine.whole_file import whole
-
     _refuse_existing(path)
     data = content.encode() if isinstance(content, str) else content
     try:

@@ -11,7 +11,24 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.cli.app import command, say
+from solidgear.cli.reading import load
 from solidgear.cli.shared import Run, share
+from solidgear.report.correlation_tables import (
+    entries,
+    fitted,
+    pairs,
+    peaks,
+    predicted,
+    write_correlation,
+    write_identification,
+)
+from solidgear.report.folder import held
+from solidgear.report.viewer import viewer_fragment
+from solidgear.studies.measured.beside import turned_beside
+from solidgear.studies.measured.correlate import correlate as correlated
+from solidgear.studies.measured.data import load_measured
+from solidgear.studies.measured.identify import identify as identified
+from solidgear.studies.measured.overlay import overlay
 
 SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML).")]
 MeasuredFile = Annotated[
@@ -43,13 +60,6 @@ def correlate(
     out: Out = None,
     run: Run,
 ) -> None:
-    """Measured resonances beside computed modes: which is which, how sure, and how far apart."""
-    from solidgear.cli.reading import load
-    from solidgear.report.correlation_tables import pairs, peaks
-    from solidgear.report.folder import held
-    from solidgear.studies.measured.correlate import correlate as correlated
-    from solidgear.studies.measured.data import load_measured
-
     data = load_measured(measured)
     loaded = load(scene)
     with held(out) if out else nullcontext(), run.progress() as progress:
@@ -83,17 +93,6 @@ def identify(
     out: Out = None,
     run: Run,
 ) -> None:
-    """Entries of a scene from measured resonances, and how sure they are."""
-    from solidgear.report.correlation_tables import (
-        entries,
-        fitted,
-        predicted,
-        write_identification,
-    )
-    from solidgear.report.folder import held
-    from solidgear.studies.measured.data import load_measured
-    from solidgear.studies.measured.identify import identify as identified
-
     data = load_measured(measured)
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = identified(
@@ -112,11 +111,6 @@ def identify(
 
 def _written(out: Path, found: Any, progress: Callable[[str], None]) -> list[Path]:
     """The page of a correlation, with shapes to be turned and responses where there are any."""
-    from solidgear.report.correlation_tables import write_correlation
-    from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.measured.beside import turned_beside
-    from solidgear.studies.measured.overlay import overlay
-
     progress("responses and shapes at the measuring points")
     shown = turned_beside(found)
     return write_correlation(out, found, overlay(found), viewer_fragment(shown) if shown else "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -13,9 +13,16 @@ from solidgear.cli.app import caution, command, say
 from solidgear.cli.shared import Shown
 from solidgear.cli.train_options import Mix, Reduced, TrainFile, mix
 from solidgear.errors import SceneError, SolidgearError, show
-
-if TYPE_CHECKING:
-    from solidgear.studies.train.models import Workshop
+from solidgear.report.folder import held
+from solidgear.report.nonlinear_files import lead, mixes, over_force, write_nonlinear
+from solidgear.report.units import units_named
+from solidgear.scene.units import quantity
+from solidgear.studies.train import nonlinear as study
+from solidgear.studies.train.comparison import described
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import unpublished_lines
+from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.slips import slips
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds
 MOST_RUNS = 200
@@ -69,16 +76,6 @@ def nonlinear(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    """Teeth with backlash: where they part, jumps over speed, and how far off the linear answer is."""
-    from solidgear.report.folder import held
-    from solidgear.report.nonlinear_files import lead, mixes, over_force, write_nonlinear
-    from solidgear.report.units import units_named
-    from solidgear.studies.train import nonlinear as study
-    from solidgear.studies.train.comparison import described
-    from solidgear.studies.train.modes import unpublished_lines
-    from solidgear.studies.train.nonlinear_told import BacklashTold
-    from solidgear.studies.train.slips import slips
-
     shop = reduced.workshop(train, models.of_shafts)
     first = models.pinion, models.gear
     usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
@@ -132,8 +129,6 @@ def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Work
 
 def _read(option: str, text: str | None, dimension: str) -> float | None:
     """A quantity of an option in SI."""
-    from solidgear.scene.units import quantity
-
     if text is None:
         return None
     try:

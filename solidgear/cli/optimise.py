@@ -11,6 +11,9 @@ import typer
 
 from solidgear.cli.app import NOT_REACHED, command, say
 from solidgear.cli.shared import AUTO, BY_MODEL, AutoChoice, Run, share
+from solidgear.report.folder import held
+from solidgear.report.optimum_tables import designs, write_optimum
+from solidgear.studies.optimise import optimise as optimised
 
 
 @command
@@ -56,11 +59,6 @@ def optimise(
     ] = None,
     run: Run,
 ) -> None:
-    """The best design within ranges, as far as error bars tell designs apart."""
-    from solidgear.report.folder import held
-    from solidgear.report.optimum_tables import designs, write_optimum
-    from solidgear.studies.optimise import optimise as optimised
-
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = optimised(
             scene,

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from solidgear.scene import Scene
+from solidgear.scene import Scene
+from solidgear.studies.loading import load as read
 
 
 def load(path: Path) -> Scene:
@@ -22,8 +21,6 @@ def load(path: Path) -> Scene:
     SceneError
         As :func:`solidgear.load`.
     """
-    from solidgear.studies.loading import load as read
-
     scene = read(path)
     for sentence in scene.body.doubts if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)

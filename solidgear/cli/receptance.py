@@ -11,6 +11,12 @@ from solidgear.cli.app import caution, command, say
 from solidgear.cli.shared import Shown
 from solidgear.cli.train import end_of, print_peaks
 from solidgear.cli.train_options import Driven, Reduced, TrainFile
+from solidgear.report.folder import held
+from solidgear.report.train_files import write_receptance
+from solidgear.studies.train.comparison import described
+from solidgear.studies.train.modes import unpublished_lines
+from solidgear.studies.train.receptance import receptance as between
+from solidgear.studies.train.slips import slips
 
 END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
 
@@ -28,14 +34,6 @@ def receptance(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    """Receptance between any two ports of a train: table, chart, and peaks with their modes."""
-    from solidgear.report.folder import held
-    from solidgear.report.train_files import write_receptance
-    from solidgear.studies.train.comparison import described
-    from solidgear.studies.train.modes import unpublished_lines
-    from solidgear.studies.train.receptance import receptance as between
-    from solidgear.studies.train.slips import slips
-
     shop = reduced.workshop(train, driven.of_shafts)
     ends = end_of("--from", from_), end_of("--to", to)
     unpublished, said = shop.train.unpublished(), slips(shop)

@@ -11,6 +11,10 @@ import typer
 
 from solidgear.cli.app import command, say
 from solidgear.cli.shared import Fixed, SceneFile, Shown, options
+from solidgear.report import sensitivity
+from solidgear.report.folder import held
+from solidgear.report.units import units_named
+from solidgear.studies.sensitivity.run import sensitivities as derived
 
 
 @command
@@ -40,12 +44,6 @@ def sensitivities(
     fixed: Fixed,
     run: Shown,
 ) -> None:
-    """What would move a number: its derivatives by every number of the file, from one solution."""
-    from solidgear.report import sensitivity
-    from solidgear.report.folder import held
-    from solidgear.report.units import units_named
-    from solidgear.studies.sensitivity.run import sensitivities as derived
-
     given = options(fixed.settings)
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = derived(scene, fixed.name, of, by, progress=progress, **given)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import typer
 
+from solidgear.body import Body
 from solidgear.cli.answer import sentences
 from solidgear.cli.app import NOT_REACHED
 from solidgear.errors import listed
-
-if TYPE_CHECKING:
-    from solidgear.body import Body
-    from solidgear.judge.settle import Settled
-    from solidgear.scene import Scene
-    from solidgear.solve.modes import ModeSet
+from solidgear.judge.quantities import in_words
+from solidgear.judge.settle import Settled
+from solidgear.ladder.registry import LADDER
+from solidgear.report.words import is_number, percent
+from solidgear.scene import Scene
+from solidgear.solve.modes import ModeSet
 
 
 def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
@@ -46,11 +46,8 @@ def over_the_sweep(settled: Settled | None) -> list[str]:
 
 
 def _largest(settled: Settled, where: str) -> list[str]:
-    from solidgear.report.words import is_number, percent
-
     if settled.largest is None:
         return []
-    from solidgear.judge.quantities import in_words
 
     quantity, bar = settled.largest
     main = settled.point if any(name.points for name in settled.bars) else ""
@@ -67,7 +64,6 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     """Sentences on bars that are not within the tolerance although those of what was judged are."""
     if settled is None or not settled.reached:
         return []
-    from solidgear.report.words import percent
 
     wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
     if not wide:
@@ -81,8 +77,6 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
 
 def unjudged(names: Sequence[str], model: str) -> list[str]:
     """Sentences on modes without a bar."""
-    from solidgear.ladder.registry import LADDER
-
     if not names:
         return []
     why = "the higher a mode, the more it asks of a mesh"

@@ -8,6 +8,7 @@ import typer
 
 from solidgear.cli.shared import options_by_name
 from solidgear.ladder.registry import LADDER
+from solidgear.studies.train.shaft import checked_rung
 
 ShaftSettings = Annotated[
     list[str] | None,
@@ -34,8 +35,6 @@ def of_shafts(
     SolidgearError
         For a model, an option or a value that there is not.
     """
-    from solidgear.studies.train.shaft import checked_rung
-
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
     given = options_by_name(pairs, ("pinion", "gear"), "side", "pinion.order=3")
     for side, options in given.items():

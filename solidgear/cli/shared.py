@@ -17,6 +17,7 @@ import typer
 
 from solidgear.cli.app import Group, Progress
 from solidgear.errors import SolidgearError, show
+from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.report.units import ENGINEERING, SYSTEMS
 
@@ -190,7 +191,7 @@ class Solved(Chosen):
         """
         if not self.automatic():
             return build_body(scene, self.name, self.pairs), None
-        from solidgear.judge.settle import settle
+        from solidgear.judge.settle import settle  # start-up: for ``auto`` alone
 
         # A second or less for most scenes: lines are for those who watch.
         with Progress(quiet=not sys.stderr.isatty()) as progress:
@@ -240,8 +241,6 @@ def _value(text: str):
 
 def build_body(scene: Scene, name: str, pairs: list[str] | None) -> Body:
     """Body of a scene by one model, with ``--set`` options."""
-    from solidgear.ladder import build
-
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.
     return build(scene, name, **LADDER[name].checked(options(pairs)))

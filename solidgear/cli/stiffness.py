@@ -3,19 +3,30 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 
 from solidgear.cli.app import caution, command, say
+from solidgear.cli.reading import load
 from solidgear.cli.settled import bar_lines, ended, heading
 from solidgear.cli.shared import SceneFile, Shown, Solved
-
-if TYPE_CHECKING:
-    from solidgear.judge.settle import Settled
-    from solidgear.report.table import Table
-    from solidgear.scene import Scene
-    from solidgear.solve.condensed import Condensed, Coupled
+from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
+from solidgear.judge.settle import Settled
+from solidgear.quantity import COMPLIANCE, STIFFNESS
+from solidgear.report.open_words import table as open_table
+from solidgear.report.table import Column, Table
+from solidgear.report.terminal import matrix_table
+from solidgear.report.units import units_named
+from solidgear.report.words import plus_minus
+from solidgear.scene import Scene
+from solidgear.scene.rules import no_such_point
+from solidgear.solve.condensed import Condensed, Coupled
+from solidgear.solve.statics import condense
+from solidgear.studies.budget import beside
+from solidgear.studies.check import cautions
 
 
 @command
@@ -37,14 +48,6 @@ def stiffness(
     ] = None,
     run: Shown,
 ) -> None:
-    """6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."""
-    from solidgear.cli.reading import load
-    from solidgear.report.open_words import table as open_table
-    from solidgear.report.units import units_named
-    from solidgear.solve.statics import condense
-    from solidgear.studies.budget import beside
-    from solidgear.studies.check import cautions
-
     loaded = load(scene)
     if attachment:
         loaded = loaded.with_attachment(attachment)
@@ -83,9 +86,6 @@ def stiffness(
 
 def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
     """Names given with ``--port``; that of the main point where there are none."""
-    from solidgear.errors import SolidgearError
-    from solidgear.scene.rules import no_such_point
-
     known = [one.name for one in scene.ports]
     if port is None:
         return (known[0],)
@@ -100,14 +100,10 @@ def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
 
 
 def _numbers(matrix) -> list[list[float | None]]:
-    import numpy as np
-
     return [[float(v) if np.isfinite(v) else None for v in row] for row in matrix]
 
 
 def _plain(found: Condensed) -> dict[str, Any]:
-    from solidgear.frames import DOF_NAMES
-
     return {
         "port": found.port,
         "attachment": found.attachment,
@@ -121,8 +117,6 @@ def _plain(found: Condensed) -> dict[str, Any]:
 
 
 def _plain_coupled(found: Coupled) -> dict[str, Any]:
-    from solidgear.frames import DOF_NAMES
-
     return {
         "ports": found.ports,
         "attachments": found.attachments,
@@ -135,9 +129,6 @@ def _plain_coupled(found: Coupled) -> dict[str, Any]:
 
 
 def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
-    from solidgear.frames import DOF_NAMES
-    from solidgear.report.terminal import matrix_table
-
     say(
         f"{head}, port {found.port!r} at y = {1e3 * scene.port.y:.3f} mm ({found.attachment})",
         matrix_table(found.stiffness, "stiffness", units),
@@ -156,10 +147,6 @@ def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
 
 def _bars(settled: Settled, found: Coupled) -> Table:
     """The largest mesh bar of every block."""
-    from solidgear.quantity import COMPLIANCE, STIFFNESS
-    from solidgear.report.table import Column, Table
-    from solidgear.report.words import plus_minus
-
     largest: dict[tuple[str, ...], float] = {}
     for name, bar in settled.bars.items():
         if name.pair or name.kind == COMPLIANCE:  # what one point resists alone is not told here
@@ -184,10 +171,6 @@ def _bars(settled: Settled, found: Coupled) -> Table:
 
 
 def _tell_coupled(head: str, scene: Scene, found: Coupled, units: str) -> None:
-    import numpy as np
-
-    from solidgear.report.terminal import matrix_table
-
     places = {port.name: 1e3 * port.y for port in scene.ports}
     at = ", ".join(
         f"{name!r} at y = {places[name]:.3f} mm ({kind})"

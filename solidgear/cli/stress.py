@@ -6,7 +6,7 @@ import json
 from contextlib import nullcontext
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -14,9 +14,13 @@ from solidgear.cli.acting import Acting, AtRestFile, load_in_words, refuse
 from solidgear.cli.app import NOT_REACHED, Group, caution, command, say
 from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, share
 from solidgear.errors import SceneError, SolidgearError, show
-
-if TYPE_CHECKING:
-    from solidgear.studies.stress.rating import Conditions
+from solidgear.report.folder import held
+from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
+from solidgear.report.units import in_ascii, units_named
+from solidgear.scene.units import quantity
+from solidgear.studies.loading import explained
+from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
+from solidgear.studies.stress.rating import Conditions
 
 
 @dataclass(frozen=True)
@@ -58,8 +62,6 @@ class Rated(Group):
         SolidgearError
             For a value that is none, with its option.
         """
-        from solidgear.studies.stress.rating import Conditions
-
         given = {f.name: getattr(self, f.name) for f in fields(self)}
         try:
             return Conditions(**{name: v for name, v in given.items() if v is not None})
@@ -95,13 +97,6 @@ def stress(
     ] = None,
     run: Shown,
 ) -> None:
-    """Stress of shafts at rest: section forces, nominal stress, fillets by the solid, DIN 743."""
-    from solidgear.report.folder import held
-    from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
-    from solidgear.report.units import in_ascii, units_named
-    from solidgear.studies.loading import explained
-    from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
-
     asked, given, shown = Asked(tol, rated.conditions()), acting.read(file), units_named(run.units)
     torques = dict(map(_torque, drive or ()))
     with held(out) if out else nullcontext(), run.progress() as progress:
@@ -134,8 +129,6 @@ def stress(
 
 def _torque(text: str) -> tuple[str, float]:
     """Name and torque, N m, from ``B=115 N*m``."""
-    from solidgear.scene.units import quantity
-
     name, sep, value = (part.strip() for part in text.partition("="))
     if not sep or not name:
         raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +12,7 @@ import typer
 
 from solidgear.cli.app import Progress as Steps
 from solidgear.cli.app import command
+from solidgear.cli.reading import load
 from solidgear.cli.settled import ended, over_the_sweep
 from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, share
 from solidgear.cli.sweep_rows import Rows, refusals, rows_there
@@ -18,6 +20,13 @@ from solidgear.cli.sweep_scene import sweep_scene
 from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.errors import SolidgearError
+from solidgear.ladder import build
+from solidgear.ladder.registry import LADDER
+from solidgear.scene.toml_file import is_train
+from solidgear.studies.check import cautions
+from solidgear.studies.sweep import sweep as swept
+from solidgear.studies.sweep.choice import settled_for_sweep
+from solidgear.studies.sweep.vary import of_bearings_alone
 
 #: relative, of frequencies of a shaft
 TOLERANCE = 1e-6
@@ -60,10 +69,6 @@ def sweep(
     reduced: Reduced,
     run: Run,
 ) -> None:
-    """Thousands of bearing sets on one body, or variants of a shaft or train, as rows of a file."""
-    from solidgear.scene.toml_file import is_train
-    from solidgear.studies.sweep.vary import of_bearings_alone
-
     if is_train(scene):
         of_shaft = {
             "--model": model.name != AUTO,
@@ -95,15 +100,6 @@ def sweep(
 def _sweep_shaft(
     scene: Path, vary: list[str], rows: Rows, model: Chosen, tolerance: float, run: Run
 ) -> None:
-    from dataclasses import asdict
-
-    from solidgear.cli.reading import load
-    from solidgear.ladder import build
-    from solidgear.ladder.registry import LADDER
-    from solidgear.studies.check import cautions
-    from solidgear.studies.sweep import sweep as swept
-    from solidgear.studies.sweep.choice import settled_for_sweep
-
     loaded = load(scene)
     # before a file of rows is begun
     settled = None

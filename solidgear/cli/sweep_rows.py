@@ -7,12 +7,20 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from solidgear.cli.app import Group
+from solidgear.report.plot import FORMATS, check_ending
+from solidgear.report.sweep_chart import sweep_chart, sweep_table
+from solidgear.report.train_sheet import write_sheet
+from solidgear.report.units import ENGINEERING
+from solidgear.studies.sweep.design import Design
 
 if TYPE_CHECKING:
     from solidgear.studies.sweep import Summary
@@ -103,8 +111,6 @@ class Rows(Group):
 
     def design(self, vary: Sequence[str]) -> Design:
         """What varies, and in which combinations."""
-        from solidgear.studies.sweep.design import Design
-
         sums = tuple(self.keep_sum or ())
         drawn = self.sample, self.seed, self.one_at_a_time
         return Design(tuple(vary), *drawn, self.table, sums)
@@ -112,15 +118,6 @@ class Rows(Group):
     @contextmanager
     def counted(self, silent: bool) -> Iterator[tuple[Show, Tell]]:
         """A bar of the rows that are there, where there is a terminal; after Ctrl-C they are told."""
-        from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            TextColumn,
-            TimeRemainingColumn,
-        )
-
         terminal = Console(stderr=True, highlight=False)
         bar = Progress(
             TextColumn("{task.description}"),
@@ -186,8 +183,6 @@ def ended_rows(found: Swept) -> None:
 
 def checked_chart(file: Path | None) -> None:
     """Refuse a chart of an unknown format before anything is solved."""
-    from solidgear.report.plot import FORMATS, check_ending
-
     if file is not None:
         check_ending(file, (*FORMATS, PAGE))
 
@@ -198,12 +193,6 @@ def drawn(
     """Sentence on the curves, once they are drawn into a picture or a page; none if none was asked
     for.
     """
-    from functools import partial
-
-    from solidgear.report.sweep_chart import sweep_chart, sweep_table
-    from solidgear.report.train_sheet import write_sheet
-    from solidgear.report.units import ENGINEERING
-
     if file is None:
         return []
     if curves is None or curves.empty:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from solidgear.cli.app import say
 from solidgear.cli.shared import Chosen, Run, options
@@ -17,18 +16,15 @@ from solidgear.cli.sweep_rows import (
     refusals,
     rows_there,
 )
-
-if TYPE_CHECKING:
-    from solidgear.studies.sweep.scene_run import SceneSummary
+from solidgear.report.sweep_chart import sweep_table
+from solidgear.studies.sweep.scene_run import SceneSummary
+from solidgear.studies.sweep.scene_run import sweep_scene as swept
 
 
 def sweep_scene(
     scene: Path, vary: list[str], rows: Rows, model: Chosen, chart: Path | None, run: Run
 ) -> None:
     """Sweep entries of a scene and tell of it."""
-    from solidgear.report.sweep_chart import sweep_table
-    from solidgear.studies.sweep.scene_run import sweep_scene as swept
-
     checked_chart(chart)
     automatic = model.automatic()
     with rows.counted(run.as_json) as (show, tell):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -22,9 +22,11 @@ from solidgear.cli.sweep_rows import (
     rows_there,
 )
 from solidgear.cli.train_options import Pair, Reduced
-
-if TYPE_CHECKING:
-    from solidgear.studies.sweep.train_run import TrainSummary
+from solidgear.report.sweep_chart import sweep_table
+from solidgear.studies.sweep.train_run import TrainSummary
+from solidgear.studies.sweep.train_run import sweep_train as swept
+from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES
+from solidgear.studies.train.shaft import JUDGE
 
 
 @dataclass(frozen=True)
@@ -62,9 +64,6 @@ def sweep_train(
     run: Run,
 ) -> None:
     """Sweep a train and tell of it."""
-    from solidgear.studies.sweep.train_run import sweep_train as swept
-    from solidgear.studies.sweep.train_task import ASKED
-
     checked_chart(told.chart)
     reduced.checked()
     with rows.counted(run.as_json) as (show, tell):
@@ -94,8 +93,6 @@ def sweep_train(
         return
     say(f"{found.title}: pinion {pair.pinion}, gear {pair.gear}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
-        from solidgear.report.sweep_chart import sweep_table
-
         say(sweep_table(curves))
     say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, pair), *written)
     say(*map(caution, found.cautions))
@@ -116,9 +113,6 @@ def _work(found: TrainSummary) -> list[str]:
 
 def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
     """Sentences on what rows do not tell."""
-    from solidgear.studies.sweep.train_task import MODES, MOST_MODES
-    from solidgear.studies.train.shaft import JUDGE
-
     lines = []
     if found.cut > 0:
         lines.append(

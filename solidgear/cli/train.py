@@ -13,6 +13,21 @@ from solidgear.cli.at_speed import Speed, say_at_speed
 from solidgear.cli.shared import UNITS, Shown
 from solidgear.cli.train_options import Driven, Mix, Reduced, TrainFile
 from solidgear.errors import SolidgearError, show
+from solidgear.frames import DOF_NAMES
+from solidgear.report import train_tables
+from solidgear.report.folder import held
+from solidgear.report.train_files import write_response
+from solidgear.report.train_sheet import write_sheet
+from solidgear.report.train_tables import modes, peaks
+from solidgear.report.units import units_named
+from solidgear.report.viewer import viewer_fragment
+from solidgear.studies.train.comparison import described
+from solidgear.studies.train.loudest import loudest
+from solidgear.studies.train.modes import train_modes, unpublished_lines
+from solidgear.studies.train.orders import order_map
+from solidgear.studies.train.pictures import draw_modes, still_of, turned_modes
+from solidgear.studies.train.respond import respond
+from solidgear.studies.train.slips import slips
 
 
 @command
@@ -35,11 +50,6 @@ def system_modes(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    """Natural frequencies of a geared rotor system, each with its name and its proven bound."""
-    from solidgear.report.train_tables import modes
-    from solidgear.studies.train.modes import train_modes
-    from solidgear.studies.train.slips import slips
-
     shop = reduced.workshop(train, models.of_shafts)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
@@ -64,8 +74,6 @@ def system_modes(
 
 def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
     """Pictures of modes, and what is to be said of them."""
-    from solidgear.studies.train.pictures import draw_modes
-
     listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
     done = draw_modes(shop, pinion, gear, folder, numbers or listed).values()
     written = [str(one.path) for one in done if one.ok]
@@ -77,13 +85,6 @@ def _turned(
     shop, found, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
 ) -> list[str]:
     """Write the page in which modes can be turned; what is to be said of it."""
-    from solidgear.report import train_tables
-    from solidgear.report.train_sheet import write_sheet
-    from solidgear.report.units import units_named
-    from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.train.comparison import described
-    from solidgear.studies.train.pictures import still_of, turned_modes
-
     models = turned_modes(shop, found.pinion, found.gear, max_frequency)
     names = [mode.name for mode in found.modes]
     elastic = [shape.name for shape in models.shapes]
@@ -127,16 +128,6 @@ def response(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    """Steady response to the transmission error: mesh force, reactions, motions, and a chart."""
-    from solidgear.report.folder import held
-    from solidgear.report.train_files import write_response
-    from solidgear.studies.train.comparison import described
-    from solidgear.studies.train.loudest import loudest
-    from solidgear.studies.train.modes import train_modes, unpublished_lines
-    from solidgear.studies.train.orders import order_map
-    from solidgear.studies.train.respond import respond
-    from solidgear.studies.train.slips import slips
-
     shop = reduced.workshop(train, driven.of_shafts)
     asked = at.asked(shop.train)
     highest, losses = reduced.max_frequency, driven.losses
@@ -174,8 +165,6 @@ def response(
 
 def _forces(texts: list[str] | None) -> dict:
     """Six components at ports, from texts such as ``gear.gear:z=100``."""
-    from solidgear.frames import DOF_NAMES
-
     out: dict = {}
     for text in texts or []:
         end, _, value = text.partition("=")
@@ -196,8 +185,6 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
     """Port and component, from a text such as ``gear.gear:z``; what else follows is part of the
     example in an error.
     """
-    from solidgear.frames import DOF_NAMES
-
     port, _, dof = text.partition(":")
     if not port or dof not in DOF_NAMES:
         raise SolidgearError(
@@ -209,8 +196,5 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
 
 def print_peaks(found, what: str, si: str, teeth: int, units: str) -> None:
     """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
-    from solidgear.report.train_tables import peaks
-    from solidgear.report.units import units_named
-
     told = peaks(found, what, si, teeth, units_named(units))
     say(told if told else f"{told.title}: none in this range.", soft_wrap=False)

@@ -13,6 +13,12 @@ import typer
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.shared import Shown
 from solidgear.cli.train_options import Reduced, TrainFile, mix, refuse_given
+from solidgear.report.folder import held
+from solidgear.report.table import Column, Table, text
+from solidgear.report.train_page import write_train
+from solidgear.report.viewer import viewer_fragment
+from solidgear.studies.train.comparison import compare_train as compared
+from solidgear.studies.train.modes import unpublished_lines
 
 
 @command
@@ -29,7 +35,6 @@ def judge_system(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    """Comparison of a train with further mixes and reductions, and no folder unless asked for."""
     more = [mix(text) for text in against or []]
     _judged(train, out, reduced, run, more, renders=True)
 
@@ -60,12 +65,6 @@ def _judged(
     *,
     renders: bool,
 ) -> None:
-    from solidgear.report.folder import held
-    from solidgear.report.train_page import write_train
-    from solidgear.report.viewer import viewer_fragment
-    from solidgear.studies.train.comparison import compare_train as compared
-    from solidgear.studies.train.modes import unpublished_lines
-
     shop = reduced.workshop(train)
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = compared(shop, reduced.max_frequency, more, progress)
@@ -89,8 +88,6 @@ def _judged(
 
 
 def _verdict_table(found):
-    from solidgear.report.table import Column, Table, text
-
     def end(hz: float | None) -> str:
         return f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
 

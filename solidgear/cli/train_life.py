@@ -6,14 +6,15 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from solidgear.cli.app import say
 from solidgear.cli.bearing_life import plain_life
 from solidgear.errors import SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.studies.train.life import TrainBearingLife
+from solidgear.report.table import Column, Table
+from solidgear.report.words import engineering, percent
+from solidgear.studies.loading import load_train
+from solidgear.studies.train.life import TrainBearingLife, train_lives
 
 
 def show_train(
@@ -28,9 +29,6 @@ def show_train(
     other : mapping of str to object
         Options that belong to a scene; none of them may be set.
     """
-    from solidgear.studies.loading import load_train
-    from solidgear.studies.train.life import train_lives
-
     for option, value in other.items():
         if value:
             raise SolidgearError(
@@ -50,15 +48,11 @@ def show_train(
 
 
 def _number(value: float | None) -> str:
-    from solidgear.report.words import engineering
-
     return "endless" if value == math.inf else engineering(value, 3)
 
 
 def _print_points(found: list[TrainBearingLife]) -> None:
     """Print what each bearing lives at each operating point."""
-    from solidgear.report.table import Column, Table
-
     rows = [(one, k) for one in found for k in range(len(one.points))]
     columns = [
         Column("bearing", lambda row: row[0].end),
@@ -90,9 +84,6 @@ def _modified(one: TrainBearingLife, k: int) -> float | None:
 
 def _print_duty(found: list[TrainBearingLife]) -> None:
     """Print lives over the duty table, where there is one."""
-    from solidgear.report.table import Column, Table
-    from solidgear.report.words import percent
-
     rows = [(one, one.duty) for one in found if one.duty is not None]
     if not rows:
         say("No life over all points: give each its speed, and its share or hours.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -14,9 +14,11 @@ from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
 from solidgear.cli.shared import MODEL
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.ladder.registry import LADDER
-
-if TYPE_CHECKING:
-    from solidgear.studies.train.models import Workshop
+from solidgear.scene.toml_file import parse
+from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
+from solidgear.studies.loading import load_train
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.operation import at_point
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -83,15 +85,9 @@ class Reduced(Group):
         self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
     ) -> Workshop:
         """Workshop of a train, once these options are sound, with builder options by side and model."""
-        from solidgear.scene.toml_file import parse
-        from solidgear.studies.loading import load_train
-        from solidgear.studies.train.models import Workshop
-
         self.checked()
         loaded = load_train(path)
         if self.point is not None:
-            from solidgear.studies.train.operation import at_point
-
             loaded = at_point(loaded, self.point)
         if self.harmonics:
             mesh = loaded.mesh.with_changes(local_harmonics=self.harmonics)
@@ -179,8 +175,6 @@ def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
 
 def _harmonics(text: str) -> tuple[int, ...]:
     """Numbers of waves from a text such as ``2,3``."""
-    from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
-
     try:
         found = tuple(int(word) for word in text.split(",") if word.strip())
     except ValueError:

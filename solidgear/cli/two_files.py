@@ -7,9 +7,23 @@ import os
 from pathlib import Path
 
 from solidgear.cli.app import caution, say
+from solidgear.cli.reading import load
 from solidgear.cli.shared import MODEL, Shown
 from solidgear.cli.train_options import Reduced, refuse_given
 from solidgear.errors import SolidgearError
+from solidgear.report import beside_tables, two_trains_tables
+from solidgear.report.folder import held
+from solidgear.report.two_shafts_page import numbers, write_two_shafts
+from solidgear.report.two_trains_page import write_two_trains
+from solidgear.report.units import in_ascii, units_named
+from solidgear.scene.differences import differences
+from solidgear.scene.toml_file import is_train
+from solidgear.studies import two_shafts_told
+from solidgear.studies.beside import same_file
+from solidgear.studies.train import two_trains_told
+from solidgear.studies.train.shaft import checked_rung
+from solidgear.studies.train.two_trains import two_trains
+from solidgear.studies.two_shafts import two_shafts
 
 #: where options of one shaft lead
 TRAINS = "of two trains --pinion and --gear choose the models"
@@ -38,8 +52,6 @@ def compare_two(
     SolidgearError
         For more than two files, files of different kinds, or an option that does not apply.
     """
-    from solidgear.scene.toml_file import is_train
-
     if len(files) > 2:
         raise SolidgearError(f"compare takes one file, or two of a kind; {len(files)} are given")
     a, b = map(str, files)
@@ -70,8 +82,6 @@ def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
 
 
 def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
-    from solidgear.studies.beside import same_file
-
     sentence = same_file(a, b)
     if run.as_json:
         print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
@@ -80,23 +90,13 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
 
 
 def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) -> None:
-    from solidgear.report import beside_tables
-    from solidgear.report import two_trains_tables as tables
-    from solidgear.report.folder import held
-    from solidgear.report.two_trains_page import write_two_trains
-    from solidgear.report.units import in_ascii, units_named
-    from solidgear.scene.differences import differences
-    from solidgear.studies.train.shaft import checked_rung
-    from solidgear.studies.train.two_trains import two_trains
-    from solidgear.studies.train.two_trains_told import results, sentences
-
     for model in models:
         checked_rung(model)
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     shown, names = units_named(run.units), _names(a, b)
     with held(out), run.progress() as progress:
         found = two_trains(shops, names, differences(a, b), *models, progress=progress)
-        told, words = results(found), sentences(found, shown)
+        told, words = two_trains_told.results(found), two_trains_told.sentences(found, shown)
         progress("report")
         write_two_trains(found, told, words, out, shown)
     if run.as_json:
@@ -106,7 +106,7 @@ def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) 
         *(f"{one.label}, {one.workshop.train.called}" for one in found.both),
         beside_tables.inputs(found, beside_tables.SHORT),
         beside_tables.modes(found),
-        tables.peaks(found, shown),
+        two_trains_tables.peaks(found, shown),
         *map(in_ascii, words),
         *told["unpublished_lines"],
         *map(caution, found.cautions),
@@ -116,20 +116,11 @@ def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) 
 
 
 def _two_shafts(a: str, b: str, out: Path, run: Shown) -> None:
-    from solidgear.cli.reading import load
-    from solidgear.report import beside_tables as tables
-    from solidgear.report.folder import held
-    from solidgear.report.two_shafts_page import numbers, write_two_shafts
-    from solidgear.report.units import in_ascii, units_named
-    from solidgear.scene.differences import differences
-    from solidgear.studies.two_shafts import two_shafts
-    from solidgear.studies.two_shafts_told import results, sentences
-
     scenes = [load(Path(path)) for path in (a, b)]
     shown = units_named(run.units)
     with held(out), run.progress() as progress:
         found = two_shafts(scenes, _names(a, b), differences(a, b), progress)
-        told, words = results(found), sentences(found, shown)
+        told, words = two_shafts_told.results(found), two_shafts_told.sentences(found, shown)
         progress("report")
         write_two_shafts(found, told, words, out, shown)
     if run.as_json:
@@ -138,9 +129,9 @@ def _two_shafts(a: str, b: str, out: Path, run: Shown) -> None:
     say(
         *(f"{one.label}, {one.scene.title or one.scene.name}" for one in found.both),
         *map(in_ascii, words),
-        tables.inputs(found, tables.SHORT),
+        beside_tables.inputs(found, beside_tables.SHORT),
         numbers(found, shown),
-        tables.modes(found),
+        beside_tables.modes(found),
         *map(caution, found.cautions),
         f"Report: {out / 'report.html'}",
         soft_wrap=False,

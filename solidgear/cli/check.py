@@ -1,4 +1,4 @@
-"""Printing of checks of a shaft and of a train."""
+"""Command ``check``: faults, cautions and verdicts of a shaft or a train."""
 
 from __future__ import annotations
 
@@ -6,6 +6,48 @@ import json
 from pathlib import Path
 
 import typer
+
+from solidgear.cli.app import command
+from solidgear.cli.shared import (
+    MODEL,
+    Fixed,
+    Run,
+    SceneFile,
+)
+from solidgear.cli.train_options import Reduced, refuse_given
+from solidgear.ladder import build
+from solidgear.ladder.meshes import HARMONIC
+from solidgear.ladder.registry import LADDER
+from solidgear.scene.toml_file import is_train
+from solidgear.scene.train import SIDES
+from solidgear.studies.check import VERDICTS, check_scene
+from solidgear.studies.loading import load
+from solidgear.studies.train import check as of_train
+
+
+@command
+def check(
+    scene: SceneFile,
+    *,
+    model: Fixed,
+    run: Run,
+) -> None:
+    if is_train(scene):
+        given = {"--model": model.name != MODEL, "--set": bool(model.settings)}
+        check_train(scene, run.as_json, given)
+        return
+
+    loaded = load(scene)
+    # a model of revolution is looked at on the plain part, and the check says so
+    shown = loaded.plain if LADDER[model.name].unfit(loaded) else loaded
+    light = model.name == MODEL and not model.settings
+    found = check_scene(loaded, build(shown, MODEL, **HARMONIC) if light else model.body(shown))
+    if run.as_json:
+        print(json.dumps(found, default=float))
+    else:
+        print_check(found)
+    if found["faults"]:
+        raise typer.Exit(1)
 
 
 def print_check(found: dict) -> None:
@@ -51,8 +93,6 @@ def _spared(record: dict, verdicts: dict) -> bool:
 
 def _print_verdicts(models: dict[str, tuple[str, str]]) -> None:
     """Verdict and reason of every model: a line for each verdict, in the order of check."""
-    from solidgear.studies.check import VERDICTS
-
     for verdict in dict.fromkeys(VERDICTS.values()):
         own = {name: why for name, (here, why) in models.items() if here == verdict}
         if own:
@@ -68,14 +108,10 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """
-    from solidgear.cli.train_options import Reduced, refuse_given
-    from solidgear.scene.train import SIDES
-    from solidgear.studies.train.check import check_train as run
-
     instead = "run check on the file of the shaft for other models and meshes"
     refuse_given(given, train, instead)
     shop = Reduced().workshop(train)
-    found = run(shop)
+    found = of_train.check_train(shop)
     if as_json:
         print(json.dumps(found, default=float))
     else:

@@ -1,0 +1,140 @@
+"""Command ``modes``: natural frequencies of one scene."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from solidgear.cli.app import caution, command, say
+from solidgear.cli.reading import load
+from solidgear.cli.settled import (
+    bar_lines,
+    beyond,
+    ended,
+    heading,
+    unjudged,
+    without_bar,
+)
+from solidgear.cli.shared import (
+    Run,
+    SceneFile,
+    Solved,
+)
+from solidgear.errors import SolidgearError, show
+from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.settle import bars_of_modes
+from solidgear.report.terminal import modes_table
+from solidgear.report.words import by_plane
+from solidgear.scene.rules import MOST_MODES
+from solidgear.solve.mixtures import mixtures
+from solidgear.solve.modes import modes as solve
+from solidgear.studies.budget import beside
+from solidgear.studies.check import cautions
+
+#: rows of a list whose beginning has left the terminal
+MANY = 30
+
+
+@command
+def modes(
+    scene: SceneFile,
+    *,
+    model: Solved,
+    n: Annotated[
+        int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
+    ] = None,
+    max_frequency: Annotated[float | None, typer.Option(help="Hz; leave out modes above.")] = None,
+    count: Annotated[
+        bool,
+        typer.Option(
+            "--count", help="Prove by the inertia of a second factor that no mode was missed."
+        ),
+    ] = False,
+    run: Run,
+) -> None:
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    if n is not None and not 1 <= n <= MOST_MODES:
+        raise SolidgearError(
+            f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
+        )
+    loaded = load(scene)
+    body, settled = model.body(loaded, "modes")
+    found = solve(
+        body,
+        loaded,
+        loaded.ask.modes if n is None else n,
+        max_frequency=max_frequency or loaded.ask.max_frequency,
+        count=count,
+    )
+    bars = bars_of_modes(loaded, body, found, settled)
+    said = cautions(loaded, body)
+    open_ = beside(loaded)
+    asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
+    said += cut_short(found.modes, *asked, option="-n")
+    rows = [
+        {
+            "name": m.name,
+            "family": m.family,
+            "frequency_hz": m.frequency_hz,
+            "multiplicity": m.multiplicity,
+            "error": m.error,
+            "bar": bars.get(m.name),
+        }
+        for m in found.modes
+    ]
+    if run.as_json:
+        record = {
+            "scene": loaded.name,
+            "fidelity": body.fidelity,
+            "dofs": body.size,
+            "modes": rows,
+            "evidence": found.evidence,
+            "cautions": said,
+            "open": open_.model_dump(mode="json"),
+        }
+        if settled is not None:
+            record |= settled.as_dict() | {"without_bar": without_bar(found, bars)}
+        print(json.dumps(record, default=float))
+        ended(settled)
+        return
+
+    say(heading(loaded, body, settled), modes_table(rows, bars, open_), soft_wrap=False)
+    if len(rows) > MANY:
+        shapes = sum(m.multiplicity for m in found.modes)
+        say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
+    planes = by_plane(found.names)
+    if planes:
+        say(planes.strip())
+    e = found.evidence
+    say(
+        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
+        f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
+        soft_wrap=False,
+    )
+    for one, other, gap in e.get("torn_pairs", []):
+        say(
+            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
+            "it, or use hexahedra or the harmonic model.",
+            soft_wrap=False,
+        )
+    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
+    if e["error"] > 1e-6:
+        say(
+            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "
+            "cells are that stiff beside the shaft; a coarser mesh has less of it.",
+            soft_wrap=False,
+        )
+    if count:
+        say(completeness(e, body.fidelity), soft_wrap=False)
+    lines = bar_lines(settled)
+    if settled is None:
+        lines.append("No bars: the model was given, and its mesh with it; -f auto has them.")
+    if bars:
+        lines += unjudged(without_bar(found, bars), body.fidelity)
+    lines += beyond(bars, settled)
+    say(*lines)
+    say(*map(caution, said), soft_wrap=False)
+    ended(settled)
