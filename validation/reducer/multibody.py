@@ -314,6 +314,15 @@ class Reducer:
             self.mean[None],
         )
 
+    @cached_property
+    def on_housing(self) -> np.ndarray:
+        """(n,) force of all bearings on the housing along z, beyond that at rest, N."""
+        system, out = self.system, np.zeros(self.system.size)
+        for link in system.links.values():
+            if isinstance(link, sg.BearingSpring):
+                out += (link.stiffness @ system.motion(link.at))[2]
+        return out @ self.basis
+
     def moved(self, end: str, place: np.ndarray) -> np.ndarray:
         """(t, 6) motion of a port from coordinates (t, n)."""
         return place @ (self.system.motion(end) @ self.basis).T

@@ -62,8 +62,8 @@ class Stage:
         """Links that are teeth, and which contact of the reducer each is."""
         return {
             f"planet {k} {mate} mesh": first + k
-            for first, mate in ((0, "sun"), (3, "ring"))
             for k in (1, 2, 3)
+            for first, mate in ((0, "sun"), (3, "ring"))
         }
 
     def law(self, contact: int) -> Gap:

@@ -24,6 +24,8 @@ from solidgear.system.law import Gap
 COARSE = 1.0
 #: of Newton's method: steps, and change relative to the largest force
 NEWTON, ARRIVED = 40, 1e-9
+#: at rest: halvings of a step that leads up, and share of a mean tangent that teeth apart have
+HALVINGS, LEAST = 8, 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,23 +98,37 @@ class Bodies:
         diagonal = (np.diagonal(one, axis1=1, axis2=2) for one in own[1:])
         return scale * own.value, *(scale * one for one in diagonal)
 
+    def pressed(self, drive: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """(b, m) energy of all contacts, J."""
+        power = self.law.exponent + 1
+        return drive * np.maximum(np.abs(s) - self.law.half_gap, 0.0) ** power / power
+
     def rest(self) -> np.ndarray:
-        """(b, n) equilibrium at the beginning, teeth in their mean contact."""
+        """(b, n) equilibrium at the beginning, teeth in their mean contact: least energy."""
         g, _ = self.turned(self.rows, 0.0)
         load, _ = self.turned(self.load, 0.0)
         across = g.transpose(0, 2, 1)
         depth = self.law.half_gap + (self.mean / self.drive) ** (1 / self.law.exponent)
-        q = (np.linalg.pinv(g) @ depth[..., None])[..., 0]
+        q = _times(np.linalg.pinv(g), depth)
         nothing = np.zeros_like(depth)
+
+        def energy(q):
+            bent = (q * (_times(self.stiffness, q) / 2 - load)).sum(axis=1)
+            return bent + self.pressed(self.drive, _times(g, q)).sum(axis=1)
+
         for _ in range(NEWTON):
             force, tangent, _ = self.forces(self.drive, _times(g, q), nothing)
-            # teeth apart take their mean tangent along, so that no motion is free on the way
-            tangent = np.where(tangent > 0, tangent, self.tangents())
+            # teeth apart take some of their mean tangent along, so that no motion is free on the way
+            tangent = np.maximum(tangent, LEAST * self.tangents())
             left = load - _times(self.stiffness, q) - _times(across, force)
             step = _solved(self.stiffness + across @ (tangent[..., None] * g), left)
-            q = q + step
             if np.abs(step).max() <= ARRIVED * np.abs(q).max():
-                return q
+                return q + step
+            before = energy(q)
+            for _ in range(HALVINGS):
+                worse = energy(q + step) > before
+                step = np.where(worse[:, None], step / 2, step)
+            q = q + step
         raise SolidgearError("the bodies find no rest on their contacts")
 
 
@@ -255,10 +271,10 @@ class _Stepper:
     def _power(self, s, rate) -> dict[str, np.ndarray]:
         """Supplied, lost and passed, W."""
         own, (_, slope), (_, moves) = self.own, self.seen["rows"], self.seen["error"]
-        law = own.law
-        depth = np.maximum(s - law.half_gap, 0.0)
-        elastic = self.seen["scale"] * depth**law.exponent
-        by_teeth = self.seen["change"] * depth ** (law.exponent + 1) / (law.exponent + 1)
+        side = np.sign(s)
+        depth = np.maximum(np.abs(s) - own.law.half_gap, 0.0)
+        elastic = side * self.seen["scale"] * depth**own.law.exponent
+        by_teeth = own.pressed(self.seen["change"], s)
         driven = self.force * (_times(slope, self.q) - moves) + by_teeth
         pressed = elastic * rate
         rubbed = self.force * rate - pressed
@@ -270,9 +286,8 @@ class _Stepper:
         }
 
     def _stored(self, s) -> np.ndarray:
-        own, law = self.own, self.own.law
-        depth = np.maximum(s - law.half_gap, 0.0)
-        pressed = self.seen["scale"] * depth ** (law.exponent + 1) / (law.exponent + 1)
+        own = self.own
+        pressed = own.pressed(self.seen["scale"], s)
         moving = (self.v * _times(own.mass, self.v)).sum(axis=1) / 2
         bent = (self.q * _times(own.stiffness, self.q)).sum(axis=1) / 2
         return pressed.sum(axis=1) + moving + bent
