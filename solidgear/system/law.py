@@ -15,7 +15,6 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.system.matrices import not_negative, positive
 
-
 #: Pa; reduced modulus of steel on steel, 206 GPa and 0.3
 STEEL = 206e9 / (2 * (1 - 0.3**2))
 #: N s/m of damping in 1 N s/mm, over N/m^1.5 of stiffness in 1 N/mm^1.5

@@ -24,13 +24,13 @@ class Seen:
 
     Attributes
     ----------
-    mean : ndarray
-        Mesh force of a planet.
+    mean, statics : ndarray
+        Mesh force of a planet, over a turn and by statics.
     external, internal : ndarray
         Largest force of a planet on sun and ring.
-    carrier, mesh : ndarray
-        Amplitude of the mesh with the sun at the carrier's frequency, and of all lines at mesh
-        frequencies and their multiples, the root of the sum of squares.
+    closed, carrier, mesh : ndarray
+        Amplitude of the mesh with the sun at the carrier's frequency, by the closed form and in time;
+        and of all lines at mesh frequencies and their multiples, the root of the sum of squares.
     swing : ndarray
         Half of what the mesh with the sun varies over a turn.
     foreign : ndarray
@@ -46,8 +46,10 @@ class Seen:
     """
 
     mean: np.ndarray
+    statics: np.ndarray
     external: np.ndarray
     internal: np.ndarray
+    closed: np.ndarray
     carrier: np.ndarray
     mesh: np.ndarray
     swing: np.ndarray
@@ -108,13 +110,18 @@ def seen(some: list[Reducer], motion: Motion) -> Seen:
             length = one.input_shaft.length
             for side, y in enumerate((-HUB / 2, length - HUB / 2)):
                 path = (middle @ shift(np.array([0.0, y, 0.0])).T)[:, [0, 2]]
-                ends[side, :, k] = np.linalg.norm(path.mean(axis=0)), np.sqrt(path.var(axis=0).sum())
+                ends[side, :, k] = (
+                    np.linalg.norm(path.mean(axis=0)),
+                    np.sqrt(path.var(axis=0).sum()),
+                )
                 if side == 0:
                     at_shaft[k] = np.linalg.norm(amplitudes(path)[one.orders["shaft"]])
     return Seen(
         sun.mean(axis=(0, 2)),
+        np.array([one.given.mean_force for one in some]),
         sun.max(axis=(0, 2)),
         ring.max(axis=(0, 2)),
+        np.array([one.bearings and one.design.modulation(one.bearings == 3) for one in some]),
         lines[1],
         np.sqrt((own**2).sum(axis=0)),
         np.ptp(sun, axis=0).max(axis=1) / 2,

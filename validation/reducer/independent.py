@@ -38,7 +38,11 @@ def envelope(bodies: Bodies, turns: float, instants: int, tolerance: float = 1e-
     def slope(t, y):
         q, v = y[:n], y[n:]
         rows, force = forces(t, q, v)
-        load = bodies.load[0, 0] + bodies.load[1, 0] * np.cos(w * t) + bodies.load[2, 0] * np.sin(w * t)
+        load = (
+            bodies.load[0, 0]
+            + bodies.load[1, 0] * np.cos(w * t)
+            + bodies.load[2, 0] * np.sin(w * t)
+        )
         return np.concatenate([v, solid @ (load - damping @ v - stiffness @ q - rows.T @ force)])
 
     times = np.arange(instants) / instants * turns * 2 * np.pi / w

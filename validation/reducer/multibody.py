@@ -181,9 +181,9 @@ class Reducer:
     @cached_property
     def system(self) -> sg.System:
         """Bodies on their bearings; contacts are no links of it."""
-        design, stage = self.design, self._stage
+        design, stage = self.design, self.stage
         links = {name: one for name, one in stage.links.items() if name.endswith("pin")}
-        links["wheel disc"] = sg.PortInertia("shaft.wheel", _disc(design.wheel / 2, HUB))
+        links["wheel disc"] = sg.PortInertia("shaft.wheel", disc(design.wheel / 2, HUB))
         held = {"input": self.input_settled, "shaft": design.settled(self.bearings == 3)}
         for part, settled in held.items():
             for name, tangent in settled.tangent.items():
@@ -197,12 +197,12 @@ class Reducer:
         return sg.System(parts, links)
 
     @cached_property
-    def _stage(self) -> sg.PlanetaryStage:
+    def stage(self) -> sg.PlanetaryStage:
         """Planets and carrier with their masses."""
         teeth, bare = self.design.planetary, self.design.stage
         radius = teeth.module * teeth.planet / 2
-        planet = _disc(radius, HUB)
-        carrier = _disc(teeth.pin_radius, HUB)
+        planet = disc(radius, HUB)
+        carrier = disc(teeth.pin_radius, HUB)
         planets = (replace(p, mass=planet[0, 0], inertia=planet[4, 4]) for p in bare.planets)
         spider = sg.CentralMember(carrier[0, 0], carrier[4, 4] + OUTPUT, teeth.pin_radius)
         return replace(bare, carrier=spider, planets=tuple(planets))
@@ -222,7 +222,7 @@ class Reducer:
         turns += [system.place(f"planet {k}").stop - 1 for k in (1, 2, 3)]
         along = whole[:, carrier].copy()
         pins = system.parts["carrier"].ports
-        for k, planet in enumerate(self._stage.planets, 1):
+        for k, planet in enumerate(self.stage.planets, 1):
             name = f"planet {k}"
             moved = rotation(1, -planet.azimuth) @ pins[name].rows[:, 2]
             at = system.place(name).start
@@ -238,10 +238,10 @@ class Reducer:
         out[0, 0] = pinion.vector @ system.motion("input.pinion")
         out[0, 0] -= wheel.vector @ system.motion("shaft.wheel")
         sun = system.motion("shaft.sun")
-        for k, planet in enumerate(self._stage.planets):
-            meshes = self._stage.meshes(k)
+        for k, planet in enumerate(self.stage.planets):
+            meshes = self.stage.meshes(k)
             own = system.motion(f"planet {k + 1}")
-            sizes = (self._stage.sun.radius, planet.radius, PRESSURE)
+            sizes = (self.stage.sun.radius, planet.radius, PRESSURE)
             at = [spur_mesh(*sizes, planet.azimuth + turn)[0] for turn in (0.0, pi / 2)]
             out[0, 1 + k] = at[0].lever * sun[4] - meshes["sun"][1].vector @ own
             out[1:, 1 + k] = [mesh.normal @ sun[:3] for mesh in at]
@@ -274,7 +274,12 @@ class Reducer:
         """Multiples of the carrier's frequency of what excites."""
         shaft = round(self.rpm * 2 * pi / 60 / self.speed)
         ring = self.given.teeth[4]
-        return {"carrier": 1, "shaft": shaft, "planetary": ring, "bevel": shaft * self.given.teeth[0]}
+        return {
+            "carrier": 1,
+            "shaft": shaft,
+            "planetary": ring,
+            "bevel": shaft * self.given.teeth[0],
+        }
 
     @cached_property
     def cycle(self) -> np.ndarray:
@@ -328,7 +333,7 @@ class Reducer:
         return place @ (self.system.motion(end) @ self.basis).T
 
 
-def _disc(radius: float, width: float) -> np.ndarray:
+def disc(radius: float, width: float) -> np.ndarray:
     """(6, 6) mass of a steel disc about its middle."""
     mass = STEEL * pi * radius**2 * width
     across, along = mass * (3 * radius**2 + width**2) / 12, mass * radius**2 / 2

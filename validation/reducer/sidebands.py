@@ -16,7 +16,7 @@ import solidgear as sg
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.two_tone import TwoTone
 from solidgear.system.law import Gap
-from validation.reducer.multibody import LOSS, Reducer, _disc
+from validation.reducer.multibody import LOSS, Reducer, disc
 from validation.reducer.stepping import Bodies
 
 #: N/m and N m/rad of ring and carrier
@@ -45,13 +45,13 @@ class Stage:
     @cached_property
     def stage(self) -> sg.PlanetaryStage:
         """Bodies on their bearings."""
-        teeth, planets = self.reducer.design.planetary, self.reducer._stage.planets
+        teeth, planets = self.reducer.design.planetary, self.reducer.stage.planets
         sun, _, ring = teeth.base_radii
-        disc, ring_disc = _disc(teeth.module * teeth.sun / 2, 40e-3), _disc(ring, 12e-3)
-        carrier = self.reducer._stage.carrier
+        own, around = disc(teeth.module * teeth.sun / 2, 40e-3), disc(ring, 12e-3)
+        carrier = self.reducer.stage.carrier
         return sg.PlanetaryStage(
-            sg.CentralMember(disc[0, 0], disc[4, 4], sun, self.support),
-            sg.CentralMember(ring_disc[0, 0], ring_disc[4, 4], ring, HELD, TURNING),
+            sg.CentralMember(own[0, 0], own[4, 4], sun, self.support),
+            sg.CentralMember(around[0, 0], around[4, 4], ring, HELD, TURNING),
             replace(carrier, bearing=HELD, turning=TURNING),
             planets,
             self.reducer.design.stage.pressure_angle,
