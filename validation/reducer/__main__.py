@@ -106,7 +106,7 @@ at the mesh frequency.
 {lines}
 
 Shaft lines at 8000 r/min are 3 % high while mesh lines are within 0.7 %: no one speed gives both. 876 Hz \
-is no order of the reducer, and the source gives it no cause. The runout is assumed, {runout} µm.
+is no order of the reducer, and the source gives it no cause. The line at order 0.3 is three planets passing. The runout is assumed, {runout} µm.
 
 ## Teeth
 

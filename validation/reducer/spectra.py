@@ -99,7 +99,7 @@ def over_speed() -> Panel:
     )
     turn = some[0].orders["shaft"]
     ends = np.array([SPEEDS[0], SPEEDS[-1] + TALL])
-    for name, order in (("0.3", 0.3), ("1", 1), ("2", 2), ("8.4", 8.4), ("15", 15), ("16.8", 16.8)):
+    for name, order in (("1", 1), ("2", 2), ("8.4", 8.4), ("15", 15), ("16.8", 16.8)):
         rows = [{"x": float(order * rpm / 60), "y": float(rpm)} for rpm in ends]
         panel.draw({"type": "line", "color": "#cccccc"}, rows)
         at = min(ends[1], HIGHEST * 60 / order * 0.99)
