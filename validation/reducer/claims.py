@@ -95,7 +95,7 @@ def _in_time(all_: Mapping[str, Seen]) -> list[tuple[str, str]]:
         ),
         (
             f"{carrier[0]} to {carrier[2]} % of the mean force, median {carrier[1]} %; teeth part "
-            f"in {two.apart.sum()}",
+            f"in {int(two.apart.sum())}",
             f"a larger maximum than on ideal joints: {share(two.external > ideal.external)}",
         ),
         (
@@ -129,7 +129,7 @@ def departure(two: Seen) -> tuple[str, str, int]:
     """Of the modulation in time from its closed form, per cent, while no teeth part: nine of ten
     designs lie between, and how many keep contact.
     """
-    held = ~two.apart
+    held = two.apart == 0
     low, _, high = _quantiles((two.carrier / two.closed - 1)[held], 100, ".1f")
     return low, high, int(held.sum())
 
