@@ -834,6 +834,22 @@ MUTATIONS = (
         "tests/test_nonlinear_pair.py::test_three_motions_live_at_one_speed",
     ),
     Mutation(
+        "impact: what leaves is held back",
+        "solidgear/system/law.py",
+        "Gap.force",
+        "side * value > 0",
+        "side * value > -np.inf",
+        "tests/test_reducer_dynamics.py::test_what_leaves_is_never_held_back",
+    ),
+    Mutation(
+        "harmonic balance: sidebands move at the mesh frequency",
+        "solidgear/nonlinear/two_tone.py",
+        "TwoTone.frequencies",
+        "np.array(self.pairs) @ np.array(self.omega)",
+        "np.array(self.pairs)[:, 0] * self.omega[0]",
+        "tests/test_reducer_dynamics.py::test_two_tones_on_a_linear_system_are_its_response_at_either",
+    ),
+    Mutation(
         "motion in time: a tooth that touches pushes back a little less",
         "solidgear/nonlinear/pieces.py",
         "Pieces._piece",

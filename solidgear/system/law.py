@@ -15,6 +15,11 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.system.matrices import not_negative, positive
 
+#: Pa; reduced modulus of steel on steel, 206 GPa and 0.3
+STEEL = 206e9 / (2 * (1 - 0.3**2))
+#: N s/m of damping in 1 N s/mm, over N/m^1.5 of stiffness in 1 N/mm^1.5
+MM_DAMPER = 1e3 / 1e3**1.5
+
 
 class Force(NamedTuple):
     """Force of r rows at T instants, with both tangents."""
@@ -62,7 +67,7 @@ class Gap:
         k d^exponent + c(d) ds/dt        d > 0, else none,
 
     and c(d) grows from zero to `damper` over the depth `ramp` as ``3 u^2 - 2 u^3``, so that an impact
-    begins without a jump.
+    begins without a jump; :meth:`impact` has it as multi-body programs do.
 
     Attributes
     ----------
@@ -81,6 +86,8 @@ class Gap:
     rounding : float
         Width over which the edge is rounded, m; the force is then off by ``rounding / 2`` times its
         slope at most, at the edge itself.
+    pulls : bool
+        Whether the damper may hold back what leaves; without it sides that touch only ever press.
 
     Raises
     ------
@@ -103,6 +110,59 @@ class Gap:
     damper: float = 0.0
     ramp: float = 0.0
     rounding: float = 0.0
+    pulls: bool = True
+
+    @classmethod
+    def impact(
+        cls,
+        radius: float,
+        mate_radius: float,
+        half_gap: float = 0.0,
+        *,
+        internal: bool = False,
+        share: float = 0.01,
+        ramp: float = 1e-4,
+        reduced_modulus: float = STEEL,
+    ) -> Gap:
+        """Teeth in contact as the impact function of a multi-body program has them.
+
+        ``K d^1.5 + c(d) d'``, never below zero, with ``K = 4/3 E* sqrt(R)`` and ``1 / R`` the sum of
+        both curvatures, of an internal mesh their difference.
+
+        Parameters
+        ----------
+        radius, mate_radius : float
+            Of curvature of both flanks, m.
+        share : float
+            The largest damping over K, as numbers in N, mm and s: it is no ratio, and the same number
+            in N, m and s would be 32 times the damping.
+        ramp : float
+            Depth of full damping, m.
+        reduced_modulus : float
+            E*, Pa; by default of steel on steel.
+
+        Raises
+        ------
+        SolidgearError
+            For radii that are not positive, or a flank that does not fit into its ring's.
+
+        Examples
+        --------
+        >>> teeth = Gap.impact(6e-3, 12e-3)
+        >>> f"{teeth.drive:.3g} N/m^1.5, {teeth.damper:.3g} N s/m"
+        '9.54e+09 N/m^1.5, 3.02e+06 N s/m'
+        """
+        positive("the radius of a flank", radius)
+        positive("the radius of a flank", mate_radius)
+        curved = 1 / radius + (-1 if internal else 1) / mate_radius
+        if not curved > 0:
+            raise SolidgearError(
+                f"a flank of {radius} m does not fit into one of {mate_radius} m; "
+                "the first is that of the smaller gear"
+            )
+        drive = 4 / 3 * reduced_modulus * curved**-0.5
+        damper = share * drive * MM_DAMPER
+        return cls(drive, half_gap, exponent=1.5, damper=damper, ramp=ramp, pulls=False)
 
     def __post_init__(self):
         positive("the stiffness of the driving side", self.drive)
@@ -118,7 +178,8 @@ class Gap:
     @property
     def pieces(self) -> bool:
         """Whether it is linear on either side."""
-        return self.exponent == 1 and self.rounding == 0 and (self.ramp == 0 or self.damper == 0)
+        plain = self.damper == 0 or (self.ramp == 0 and self.pulls)
+        return self.exponent == 1 and self.rounding == 0 and plain
 
     @property
     def drags(self) -> bool:
@@ -169,6 +230,9 @@ class Gap:
                 tangent = tangent + side * slope * on * rate * (
                     6 * self.damper * part * (1 - part) / self.ramp
                 )
+            if not self.pulls:
+                presses = side * value > 0
+                value, tangent, lost = (presses * one for one in (value, tangent, lost))
         eye = np.eye(stretch.shape[-1])
         return Force(value, tangent[..., None] * eye, lost[..., None] * eye)
 

@@ -64,6 +64,8 @@ class Design:
         Radial, of the third bearing.
     sun_mesh, ring_mesh, pin : float
         N/m.
+    stiffening : float
+        What the modulus of the shaft is multiplied by; much, and it is rigid.
     """
 
     teeth: tuple[int, ...] = (15, 45, 36, 24, 84)
@@ -84,6 +86,12 @@ class Design:
     sun_mesh: float = 2e8
     ring_mesh: float = 2.2e8
     pin: float = 1e8
+    stiffening: float = 1.0
+
+    @property
+    def material(self) -> dict[str, float]:
+        """Steel of the shafts."""
+        return {"E": 210e9 * self.stiffening, "nu": 0.3, "density": 7850.0}
 
     @cached_property
     def planetary(self) -> sg.PlanetaryTeeth:
@@ -169,7 +177,7 @@ class Design:
             segments.append(("right", self.to_third - HUB / 2 + SPIGOT, spigot))
         seats = {"first": held.width, "second": held.width, "third": 2 * SPIGOT}
         tables = {
-            "material": "steel",
+            "material": self.material,
             "segment": [
                 {"kind": "cylinder", "name": name, "length": length, "diameter": diameter}
                 for name, length, diameter in segments
