@@ -29,6 +29,7 @@ PICTURES = (
     "real_step.png",
     "pinion_bending_1.png",
     "reducer.png",
+    "backlash.png",
 )
 
 
