@@ -10,6 +10,7 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.nonlinear.balance import Balance
+from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import sweep
 from solidgear.studies.train.models import Workshop
@@ -90,6 +91,15 @@ def test_no_motion_jumps_at_a_torque_above_the_linear_peak(solids):
     (up, _), (down, _) = low.jumps_hz
     assert [rising for _, rising in low.jumps_hz] == [True, False] and down < up
     assert low.largest > low.mean_force
+
+
+def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
+    # with more of them the branch turns a little sooner, and has no motion at the speed it is at
+    own = backlash_model(shop, "lumped", "lumped", teeth_of(shop, 8017.8), 4000.0)
+    branch = follow(own, 2 * np.pi * 150.0, 2 * np.pi * 2000.0, step=0.02)
+    up, down = (branch.points[k].omega / (2 * np.pi) for k in branch.turning)
+    # both lie between those at 6.4 and 9.6 kN
+    assert 704.4 < up < 727.0 and 671.8 < down < up
 
 
 @pytest.mark.long

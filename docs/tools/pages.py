@@ -30,6 +30,7 @@ PICTURES = (
     "pinion_bending_1.png",
     "reducer.png",
     "reducer_spectra.png",
+    "backlash.png",
 )
 
 

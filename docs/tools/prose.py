@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 GENERATED = {
     "docs/guide/bearing_keys.md",
     "docs/gallery.md",
+    "docs/validation/backlash.md",
     "docs/validation/experiments.md",
     "docs/validation/reducer.md",
     "docs/validation/scoreboard.md",

@@ -10,7 +10,7 @@ than it began with, or it has gone back the way it came.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -199,10 +199,18 @@ class Follower:
     def refit(self, point: Point, count: int) -> Point:
         """The same point with another number of harmonics."""
         balance, motion = point.balance.resized(point.motion, count)
-        motion = balance.solve(motion, point.omega)
         self.balance = balance
         along = np.append(balance.resized(point.tangent[:-1], count)[1], point.tangent[-1])
-        return self.point(motion, point.omega, along / np.linalg.norm(along))
+        along /= np.linalg.norm(along)
+        try:
+            return self.point(balance.solve(motion, point.omega), point.omega, along)
+        except SolidgearError:
+            # beside a turning point more harmonics may have no motion at this speed
+            near = replace(point, motion=motion, balance=balance, tangent=along)
+            found = self.correct(near, 0.0)
+            if found is None:
+                raise
+            return found[0]
 
     def where(self, before: Point, step: float, value: Callable[[Point], float]) -> Point | None:
         """Where a value changes its sign within a step, by Illinois' method; None if none can be

@@ -14,6 +14,7 @@ import sys
 
 from validation.common import read_result
 from validation.race.assembly import ASSEMBLY
+from validation.race.backlash import BACKLASH
 from validation.race.bearings import BEARINGS
 from validation.race.commands import COMMANDS, THREADS
 from validation.race.heat import Heat
@@ -31,6 +32,7 @@ RACES: dict[str, Race] = {
     "assembly": ASSEMBLY,
     "bearings": BEARINGS,
     "trains": TRAINS,
+    "backlash": BACKLASH,
     "sweep": SWEEP,
     "sensitivities": SENSITIVITIES,
     "solids": SOLIDS,

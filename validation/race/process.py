@@ -47,6 +47,18 @@ class Done:
         return float(self.out.rsplit("PEAK", 1)[1]) / 1024
 
 
+def interpreter(package: str) -> str:
+    """Python that has a package: this one, or the first so of those that `PEERS` names, parted as
+    paths are; nothing where none has it.
+    """
+    look = f"import importlib.util, sys; sys.exit(not importlib.util.find_spec({package!r}))"
+    others = os.environ.get("PEERS", "").split(os.pathsep)
+    for python in (sys.executable, *filter(None, others)):
+        if subprocess.call([python, "-c", look]) == 0:
+            return python
+    return ""
+
+
 def cores() -> int:
     """Cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -114,6 +126,7 @@ def called(
     limit: float = 900.0,
     threads: int | None = None,
     extra: dict[str, str | None] | None = None,
+    python: str = sys.executable,
     **given: Any,
 ) -> Done:
     """Call a function in a Python process of its own.
@@ -124,6 +137,8 @@ def called(
         Module and name, such as ``validation.race.ours:whole``.
     limit, threads, extra
         As of :func:`run`.
+    python : str
+        Interpreter, such as one that has a peer.
     **given
         What the function is given, and its answer, are plain data.
 
@@ -135,7 +150,7 @@ def called(
     with tempfile.TemporaryDirectory(prefix="race-") as name:
         job, answer = Path(name) / "job.json", Path(name) / "answer.json"
         job.write_text(json.dumps(given))
-        command = [sys.executable, "-m", "validation.race.process", function, name]
+        command = [python, "-m", "validation.race.process", function, name]
         extra = {"PYTHONPATH": str(ROOT), **(extra or {})}
         done = run(command, ROOT, limit=limit, threads=threads, extra=extra)
         return Done(done.wall, done.cpu, done.out, json.loads(answer.read_text()))

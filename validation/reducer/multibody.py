@@ -22,7 +22,7 @@ from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.frames import rotation
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.file import scene_of
-from solidgear.system.gear_mesh import line_of_action, mean_radius, mesh_point, spur_mesh
+from solidgear.system.gear_mesh import line_of_action, mean_radius, mesh_point, cylindrical_mesh
 from solidgear.system.law import Gap
 from validation.reducer.design import FACE, HUB, PRESSURE, Design
 from validation.reducer.stepping import Bodies
@@ -242,7 +242,7 @@ class Reducer:
             meshes = self.stage.meshes(k)
             own = system.motion(f"planet {k + 1}")
             sizes = (self.stage.sun.radius, planet.radius, PRESSURE)
-            at = [spur_mesh(*sizes, planet.azimuth + turn)[0] for turn in (0.0, pi / 2)]
+            at = [cylindrical_mesh(*sizes, planet.azimuth + turn)[0] for turn in (0.0, pi / 2)]
             out[0, 1 + k] = at[0].lever * sun[4] - meshes["sun"][1].vector @ own
             out[1:, 1 + k] = [mesh.normal @ sun[:3] for mesh in at]
             out[0, 4 + k] = -meshes["ring"][1].vector @ own

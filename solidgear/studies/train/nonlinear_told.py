@@ -124,7 +124,7 @@ class BacklashTold:
             lines.append(PHASES)
         lines.append(
             "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
-            "are followed to 1e-4 of the largest."
+            "are followed to 1e-4 of the largest. Motions apart from this branch are not looked for."
         )
         return lines
 
