@@ -198,7 +198,7 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str):
     if name not in _WHERE:
-        from solidgear.errors import nearest
+        from solidgear.errors import nearest  # start-up
 
         raise AttributeError(f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}")
     value = getattr(importlib.import_module(_WHERE[name]), name)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.cli import shipped
+from solidgear.cli import files
 from solidgear.cli.starts import SHAFTS, STARTS, start
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
@@ -84,10 +84,10 @@ def test_the_wheel_holds_the_scenes():
     """
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
     target, patterns = next(iter(settings["data-files"].items()))
-    assert f"{target}/" == shipped.SHARED
+    assert f"{target}/" == files.SHARED
     packed = {path for pattern in patterns for path in ROOT.glob(pattern)}
-    assert set(shipped.shipped().values()) <= packed
-    assert all(set(shipped.needed(path)) <= packed for path in shipped.shipped().values())
+    assert set(files.shipped().values()) <= packed
+    assert all(set(files.needed(path)) <= packed for path in files.shipped().values())
 
 
 def test_a_scene_from_standard_input(monkeypatch):

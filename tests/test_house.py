@@ -113,23 +113,38 @@ def test_modules_are_imported_at_the_top_or_by_a_statement(path):
     assert "__import__" not in {getattr(call.func, "id", None) for call in calls}
 
 
-def late_imports(path):
-    """Imports inside functions, each with the line above it, and its own."""
-    text = path.read_text()
-    lines = text.splitlines()
-    for function in ast.walk(ast.parse(text)):
-        if isinstance(function, ast.FunctionDef):
-            for node in ast.walk(function):
-                if isinstance(node, ast.Import | ast.ImportFrom):
-                    yield lines[node.lineno - 2].strip(), lines[node.lineno - 1].strip()
+#: rooms that are imported at every start, and import each of their models when it is built
+DOORS = {"ladder"}
 
 
-@pytest.mark.parametrize("path", sorted((PACKAGE / "cli").rglob("*.py")), ids=lambda p: p.stem)
-def test_an_import_inside_a_function_says_why(path):
-    """An optional dependency, or start-up: what else a command needs stands at the top of its
-    module, which is imported when the command runs.
+def unexplained(path):
+    """Imports inside functions without a comment on their line or above their run: of the command
+    line all, elsewhere those of this package.
     """
-    assert not [own for above, own in late_imports(path) if "#" not in own and above[:1] != "#"]
+    text = path.read_text()
+    lines = [line.strip() for line in text.splitlines()]
+    functions = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.FunctionDef)]
+    late = [
+        node
+        for function in functions
+        for node in ast.walk(function)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
+    inside = {k for node in late for k in range(node.lineno, node.end_lineno + 1)}
+    for node in late:
+        above = node.lineno - 1
+        while above in inside:
+            above -= 1
+        own = "solidgear" in ast.unparse(node) or room(path) == "cli"
+        said = lines[above - 1].startswith("#") or "#" in lines[node.lineno - 1]
+        if own and not said:
+            yield ast.unparse(node)
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
+def test_an_import_inside_a_function_says_why(path):
+    """An optional dependency, or start-up: whatever else a module needs stands at its top."""
+    assert room(path) in DOORS or not list(unexplained(path))
 
 
 def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs():

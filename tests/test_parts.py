@@ -17,7 +17,7 @@ from solidgear.machine.isolated import isolated
 from solidgear.meshing.mesh_file import mesh_from
 from solidgear.meshing.placing import TURNS, Placing
 from solidgear.models.solid.own_mesh import solid_body
-from solidgear.report.export import node_order
+from solidgear.report.outputs import node_order
 from solidgear.scene import Keyway
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Outline

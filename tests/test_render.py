@@ -19,9 +19,8 @@ from skfem.refdom import RefHex, RefTet
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.report import render, write
-from solidgear.report.export import write_vtu
 from solidgear.report.folder import OWN, clear
-from solidgear.report.outputs import OUTPUTS, Output
+from solidgear.report.outputs import OUTPUTS, Output, write_vtu
 from solidgear.report.render import PACKAGES, Drawing, RenderJob, render_modes
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Outline

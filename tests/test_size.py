@@ -140,8 +140,8 @@ def no_mesh(monkeypatch):
         pytest.fail("meshed")
 
     monkeypatch.setattr("solidgear.models.harmonic.body.meridian", meshed)
-    monkeypatch.setattr("solidgear.meshing.hexahedra.hexahedra", meshed)
-    monkeypatch.setattr("solidgear.meshing.tetrahedra.tetrahedra", meshed)
+    monkeypatch.setattr("solidgear.models.solid.body.hexahedra", meshed)
+    monkeypatch.setattr("solidgear.models.solid.body.tetrahedra", meshed)
 
 
 @pytest.mark.parametrize("model, options", ABSURD)

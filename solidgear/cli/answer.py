@@ -13,7 +13,7 @@ import typer
 
 from solidgear.cli.app import NOT_REACHED, caution, command, say
 from solidgear.cli.reading import load
-from solidgear.cli.shared import SceneFile, Shown, share
+from solidgear.cli.shared import SceneFile, Shown, relative
 from solidgear.errors import SolidgearError
 from solidgear.judge.answer import Answered, Step
 from solidgear.judge.answer import answer as solve
@@ -42,12 +42,7 @@ def answer(
     *,
     tol: Annotated[
         float | None,
-        typer.Option(
-            "--tol",
-            parser=share,
-            metavar="FLOAT",
-            help="Relative error allowed, such as 1e-3; else the scene's own.",
-        ),
+        relative("--tol", "Relative error allowed, such as 1e-3; else the scene's own."),
     ] = None,
     ask: Annotated[
         str,

@@ -14,7 +14,6 @@ from solidgear.bearings.rolling import UNITS
 from solidgear.cli.app import command, say
 from solidgear.cli.bearing_life import plain_life, print_life, speed_of
 from solidgear.cli.shared import Run, SceneFile
-from solidgear.cli.train_life import show_train
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.report.bearing_chart import BearingPanel, draw_bearings
@@ -57,6 +56,9 @@ def bearing(
     run: Run,
 ) -> None:
     if describes_train(parse(str(scene))):
+        # start-up: a fifth of a second that bearings of a shaft have no use for
+        from solidgear.cli.train_life import show_train
+
         of_scenes = {"--load": load, "--speed": speed, "--out": out}
         show_train(scene, name, of_scenes, run.as_json)
         return

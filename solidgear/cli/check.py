@@ -14,7 +14,6 @@ from solidgear.cli.shared import (
     Run,
     SceneFile,
 )
-from solidgear.cli.train_options import Reduced, refuse_given
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.registry import LADDER
@@ -22,7 +21,6 @@ from solidgear.scene.toml_file import is_train
 from solidgear.scene.train import SIDES
 from solidgear.studies.check import VERDICTS, check_scene
 from solidgear.studies.loading import load
-from solidgear.studies.train import check as of_train
 
 
 @command
@@ -108,10 +106,14 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     given : dict of str to bool
         Options of check that speak of one shaft, and whether they were given.
     """
+    # start-up: a shaft has no use for the studies of trains
+    from solidgear.cli.train_options import Reduced, refuse_given
+    from solidgear.studies.train.check import check_train as checked
+
     instead = "run check on the file of the shaft for other models and meshes"
     refuse_given(given, train, instead)
     shop = Reduced().workshop(train)
-    found = of_train.check_train(shop)
+    found = checked(shop)
     if as_json:
         print(json.dumps(found, default=float))
     else:

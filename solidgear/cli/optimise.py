@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import NOT_REACHED, command, say
-from solidgear.cli.shared import AUTO, BY_MODEL, AutoChoice, Run, share
+from solidgear.cli.shared import AUTO, BY_MODEL, AutoChoice, Run, relative
 from solidgear.report.folder import held
 from solidgear.report.optimum_tables import designs, write_optimum
 from solidgear.studies.optimise import optimise as optimised
@@ -47,11 +47,8 @@ def optimise(
     ] = AUTO,
     tol: Annotated[
         float | None,
-        typer.Option(
-            "--tol",
-            parser=share,
-            metavar="FLOAT",
-            help="Bar allowed of every design; a tenth of the scene's tolerance by default.",
+        relative(
+            "--tol", "Bar allowed of every design; a tenth of the scene's tolerance by default."
         ),
     ] = None,
     out: Annotated[

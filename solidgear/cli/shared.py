@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -60,6 +60,11 @@ def share(text: str | float) -> float:
         raise typer.BadParameter(
             f'"{text}" is no number; a tolerance is a share such as 0.01, or 1%'
         ) from None
+
+
+def relative(name: str, about: str) -> Any:
+    """Option that is a relative error."""
+    return typer.Option(name, parser=share, metavar="FLOAT", help=about)
 
 
 Settings = Annotated[
@@ -125,12 +130,7 @@ class Chosen(Group):
     ] = AUTO
     tol: Annotated[
         float | None,
-        typer.Option(
-            "--tol",
-            parser=share,
-            metavar="FLOAT",
-            help="Of -f auto: relative error allowed; else the scene's own.",
-        ),
+        relative("--tol", "Of -f auto: relative error allowed; else the scene's own."),
     ] = None
     settings: Settings = None
 

@@ -12,7 +12,7 @@ import typer
 
 from solidgear.cli.acting import Acting, AtRestFile, load_in_words, refuse
 from solidgear.cli.app import NOT_REACHED, Group, caution, command, say
-from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, share
+from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, relative
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.report.folder import held
 from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
@@ -88,7 +88,7 @@ def stress(
     ] = MODEL,
     tol: Annotated[
         float,
-        typer.Option("--tol", parser=share, metavar="FLOAT", help="Bar allowed of a form factor."),
+        relative("--tol", "Bar allowed of a form factor."),
     ] = 0.01,
     rated: Rated,
     out: Annotated[

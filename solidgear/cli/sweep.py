@@ -11,21 +11,31 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import Progress as Steps
-from solidgear.cli.app import command
+from solidgear.cli.app import command, say
 from solidgear.cli.reading import load
 from solidgear.cli.settled import ended, over_the_sweep
-from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, share
-from solidgear.cli.sweep_rows import Rows, refusals, rows_there
-from solidgear.cli.sweep_scene import sweep_scene
+from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, relative
+from solidgear.cli.sweep_rows import (
+    FEW,
+    Rows,
+    checked_chart,
+    drawn,
+    ended_rows,
+    record_of,
+    refusals,
+    rows_there,
+)
 from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
+from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import is_train
 from solidgear.studies.check import cautions
 from solidgear.studies.sweep import sweep as swept
 from solidgear.studies.sweep.choice import settled_for_sweep
+from solidgear.studies.sweep.scene_run import SceneSummary, sweep_scene
 from solidgear.studies.sweep.vary import of_bearings_alone
 
 #: relative, of frequencies of a shaft
@@ -57,11 +67,8 @@ def sweep(
     model: Chosen,
     tolerance: Annotated[
         float,
-        typer.Option(
-            "--tolerance",
-            parser=share,
-            metavar="FLOAT",
-            help="Relative error of frequencies; checked by a bound for every variant.",
+        relative(
+            "--tolerance", "Relative error of frequencies; checked by a bound for every variant."
         ),
     ] = TOLERANCE,
     pair: Pair,
@@ -94,7 +101,7 @@ def sweep(
         return
     if tolerance != TOLERANCE:
         raise SolidgearError("--tolerance is that of one body for many bearing sets; give --tol")
-    sweep_scene(scene, vary or [], rows, model, told.chart, run)
+    _sweep_entries(scene, vary or [], rows, model, told.chart, run)
 
 
 def _sweep_shaft(
@@ -151,3 +158,53 @@ def _sweep_shaft(
     for sentence in over_the_sweep(settled):
         print(sentence)
     ended(settled)
+
+
+def _sweep_entries(
+    scene: Path, vary: list[str], rows: Rows, model: Chosen, chart: Path | None, run: Run
+) -> None:
+    """Sweep entries of a scene and tell of it."""
+    checked_chart(chart)
+    automatic = model.automatic()
+    with rows.counted(run.as_json) as (show, tell):
+        found = sweep_scene(
+            scene,
+            rows.design(vary),
+            model=None if automatic else str(model.name),
+            tolerance=model.tol,
+            options={} if automatic else options(model.pairs),
+            charted=chart is not None,
+            progress=show,
+            tell=tell,
+            **rows.how,
+        )
+    written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
+    if run.as_json:
+        print(record_of(found))
+        ended_rows(found)
+        return
+    if found.curves is not None and len(found.curves.x) <= FEW and found.curves.frequencies:
+        say(sweep_table(found.curves))
+    say(rows_there(found), *_work(found), *refusals(found), *written)
+    ended_rows(found)
+
+
+def _work(found: SceneSummary) -> list[str]:
+    """Sentences on what was done in this run, and how sure the rows are."""
+    new, lines = found.total - found.skipped, []
+    if new:
+        lines.append(
+            "The shaft varies: every variant is meshed and solved for itself. "
+            f"{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
+            f"{found.refused} refused."
+        )
+    bars = [
+        bar / hz
+        for bar, hz in zip(found.columns.get("f1_hz bar", []), found.columns["f1_hz"])
+        if bar is not None and hz
+    ]
+    if bars:
+        lines.append(f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}.")
+    else:
+        lines.append("A model that is given has no error bars; -f auto has.")
+    return lines

@@ -24,7 +24,7 @@ from solidgear.quantity import ACROSS, STIFFNESS, Quantity
 from solidgear.scene.coned import coned
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense
+from solidgear.solve.statics import condense, flexibility
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -290,7 +290,6 @@ def _forces(body: Body, supports: Supports, load: int) -> np.ndarray:
     f[load] = 1.0
     if not supports.ports:
         return f
-    from solidgear.solve.statics import flexibility
 
     there = supports.rows(body)
     flex, rigid, root = flexibility(body).matrix, body.rigid_ports, supports.root

@@ -6,6 +6,7 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
+from solidgear import __version__
 from solidgear.machine.threads import usable_cores
 
 
@@ -24,8 +25,6 @@ def environment() -> dict:
         except PackageNotFoundError:
             out[name] = None
     if out["solidgear"] is None:  # run from a source tree
-        from solidgear import __version__
-
         out["solidgear"] = __version__
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from solidgear.report.table import Cell, Column, Table, text, word
@@ -10,6 +11,12 @@ from solidgear.report.words import DASH, hertz, percent
 #: letters of an entry of a file on a page and in a terminal
 LONG, SHORT = 60, 34
 SAME = "Nothing differs in the input."
+
+
+def title(both: Mapping[str, Mapping[str, Any]]) -> str:
+    """Title of two shafts or trains, once if they have the same."""
+    titles = [one["title"] for one in both.values()]
+    return titles[0] if len(set(titles)) == 1 else f"{titles[0]} beside {titles[1]}"
 
 
 def who(found: Any) -> str:

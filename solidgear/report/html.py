@@ -32,6 +32,7 @@ from solidgear.report.lumped import lumped_tables
 from solidgear.report.page_parts import data_uri, template
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.units import Units, units_named
+from solidgear.report.viewer import TURNED, fragment_of
 from solidgear.report.words import capital, percent, seconds
 
 log = logging.getLogger(__name__)
@@ -311,8 +312,6 @@ def _pictures(
 def _viewer(record: Record, folder: str | os.PathLike | None) -> Any:
     """The mode shapes to be turned, from the page that the run has written beside this one."""
     from markupsafe import Markup
-
-    from solidgear.report.viewer import TURNED, fragment_of
 
     here = folder is not None and TURNED in (record.files or ())
     return Markup(fragment_of(Path(folder) / TURNED)) if folder is not None and here else ""

@@ -3,15 +3,115 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from solidgear.report.export import write_vtu
+import numpy as np
+
+from solidgear.body.surface import Volume, mesh_unknowns
+from solidgear.elements import ELEMENTS
+from solidgear.machine.whole_file import whole
 
 if TYPE_CHECKING:
+    from solidgear.body import Body
     from solidgear.judge.solution import Solution
+    from solidgear.solve.modes import Mode, ModeSet
+
+
+def write_vtu(
+    body: Body,
+    modes: ModeSet | Iterable[Mode],
+    path: str | Path,
+    *,
+    most: int | None = None,
+) -> Path:
+    """Write a body and its mode shapes.
+
+    A solid is written as its volume mesh, with cells of its own type; any other body as its
+    surface. Every shape is a vector at the points, named such as ``bending 1a (2758.00 Hz)``,
+    normalised to unit modal mass (kg^-1/2, so scale it before taking it for metres). Coordinates
+    are in m.
+
+    Parameters
+    ----------
+    modes : ModeSet or iterable of Mode
+    path : str or Path
+        Of the vtu file; there is a whole one or none.
+    most : int, optional
+        Write the first so many modes only.
+
+    Raises
+    ------
+    SolidgearError
+        For a body that carries no geometry, or modes of another body.
+    OSError
+        If the file cannot be written.
+    """
+    import meshio
+
+    path = Path(path)
+    chosen: Any = getattr(modes, "modes", modes)
+    shapes = dict(_shapes(islice(chosen, most)))
+    volume = body.geometry.volume() if body.geometry is not None else None
+    if volume is not None:
+        points, cells, data = _volume(body, volume, shapes)
+    else:
+        still = body.surface({})
+        points = still.points
+        cells = [
+            (kind, at)
+            for kind, at in (("quad", still.faces), ("triangle", still.triangles))
+            if len(at)
+        ]
+        data = {name: body.surface(vectors).displacement for name, vectors in shapes.items()}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole(path) as partial:
+        meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
+    return path
+
+
+def _shapes(modes: Iterable):
+    """Name and vectors of every shape; a letter distinguishes those of a pair."""
+    for mode in modes:
+        for k, vectors in enumerate(mode.vectors):
+            letter = chr(ord("a") + k) if len(mode.vectors) > 1 else ""
+            yield f"{mode.name}{letter} ({mode.frequency_hz:.2f} Hz)", vectors
+
+
+def _volume(body: Body, mesh: Volume, shapes):
+    element = ELEMENTS[mesh.element]
+    order = node_order(mesh.local, element.vtk)
+    data = {
+        name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3)
+        for name, vectors in shapes.items()
+    }
+    return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
+
+
+def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
+    """Local nodes of an element in VTK's order, found by their reference coordinates.
+
+    Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
+
+    Parameters
+    ----------
+    doflocs : (nb, 3) ndarray
+        Reference coordinates in the element's own order.
+    vtk_name : str
+        Class of the VTK cell, which knows its own.
+    """
+    from vtkmodules import vtkCommonDataModel  # needs no OpenGL
+
+    cell = getattr(vtkCommonDataModel, vtk_name)()
+    theirs = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    distance = np.abs(theirs[:, None] - np.asarray(doflocs)[None]).max(axis=2)
+    order = distance.argmin(axis=1)
+    if distance.min(axis=1).max() > 1e-12 or len(set(order)) != len(doflocs):
+        raise ValueError(f"the nodes of {vtk_name} are not those of the element")
+    return order
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.machine.whole_file import whole
+
 if TYPE_CHECKING:
     from solidgear.body.surface import Surface
 
@@ -227,8 +229,6 @@ def _collect(
     room: Path, index: int, path: Path, end: str, works: bool, timeout: float
 ) -> RenderResult:
     """Move a finished picture to its place, or say why there is none."""
-    from solidgear.machine.whole_file import whole
-
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
         return RenderResult(

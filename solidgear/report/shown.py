@@ -9,7 +9,10 @@ import numpy as np
 
 from solidgear.frames import DOF_NAMES
 from solidgear.quantity import BLOCK_UNITS
+from solidgear.report.correlation_tables import entries, pairs
+from solidgear.report.optimum_tables import designs
 from solidgear.report.reading import mode_of
+from solidgear.report.sketch import draw
 from solidgear.report.table import Table
 from solidgear.report.words import bar_of, percent
 
@@ -73,8 +76,6 @@ def _diameters(segment: Any) -> str:
 
 def scene_figure(shaft: Any) -> Any:
     """The dimensioned section of the report."""
-    from solidgear.report.sketch import draw
-
     return draw(shaft.as_dict())
 
 
@@ -229,22 +230,16 @@ def _told(columns: Mapping[str, list], head: str, k: int) -> str:
 
 def correlation(found: Any) -> Table:
     """Every measured resonance and the mode it is."""
-    from solidgear.report.correlation_tables import pairs
-
     return pairs(found)
 
 
 def identification(found: Any) -> Table:
     """Entries that were identified."""
-    from solidgear.report.correlation_tables import entries
-
     return entries(found)
 
 
 def optimum(found: Any) -> Table:
     """All designs of a search."""
-    from solidgear.report.optimum_tables import designs
-
     return designs(found)
 
 

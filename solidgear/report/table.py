@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from solidgear.machine.whole_file import whole
+from solidgear.report.page_parts import template
 from solidgear.report.units import Units, in_ascii
 from solidgear.report.words import DASH, as_text
 
@@ -210,8 +211,6 @@ class Table:
 
     # ---------------------------------------------------------------------- a page
     def _repr_html_(self) -> str:
-        from solidgear.report.page_parts import template
-
         return str(template("parts.html").module.table(self))
 
     def css(self, k: int, cell: Cell | None = None) -> str:

@@ -19,6 +19,7 @@ import numpy as np
 from solidgear.machine.whole_file import write_page
 from solidgear.report.drawing import SWING, colours
 from solidgear.report.packing import packed
+from solidgear.report.page_parts import template
 from solidgear.report.turning import Turned, picks, turned
 
 if TYPE_CHECKING:
@@ -138,8 +139,6 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
     """
     from markupsafe import Markup
 
-    from solidgear.report.page_parts import template
-
     kept = list(_within_budget(models))
     models = models[: len(kept)]
     ramp = colours()(np.linspace(0, 1, STOPS))[:, :3]
@@ -168,8 +167,6 @@ def viewer_page(
 ) -> str:
     """The viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
     from markupsafe import Markup
-
-    from solidgear.report.page_parts import template
 
     fragment = viewer_fragment(models, still=still, first=first)
     return template("viewer_page.html").render(

@@ -13,8 +13,13 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.machine.whole_file import whole
 from solidgear.report.folder import begun, prepare
+from solidgear.report.html import drawn_charts, write_report
 from solidgear.report.outputs import OUTPUTS
+from solidgear.report.page_parts import data_uri
 from solidgear.report.reading import model_name
+from solidgear.report.render import Drawing, RenderJob, render_modes
+from solidgear.report.turning import Turned, turned
+from solidgear.report.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -40,10 +45,6 @@ def write_all(
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
-    from solidgear.report.html import drawn_charts, write_report
-    from solidgear.report.render import Drawing
-    from solidgear.report.viewer import TURNED
-
     record = comparison.record
     record.left_out = []
     shapes = comparison.solutions if record.complete else {}
@@ -101,8 +102,6 @@ def _leave_out(record: Record, sentence: str) -> None:
 
 
 def _job(body, modes, name: str, path: Path, model: str):
-    from solidgear.report.render import RenderJob
-
     mode = modes.named(name)
     if mode is None:
         have = ", ".join(m.name for m in modes.modes)
@@ -143,10 +142,6 @@ def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) 
 
 def _write_turned(comparison: Comparison, folder: Path) -> None:
     """The page of mode shapes, the most detailed models first."""
-    from solidgear.report.page_parts import data_uri
-    from solidgear.report.turning import Turned, turned
-    from solidgear.report.viewer import TURNED, Turning
-
     record, still = comparison.record, ""
     models: list[Turned] = []
     for key, solution in reversed(comparison.solutions.items()):
@@ -180,8 +175,6 @@ def render_mode(
     SolidgearError
         If there is no such mode, or nothing can be drawn here (the sentence says what mends it).
     """
-    from solidgear.report.render import render_modes
-
     path = Path(path)
     job = _job(body, modes, name, path, model or body.fidelity)
     prepare(path.parent)
@@ -233,10 +226,6 @@ def turn_modes(
     SolidgearError
         If there is no such mode, or the page cannot be written.
     """
-    from solidgear.report.page_parts import data_uri
-    from solidgear.report.turning import Turned, turned
-    from solidgear.report.viewer import Turning
-
     path = Path(path)
     prepare(path.parent)
     models: list[Turned] = []

@@ -92,7 +92,7 @@ def _factored(body: Body) -> Factored:
 def _plan(block: Block, shift: float, factoring: Factoring) -> Planned:
     matrix = (block.stiffness + shift * block.mass).tocsr()
     if factoring.engine != "own":
-        from solidgear.solve.petsc import plan_on_ranks
+        from solidgear.solve.petsc import plan_on_ranks  # optional: PETSc
 
         return plan_on_ranks(block, matrix, factoring)
     in_pieces = planned_by_symmetry(matrix, block.reflections) if factoring == USUAL else None

@@ -11,7 +11,7 @@ from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import Choice, Solved, solved
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.scene import Scene
+from solidgear.scene import BearingLoad, Scene
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
@@ -217,8 +217,6 @@ def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -
     SolidgearError
         A bearing that is not there, or has no catalogue data; components that are none.
     """
-    from solidgear.scene import BearingLoad
-
     new = BearingLoad(**load)
     if bearing is None:
         free = tuple(

@@ -18,7 +18,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
-from scipy.stats import qmc
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
@@ -124,6 +123,8 @@ def budget(
         study.solve([study.single(k - 1, place) for place, _ in one.nodes])
     found: list[dict[Quantity, float]] = []
     if samples:
+        from scipy.stats import qmc  # slow to import, and no other command has a use for it
+
         every = qmc.LatinHypercube(len(inputs), rng=seed).random(samples)
         for k, place in enumerate(every):
             if k % 50 == 0:
@@ -174,6 +175,8 @@ class _Study:
             if len(group) > 1:
                 self.solve(list(self._corners(group)))
         if any(one.catalogue for one in self.points.scene.bearings):
+            from scipy.stats import qmc  # as above
+
             inside = qmc.Sobol(len(self.inputs), scramble=False).random(INSIDE_POINTS)
             self.solve(tuple(place) for place in inside)
         numbers = [self._number(q, groups, found) for q in self._quantities()]

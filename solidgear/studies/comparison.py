@@ -28,7 +28,15 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.meter import Meter
 from solidgear.machine.threads import pinned
+from solidgear.report.units import units_named
+from solidgear.report.write import write_all
+from solidgear.scene import Scene
+from solidgear.scene.shaft import is_block
+from solidgear.scene.train import Train
 from solidgear.studies.budget import opened
+from solidgear.studies.check import notices
+from solidgear.studies.guards.models import cells_around
+from solidgear.studies.two_shafts import two_shafts
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -92,9 +100,6 @@ class Comparison(Displayed):
         SolidgearError
             If the folder cannot be written, or units are unknown.
         """
-        from solidgear.report.units import units_named
-        from solidgear.report.write import write_all
-
         self.record.shown_in = units_named(units).name
         return write_all(self, out, renders=renders, progress=progress)
 
@@ -164,10 +169,6 @@ def compare(
     >>> found["mass"].verdict, round(found["mass"].relative, 4)
     ('resolved', 0.21)
     """
-    from solidgear.scene import Scene
-    from solidgear.scene.shaft import is_block
-    from solidgear.scene.train import Train
-
     if isinstance(scene, Train) or isinstance(models, Train):
         raise SolidgearError(
             "compare takes scenes of one shaft; trains are compared by the command: "
@@ -178,8 +179,6 @@ def compare(
             "compare: a block has one model, the 3D solid; solidgear modes tells its frequencies and bars"
         )
     if isinstance(models, Scene):
-        from solidgear.studies.two_shafts import two_shafts
-
         if settings:
             raise SolidgearError("settings are of models of one scene; of two the judge chooses")
         return two_shafts((scene, models), progress=progress)
@@ -222,8 +221,6 @@ class _Found:
 
 
 def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
-    from solidgear.studies.check import notices
-
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
     # who names models is told why one does not fit
     known = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
@@ -285,7 +282,6 @@ def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> di
     )
     if waves < 2:
         return options
-    from solidgear.studies.guards.models import cells_around
 
     return {**options, "around": cells_around(scene, waves)}
 

@@ -74,7 +74,7 @@ def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = T
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
-    from solidgear.bearings.solved import solved
+    from solidgear.bearings.solved import solved  # start-up: not every file needs it
 
     with explained(path, tables):
         return solved(scene, shaft(scene)).scene
@@ -108,7 +108,7 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
     >>> [bearing.name for bearing in train.pinion.scene.bearings]
     ['0', '1', '2']
     """
-    from solidgear.scene import train_file
+    from solidgear.scene import train_file  # start-up: not every file needs it
 
     def shaft(side: str, of: Path, alone: bool) -> Scene:
         """Scene of a shaft: settled by itself, or to be settled with its train."""
@@ -117,7 +117,7 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
     train = train_file.load_train(path, shaft)
     if point is None and not train.operation:
         return train
-    from solidgear.studies.train.operation import at_point
+    from solidgear.studies.train.operation import at_point  # start-up: not every file needs it
 
     with explained(path):
         return at_point(train if point is None else train.with_changes(operation=(point,)))
@@ -137,7 +137,7 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
     SceneError
         As :func:`load`.
     """
-    from solidgear.bearings.solved import solved
+    from solidgear.bearings.solved import solved  # start-up: not every file needs it
 
     scene = file.load(path, part_of) if scene is None else scene
     with explained(path):
@@ -146,7 +146,7 @@ def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
 
 def part_of(table: BodyTable, folder: Path) -> Recognised:
     """The part that a scene file names; read apart from scenes that have none."""
-    from solidgear.meshing.part import recognise
+    from solidgear.meshing.part import recognise  # start-up: not every file needs it
 
     return recognise(table, folder)
 
@@ -167,11 +167,11 @@ def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) 
 
 def shaft(scene: Scene) -> Body | None:
     """Body on which bearings settle, or None where none of them waits for the shaft's load."""
-    from solidgear.bearings.solved import wants_equilibrium
+    from solidgear.bearings.solved import wants_equilibrium  # start-up: not every file needs it
 
     if not wants_equilibrium(scene):
         return None
-    from solidgear.ladder import build
+    from solidgear.ladder import build  # start-up: not every file needs it
 
     # what is cut out moves the load of a bearing by a small part of a small part
     return build(scene.plain, SHAFT)

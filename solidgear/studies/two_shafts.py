@@ -22,6 +22,8 @@ from solidgear.judge.correlation import pair_modes
 from solidgear.judge.quantities import in_order, size
 from solidgear.machine.threads import pinned
 from solidgear.quantity import QUANTITIES, Quantity
+from solidgear.report.two_shafts_page import write_two_shafts
+from solidgear.report.units import units_named
 from solidgear.scene.differences import Difference, scene_differences
 from solidgear.solve.modes import Mode, ModeSet
 from solidgear.studies import two_shafts_told as told
@@ -154,9 +156,6 @@ class TwoShafts(Displayed):
         SolidgearError
             If the folder cannot be written, or units are unknown.
         """
-        from solidgear.report.two_shafts_page import write_two_shafts
-        from solidgear.report.units import units_named
-
         shown = units_named(units)
         sentences = told.sentences(self, shown)
         return write_two_shafts(self, self.results, sentences, out, shown)

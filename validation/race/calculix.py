@@ -19,7 +19,7 @@ import numpy as np
 
 from solidgear.elements import ELEMENTS
 from solidgear.frames import cross_matrix
-from solidgear.report.export import node_order
+from solidgear.report.outputs import node_order
 from validation.race.heat import Heat, Lane, Sample
 from validation.race.problem import Problem
 from validation.race.process import WATCH, Done, PeerError, cores, last_words, run

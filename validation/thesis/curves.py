@@ -9,9 +9,8 @@ from functools import cache
 import numpy as np
 
 from solidgear.report.plot import Chart
-from solidgear.report.shares_chart import Bar, shares_chart
 from solidgear.report.train_chart import columns_chart, response_chart
-from solidgear.report.two_trains_page import motions
+from solidgear.report.two_trains_page import Bar, motions, shares_chart
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.respond import TrainResponse, respond
 from solidgear.studies.train.two_trains import TwoTrains, two_trains

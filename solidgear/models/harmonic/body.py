@@ -23,6 +23,7 @@ from solidgear.meshing.layout import Layout, layout
 from solidgear.meshing.meridian import Cut, Meridian, cut_meridian, drawn_across, meridian
 from solidgear.models.harmonic.blocks import _Work
 from solidgear.models.harmonic.circumferential import Families
+from solidgear.models.harmonic.drawing import surface
 from solidgear.models.limits import countable
 from solidgear.models.options import HARMONIC_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
@@ -45,8 +46,6 @@ class HarmonicMesh:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The outline of the meridian turned around the axis."""
-        from solidgear.models.harmonic.drawing import surface
-
         return surface(self, moved)
 
     def volume(self) -> None:

@@ -14,13 +14,20 @@ from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
+from solidgear.meshing.hexahedra import hexahedra
+from solidgear.meshing.quality import check_mesh
+from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.kinds import BLOCKS, CYCLIC, PARTS
 from solidgear.models.options import SOLID_OPTIONS, checked
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
+from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.mesh import _isoparametric
+from solidgear.models.solid.part import part_body
 from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
+from solidgear.models.solid.rectangular import block_body
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
+from solidgear.scene.closed_form import volume_of
 from solidgear.scene.shaft import named, resolved
 
 
@@ -104,8 +111,6 @@ def solid(
     wanted = [*attached_stations(scene.stations, attachments)]
     features = resolved(scene)
     if any(f.sort == BLOCKS for f in features):
-        from solidgear.models.solid.rectangular import block_body
-
         return block_body(scene, wanted, element=element, size=size, refinement=refinement)
     if features:
         if element != "tet10":
@@ -115,14 +120,11 @@ def solid(
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement
         if all(f.sort == PARTS for f in features):
-            from solidgear.models.solid.part import part_body
-
             return part_body(scene, wanted, around=around, **sizes)
         if all(f.sort == CYCLIC for f in features):
-            from solidgear.models.sector.body import whole
+            from solidgear.models.sector.body import whole  # slow to import, and seldom needed
 
             return whole(scene, wanted, **sizes)
-        from solidgear.models.solid.featured import featured_body, meshed
 
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
@@ -165,10 +167,6 @@ def solid(
 
 
 def _hexes(scene, wanted, grading):
-    from solidgear.meshing.hexahedra import hexahedra
-    from solidgear.meshing.quality import check_mesh
-    from solidgear.scene.closed_form import volume_of
-
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
     mesh, segment = hexahedra(scene, plan, turns)
@@ -180,10 +178,6 @@ def _hexes(scene, wanted, grading):
 
 
 def _tets(scene, wanted, element, size, graded_size, refinement, around):
-    from solidgear.meshing.quality import check_mesh
-    from solidgear.meshing.tetrahedra import tetrahedra
-    from solidgear.scene.closed_form import volume_of
-
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )

@@ -16,6 +16,7 @@ from skfem.refdom import RefTet, RefTri
 from solidgear.body.surface import Surface, Volume
 from solidgear.elements import ELEMENTS
 from solidgear.kernel.assembly import reference, tabulate, unknowns
+from solidgear.models.solid.drawing import outline, solid_surface
 
 if TYPE_CHECKING:
     from solidgear.models.solid.drawing import Outline
@@ -50,8 +51,6 @@ class SolidMesh:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The boundary of the mesh."""
-        from solidgear.models.solid.drawing import solid_surface
-
         return solid_surface(self, moved.get("full"))
 
     def volume(self) -> Volume:
@@ -66,8 +65,6 @@ class SolidMesh:
     @cached_property
     def outline(self) -> Outline:
         """Drawing of the boundary."""
-        from solidgear.models.solid.drawing import outline
-
         return outline(self)
 
     def local_facets(self, facets: np.ndarray):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from solidgear import __version__
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build as build_any
@@ -266,8 +267,6 @@ def _check_seats(
 
 
 def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:
-    from solidgear import __version__
-
     scene = {
         key: value
         for key, value in variants.scene.as_dict().items()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from solidgear import __version__
 from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.studies.sweep.curves import Curves, chartable, curves_of
@@ -144,8 +145,6 @@ def sweep_scene(
 
 def _plan(task: SceneTask, first: int, design: Design) -> dict[str, Any]:
     """Facts that rows depend on, by the file of one variant."""
-    from solidgear import __version__
-
     part = task.variants.scene(first).body
     return {
         "scene": plain(task.variants.tables(first)[OWN]),

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from solidgear import __version__
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.models.limits import number
 from solidgear.scene.toml_file import parse
@@ -221,8 +222,6 @@ def _counted(found: TrainSummary, made: Made, task: TrainTask, usual: Train) -> 
 
 def _plan(task: TrainTask, first: int, usual: Train, design: Design) -> dict[str, Any]:
     """Facts that rows depend on, by the files of one variant."""
-    from solidgear import __version__
-
     variants = task.variants
     files = {name or "train": plain(t) for name, t in variants.tables(first).items()}
     # what these files name

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from solidgear.bearings.solved import solved, wants_equilibrium
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene import (
@@ -23,6 +24,7 @@ from solidgear.scene import (
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.outline import Outline
+from solidgear.studies.loading import shaft
 from solidgear.studies.sweep.vary import Axis
 
 E = TypeVar("E", bound=Elastic)
@@ -184,8 +186,6 @@ def settled_anew(scene: Scene) -> Scene:
     """
     if not waiting(scene):
         return scene
-    from solidgear.bearings.solved import solved
-    from solidgear.studies.loading import shaft
 
     try:
         return solved(scene, shaft(scene)).scene
@@ -199,7 +199,6 @@ def waiting(scene: Scene) -> tuple[str, ...]:
     """Names of the bearings whose stiffness hangs on what the load of the scene brings them."""
     if all(b.catalogue is None for b in scene.bearings):
         return ()
-    from solidgear.bearings.solved import wants_equilibrium
 
     if not wants_equilibrium(scene):
         return ()

@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from solidgear.errors import SolidgearError
 from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.train import SIDES
@@ -234,8 +235,6 @@ def judge_train(
 
 def _can_be_made(workshop: Workshop, name: str) -> bool:
     """Mode-matched masses need not exist."""
-    from solidgear.errors import SolidgearError
-
     try:
         for side in SIDES:
             workshop.shaft(side, name)
