@@ -82,20 +82,6 @@ class Balance:
         Harmonics H.
     instants : int
         A harmonic.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
-    >>> balance = Balance(found, 9)
-    >>> motion = balance.solve(balance.start(0.5), 0.5)
-    >>> round(float(motion[0]), 6)      # in contact throughout, around 1 + 0.1
-    1.1
     """
 
     remainder: Remainder

@@ -288,17 +288,6 @@ def remainder(
     ------
     SolidgearError
         If no link has a law, a free motion stretches one, or no mode is below the highest frequency.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> found = remainder(pair, loss={"mesh": 0.1}, load=np.array([0.1]), errors={"mesh": [0.05]})
-    >>> h, _ = found.receptance(np.array([1.0]))
-    >>> complex(h[0, 0, 0].round(9))
-    -10j
     """
     if kind not in KINDS:
         raise SolidgearError(f"losses of the kind {kind!r} are unknown; use {', '.join(KINDS)}")

@@ -341,19 +341,6 @@ def sweep(
         rad/s, in the order in which they are run through.
     state : (2r,) ndarray, optional
         To begin at; rest at the linear mean without it.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
-    >>> down = sweep(found, [1.0, 0.9, 0.8, 0.75])
-    >>> round(float(down[-1].rms[0]), 3)
-    0.225
     """
     out: list[Steady] = []
     for omega in omegas:
