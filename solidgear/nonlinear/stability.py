@@ -105,7 +105,8 @@ def _saltation(point: Point, crossing: tuple[float, int, int], jump: np.ndarray)
 
 def _by_instants(point: Point) -> np.ndarray:
     own = point.balance.remainder
-    tangent, _ = own.excess(*point.waves(), point.balance.factor)
+    line = point.balance.line(point.omega)
+    tangent, _ = own.excess(*point.waves(), point.balance.factor, line)
     return over_cycle(own, point.omega, tangent.by_stretch, tangent.by_rate)
 
 
