@@ -262,9 +262,9 @@ class Remainder:
         return self._with_orders(lambda own: share * own)
 
     def _with_orders(self, other: Callable[[np.ndarray], np.ndarray]) -> Remainder:
-        told = {name: other(getattr(self, name)) for name in ("error", "cycle", "push", "gives")}
+        error, cycle, push, gives = map(other, (self.error, self.cycle, self.push, self.gives))
         sway = self.sway and replace(self.sway, orders=other(self.sway.orders))
-        return replace(self, sway=sway, **told)
+        return replace(self, error=error, cycle=cycle, push=push, gives=gives, sway=sway)
 
 
 def remainder(

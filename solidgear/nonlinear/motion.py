@@ -15,7 +15,7 @@ from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.nonlinear.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.nonlinear.model import Remainder
-from solidgear.nonlinear.pieces import SHORT, TERMS, Pieces
+from solidgear.nonlinear.pieces import SHORT, TERMS, Piece, Pieces
 
 #: what is left of a transient, relative, when a motion is steady
 STEADY = 1e-5
@@ -71,10 +71,14 @@ class Run:
     def __init__(self, remainder: Remainder, omega: float):
         self.remainder, self.omega = remainder, omega
         self.pieces = Pieces(remainder, omega)
-        size = self.pieces.piece(self.pieces.name(remainder.mean)).size
+        size = self.piece(self.pieces.name(remainder.mean)).size
         self.looks = max(LOOKS, int(np.ceil(size / SHORT * 2 * np.pi / omega)))
         self.step = 2 * np.pi / omega / self.looks
         self._ahead: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
+
+    def piece(self, name: tuple[int, ...]) -> Piece:
+        """The linear equation on some pieces."""
+        return self.pieces.piece(name)
 
     def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
@@ -83,7 +87,7 @@ class Run:
         s, v = (np.empty((self.looks, self.remainder.rows)) for _ in range(2))
         k = 0
         while k < self.looks:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             seen, over = self._looking(name)
             left = self.looks - k
             ahead = np.concatenate([piece.stretch @ y, *(seen[:left] @ y)]).reshape(left + 1, -1)
@@ -105,7 +109,7 @@ class Run:
     def _looking(self, name: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Rows (looks, m, n) that give the stretches 1, 2 ... steps later, and transitions."""
         if name not in self._ahead:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             one = piece.over(self.step)
             over = np.empty((self.looks, *one.shape))
             over[0] = one
@@ -126,7 +130,7 @@ class Run:
         """The piece on which a state is: the one that its own stretches name."""
         name = self.pieces.name(self.remainder.mean)
         for _ in range(6):
-            own = self.pieces.name(self.pieces.piece(name).stretch @ y)
+            own = self.pieces.name(self.piece(name).stretch @ y)
             if own == name:
                 return name
             name = own
@@ -135,7 +139,7 @@ class Run:
     def _through(self, name, y, rest: float):
         """State and piece after a time in which a stretch leaves its piece."""
         while rest > 0:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             terms = piece.series(y)
             at, row, side = self._crossing(name, terms @ piece.stretch.T, rest)
             y = terms.T @ at ** np.arange(TERMS)
