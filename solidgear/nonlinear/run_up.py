@@ -94,8 +94,8 @@ def run_up(
     cycles = int(abs(end**2 - begin**2) / (4 * np.pi * ramp))
     if not FEWEST_CYCLES <= cycles <= MOST_CYCLES:
         raise SolidgearError(
-            f"this ramp passes the range in {cycles} cycles of the excitation; give one that takes "
-            f"{FEWEST_CYCLES} to {MOST_CYCLES}"
+            f"this ramp passes the range in {cycles} cycles of the excitation (mesh cycles of a "
+            f"train); give one that takes {FEWEST_CYCLES} to {MOST_CYCLES}"
         )
     slope = ramp if end > begin else -ramp
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state

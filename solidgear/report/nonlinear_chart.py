@@ -77,8 +77,11 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     hz, size = judge.linear
     linear = units.values(size, "N")
     curves = {one.label: units.values(one.force, "N") for one in found.found}
-    top = 1.08 * max(float(linear.max()), *(float(v.max()) for v in curves.values()))
-    others = {one.label: Series(OTHERS[k]) for k, one in enumerate(found.found[1:])}
+    ran = {_run_name(one, teeth): one for one in found.runs}
+    sizes = [linear, *curves.values(), *(units.values(one.force, "N") for one in ran.values())]
+    top = 1.08 * max(float(size.max()) for size in sizes)
+    named = [*(one.label for one in found.found[1:]), *ran]
+    others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
     panel = Panel(
         Axis("speed of the pinion in rpm", ends),
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
@@ -100,6 +103,9 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         for part, (a, b) in enumerate(_runs(inside)):
             rows = _line(places[a:b], own[a:b], one.label, part)
             panel.draw({"type": "line", "strokeWidth": 1.1, "clip": True}, rows)
+    for name, one in ran.items():
+        places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
+        panel.draw({"type": "line", "strokeWidth": 1.4}, _line(places, own, name))
     force = curves[judge.label]
     for name, where, dash in ((UNSTABLE, ~judge.stable, [3, 2]), (STABLE, judge.stable, [1, 0])):
         for part, (a, b) in enumerate(_runs(where)):
@@ -128,6 +134,16 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         read.append({"x": rpm[k], "y": force[k], "readout": words})
     panel.read(read, LOOKS[STABLE].colour)
     return panel
+
+
+def _run_name(one: Any, teeth: int) -> str:
+    return f"run-{'up' if one.ramp > 0 else 'down'} at {60 * abs(one.ramp) / teeth:.4g} rpm/s"
+
+
+def _envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The largest of every few cycles, no more of them than are seen."""
+    first = np.arange(0, len(x), -(-len(x) // (3 * BINS)))
+    return x[first], np.maximum.reduceat(y, first)
 
 
 def _line(x: np.ndarray, y: np.ndarray, name: str, part: int = 0) -> list[dict[str, Any]]:

@@ -56,7 +56,7 @@ def write_nonlinear(
         lead(found, shown),
         [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
-        lines={"nonlinear": branch(found)},
+        lines={"nonlinear": branch(found), **runs(found)},
         charts={"nonlinear": partial(backlash_chart, found, title, shown)},
         cautions=cautions,
         verdict=found.sentences(),
@@ -78,6 +78,24 @@ def branch(found: Any) -> Table:
     }
     rows = np.column_stack(list(there.values())).tolist()
     return Table("", [Column(head, write=figures) for head in there], rows)
+
+
+def runs(found: Any) -> dict[str, Table]:
+    """Each run through the range, mesh cycle by mesh cycle, in SI, by the names of their files."""
+    out = {}
+    for one in found.runs:
+        there = {
+            "frequency [Hz]": one.frequency_hz,
+            "pinion speed [rpm]": 60 * one.frequency_hz / found.train.pinion.teeth,
+            "dynamic mesh force [N]": one.force,
+            "largest mesh force [N]": one.run.highest,
+            "steady dynamic mesh force [N]": one.steady_force,
+        }
+        rows = np.column_stack(list(there.values())).tolist()
+        rpm = 60 * abs(one.ramp) / found.train.pinion.teeth
+        stem = f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")
+        out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
+    return out
 
 
 def mixes(found: Any, units: Units = ENGINEERING) -> Table:

@@ -35,6 +35,12 @@ class Teeth:
         Of the mean force.
     cycle : tuple of (float, float)
         How the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts.
+    phases : tuple of float
+        Of the transmission error by orders, rad; none where the file gives none.
+    turns : bool
+        The line of action varies over the cycle.
+    contact_loss_hz : float or None
+        Where a damper in contact alone has the loss factor of the mesh.
     """
 
     half_gap: float
@@ -42,6 +48,20 @@ class Teeth:
     errors: tuple[float, ...]
     source: str
     cycle: tuple[tuple[float, float], ...] = ()
+    phases: tuple[float, ...] = ()
+    turns: bool = False
+    contact_loss_hz: float | None = None
+
+    @property
+    def harmonics(self) -> tuple[complex, ...]:
+        """Transmission error by orders, ``Re(e exp(i n x angle))``, m."""
+        phases = self.phases or (0.0,) * len(self.errors)
+        return tuple(complex(e * np.exp(1j * p)) for e, p in zip(self.errors, phases))
+
+    @property
+    def varies(self) -> bool:
+        """Whether the mesh varies over its cycle, and the linear answer with constant teeth with it."""
+        return self.turns or bool(self.cycle)
 
 
 @dataclass(frozen=True)
@@ -103,7 +123,6 @@ class Backlash:
     pinion: str
     gear: str
     teeth: Teeth
-    stiffness: float
     remainder: Remainder = field(repr=False)
     branch: Branch = field(repr=False)
     multiplier: np.ndarray = field(repr=False)
@@ -130,6 +149,11 @@ class Backlash:
         return [point.forces()[:, 0] for point in self.points]
 
     @cached_property
+    def stretch(self) -> list[np.ndarray]:
+        """Of the teeth over a cycle, at every point, m."""
+        return [point.along() for point in self.points]
+
+    @cached_property
     def force(self) -> np.ndarray:
         """(p,) dynamic mesh force: half of its swing over a cycle, N."""
         return np.array([np.ptp(wave) / 2 for wave in self._waves])
@@ -142,12 +166,12 @@ class Backlash:
     @cached_property
     def driving(self) -> np.ndarray:
         """(p,) share of the cycle in which the flank that carries the mean touches."""
-        return np.array([np.mean(wave > 0) for wave in self._waves])
+        return np.array([np.mean(s > self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def backside(self) -> np.ndarray:
         """(p,) share of the cycle in which the other flank touches."""
-        return np.array([np.mean(wave < 0) for wave in self._waves])
+        return np.array([np.mean(s < -self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def stable(self) -> np.ndarray:
@@ -166,8 +190,9 @@ class Backlash:
     def linear_force(self, hz: float) -> float:
         """Dynamic mesh force without backlash at one frequency, N."""
         balance = Balance(self.remainder, len(self.teeth.errors))
-        wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
-        return float(self.stiffness * np.ptp(wave[:, 0]) / 2)
+        s, v = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
+        wave = s @ self.remainder.stiffness + v @ self.remainder.damper
+        return float(np.ptp(wave[:, 0]) / 2)
 
     @cached_property
     def loudest(self) -> tuple[float, float]:
@@ -197,7 +222,7 @@ class Backlash:
         if half == 0:
             return ()
         gone = self.driving < 1
-        ends = self.branch.crossings(lambda p: float(p.waves()[0].min()) - half)
+        ends = self.branch.crossings(lambda p: float(p.along().min()) - half)
         return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])
 
     @cached_property

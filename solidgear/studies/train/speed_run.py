@@ -1,0 +1,112 @@
+"""A train with backlash while its speed rises or falls evenly, beside its steady motions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.nonlinear.run_up import RunUp, run_up
+from solidgear.studies.train.backlash import Backlash, Range
+
+
+@dataclass(frozen=True, eq=False)
+class SpeedRun:
+    """A run through the range of a branch.
+
+    Attributes
+    ----------
+    ramp : float
+        Of the mesh frequency, Hz/s; negative as the speed falls.
+    """
+
+    ramp: float
+    run: RunUp = field(repr=False)
+    found: Backlash = field(repr=False)
+
+    @cached_property
+    def frequency_hz(self) -> np.ndarray:
+        """(c,) in the middle of each mesh cycle."""
+        return self.run.omega / (2 * np.pi)
+
+    @property
+    def force(self) -> np.ndarray:
+        """(c,) dynamic mesh force: half of its swing within each cycle, N."""
+        return self.run.swing
+
+    @property
+    def loudest(self) -> tuple[float, float]:
+        """Frequency and size of the largest dynamic mesh force."""
+        k = int(self.force.argmax())
+        return float(self.frequency_hz[k]), float(self.force[k])
+
+    @cached_property
+    def apart(self) -> np.ndarray:
+        """(c,) bool, whether the teeth part within each cycle."""
+        half = self.found.teeth.half_gap
+        return (self.run.least < half) & (half > 0)
+
+    @property
+    def lost(self) -> Range | None:
+        """From the lowest to the highest frequency at which they do; None where they never do."""
+        at = self.frequency_hz[self.apart]
+        return Range(float(at.min()), float(at.max())) if len(at) else None
+
+    @cached_property
+    def steady_force(self) -> np.ndarray:
+        """(c,) dynamic mesh force of the stable steady motion nearest to that of each cycle, N; NaN
+        where there is none.
+        """
+        hz, size, good = self.found.frequency_hz, self.found.force, self.found.stable
+        out = np.full(len(self.force), np.nan)
+        for a, b in zip(range(len(hz) - 1), range(1, len(hz))):
+            if not good[a] or not good[b] or hz[a] == hz[b]:
+                continue
+            low, high = sorted((hz[a], hz[b]))
+            at = np.flatnonzero((self.frequency_hz >= low) & (self.frequency_hz <= high))
+            share = (self.frequency_hz[at] - hz[a]) / (hz[b] - hz[a])
+            own = size[a] + share * (size[b] - size[a])
+            off, before = np.abs(own - self.force[at]), np.abs(out[at] - self.force[at])
+            nearer = ~(before <= off)
+            out[at[nearer]] = own[nearer]
+        return out
+
+    def followed(self, tolerance: float) -> float:
+        """Share of the cycles whose force is within a relative tolerance of a steady motion's."""
+        return float(np.mean(np.abs(self.force / self.steady_force - 1) <= tolerance))
+
+
+def speed_run(found: Backlash, ramp: float, told: Callable[[str], None] | None = None) -> SpeedRun:
+    """A run from one end of a branch to the other by integration in time.
+
+    Parameters
+    ----------
+    ramp : float
+        Of the mesh frequency, Hz/s; below zero it falls from the highest.
+
+    Raises
+    ------
+    SolidgearError
+        For a ramp of zero, or one that passes in a few mesh cycles or takes very many.
+    """
+    if not np.isfinite(ramp) or ramp == 0:
+        raise SolidgearError("a run-up of 0 rpm/s stands still; give more, or less to run down")
+    ends = found.branch.omega[[0, -1]]
+    begin, end = ends.tolist() if ramp > 0 else ends[::-1].tolist()
+    point = found.points[0 if ramp > 0 else -1]
+
+    way, tenth = "up" if ramp > 0 else "down", -1
+
+    def share(done: float) -> None:
+        nonlocal tenth
+        if told and int(10 * done) > tenth:
+            tenth = int(10 * done)
+            told(f"run {way}, {10 * tenth} %")
+
+    own = run_up(
+        found.remainder, begin, end, 2 * np.pi * abs(ramp), state=point.state(), told=share
+    )
+    return SpeedRun(ramp, own, found)
