@@ -148,8 +148,8 @@ class Balance:
         h = np.arange(self.count + 1)
         receptance, change = own.receptance(h * omega)
         linear, linear_change = own.linear(omega, self.count)
-        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
         still, soft = parts, by
+        by_omega = np.zeros_like(parts)
         if own.drags:
             if own.flexible.any():
                 at_rest = own.excess(s, np.zeros_like(v), self.factor, self.line(0.0))[0]
@@ -159,7 +159,10 @@ class Balance:
             if line is not None:
                 drift = (line.drifting(s, v) - v) / omega
                 by_omega += read @ np.einsum("tij,tj->ti", excess.by_rate - own.damper, drift)
-            changed = changed + _applied(receptance, by_omega)
+            added, by_added = self._leaps(s, v, line, omega)
+            parts, by, by_omega = parts + added, by + by_added, by_omega + added / omega
+        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
+        changed = changed + _applied(receptance, by_omega)
         moved = _applied(receptance, parts) + still @ own.flexible
         taken = _applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
         if own.flexible.any():
@@ -204,6 +207,43 @@ class Balance:
                 if kink.bend is not None:
                     turned = area[:, None, None] * np.reshape(share, (-1, 1, 1)) * kink.bend[end]
                     by += np.einsum("hk,kij,kn->hinj", weight, turned, make[end])
+        return parts, by
+
+    def _leaps(
+        self, s: np.ndarray, v: np.ndarray, line: Line | None, omega: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same as :meth:`_parts` adds, of dampers that set in at once: where in an interval."""
+        make, slope, read = self._series
+        parts = np.zeros((len(read), s.shape[1]))
+        by = np.zeros((*parts.shape, *parts.shape))
+        for kink in kinks(self.remainder, s, line):
+            gap, speed = kink.gap, kink.speed(s, v)
+            first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
+            if not len(first) or not kink.damper:
+                continue
+            after = (first + 1) % len(gap)
+            ends = np.where(gap[first] > 0, (first, after), (after, first))
+            on, off = np.abs(gap[ends])
+            share = on / (on + off)
+            bent = sum(
+                (other / (on + off) ** 2)[:, None, None]
+                * make[end][:, :, None]
+                * kink.into[end][:, None, :]
+                for end, other in zip(ends, (off, on))
+            )
+            # a product that is linear between both ends, from where it sets in
+            counted = (-((1 - share) ** 2) / 2, share**2 / 2)
+            for end, much, more in zip(ends, counted, (1 - share, share)):
+                weight = -kink.damper * read[:, end]
+                into = kink.into[end]
+                rates = omega * slope[end][:, :, None] * into[:, None, :]
+                if kink.turning is not None:
+                    rates = rates + make[end][:, :, None] * kink.turning[end][:, None, :]
+                if self.factor is not None:
+                    into = into * self.factor[end]
+                parts += (weight * (much * speed[end])) @ into
+                changes = much[:, None, None] * rates + (more * speed[end])[:, None, None] * bent
+                by += np.einsum("hk,ki,knj->hinj", weight, into, changes)
         return parts, by
 
     def solve(self, motion: np.ndarray, omega: float) -> np.ndarray:

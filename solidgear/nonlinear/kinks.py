@@ -20,6 +20,12 @@ class Kink(NamedTuple):
     jump: float  #: of the stiffness, N/m
     damper: float  #: that sets in at once, N s/m
     bend: np.ndarray | None = None  #: (T, m, m) slope of ``into``
+    turning: np.ndarray | None = None  #: (T, m) rate of ``into`` where the line turns, 1/s
+
+    def speed(self, stretch: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """(T,) rate of the gap."""
+        own = (self.into * rate).sum(axis=1)
+        return own if self.turning is None else own + (self.turning * stretch).sum(axis=1)
 
 
 def kinks(own: Remainder, stretch: np.ndarray, line: Line | None = None) -> Iterator[Kink]:
@@ -30,15 +36,17 @@ def kinks(own: Remainder, stretch: np.ndarray, line: Line | None = None) -> Iter
             continue
         damper = law.damper if isinstance(law, Gap) and not law.ramp else 0.0
         for row in own.rows_of(at):
-            into = np.zeros_like(stretch)
+            into, turning = np.zeros_like(stretch), None
             if line is not None and at in line.links:
+                turning = np.zeros_like(stretch)
+                turning[:, at] = line.slope[:, at]
                 into[:, at] = line.share[:, at]
             else:
                 into[:, row] = 1.0
             along = (into * stretch).sum(axis=1)
             for edge, jump in law.kinks:
                 # a side that carries nothing has no damper either
-                yield Kink(along - edge, into, jump, damper * float(np.sign(jump)))
+                yield Kink(along - edge, into, jump, damper * float(np.sign(jump)), None, turning)
 
 
 def _circle(law: RadialGap, at: slice, stretch: np.ndarray) -> Kink:
@@ -70,9 +78,7 @@ def continued(
             continue
         into = kink.into if factor is None else kink.into * factor
         outer = into[:, :, None] * kink.into[:, None, :]
-        drifting = rate if line is None else line.drifting(stretch, rate)
-        speed = (kink.into * drifting).sum(axis=1)
-        added = off * (kink.jump * kink.gap + kink.damper * speed)
+        added = off * (kink.jump * kink.gap + kink.damper * kink.speed(stretch, rate))
         value = excess.value - added[:, None] * into
         by = excess.by_stretch - (off * kink.jump)[:, None, None] * outer
         if kink.bend is not None:

@@ -162,19 +162,21 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float) -> Panel:
         Axis("speed of the pinion in rpm", ends),
         Axis("share of the cycle in %", (0.0, 100.0)),
         130.0,
-        "Contact of the teeth over a mesh cycle; of several motions, the one that parts longest",
+        "Contact over a mesh cycle; of several motions, the one that parts longest; blank: none is stable",
         series=CONTACT,
         legend={"orient": "top", "columns": 3 if width > NARROW else 1},
     )
-    edges = np.linspace(ends[0], ends[1], BINS + 1).tolist()
+    edges = np.linspace(ends[0], ends[1], BINS + 1)
+    middle = (edges[1:] + edges[:-1]) / 2 * judge.frequency_hz[0] / rpm[0]
+    drives, backs = np.full(BINS, np.inf), np.zeros(BINS)
+    pairs = zip(judge.over(middle, judge.driving), judge.over(middle, judge.backside))
+    for (at, drive), (_, back) in pairs:
+        longer = drive < drives[at]
+        drives[at[longer]], backs[at[longer]] = drive[longer], back[longer]
     rows = []
-    for low, high in zip(edges, edges[1:]):
-        inside = np.flatnonzero(judge.stable & (rpm >= low) & (rpm <= high))
-        if len(inside):
-            k = int(inside[judge.driving[inside].argmin()])
-        else:
-            k = int(np.abs(np.where(judge.stable, rpm, np.inf) - (low + high) / 2).argmin())
-        drive, back = 100 * judge.driving[k], 100 * judge.backside[k]
+    for low, high, drive, back in zip(edges, edges[1:], 100 * drives, 100 * backs):
+        if not np.isfinite(drive):
+            continue
         for name, y, y2 in (
             (DRIVE, 0, drive),
             (BACK, drive, drive + back),

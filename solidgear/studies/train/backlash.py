@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -177,6 +177,18 @@ class Backlash:
     def stable(self) -> np.ndarray:
         """(p,) bool."""
         return np.abs(self.multiplier) <= 1 + ON
+
+    def over(self, hz: np.ndarray, values: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Which of some frequencies (n,) lie between two stable neighbours of the branch, and what
+        values of its points (p,) are there; once for every such pair.
+        """
+        own, good = self.frequency_hz, self.stable
+        for a, b in zip(range(len(own) - 1), range(1, len(own))):
+            low, high = sorted((own[a], own[b]))
+            at = np.flatnonzero((hz >= low) & (hz <= high))
+            if good[a] and good[b] and low < high and len(at):
+                share = (hz[at] - own[a]) / (own[b] - own[a])
+                yield at, values[a] + share * (values[b] - values[a])
 
     @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:

@@ -60,17 +60,10 @@ class SpeedRun:
         """(c,) dynamic mesh force of the stable steady motion nearest to that of each cycle, N; NaN
         where there is none.
         """
-        hz, size, good = self.found.frequency_hz, self.found.force, self.found.stable
         out = np.full(len(self.force), np.nan)
-        for a, b in zip(range(len(hz) - 1), range(1, len(hz))):
-            if not good[a] or not good[b] or hz[a] == hz[b]:
-                continue
-            low, high = sorted((hz[a], hz[b]))
-            at = np.flatnonzero((self.frequency_hz >= low) & (self.frequency_hz <= high))
-            share = (self.frequency_hz[at] - hz[a]) / (hz[b] - hz[a])
-            own = size[a] + share * (size[b] - size[a])
-            off, before = np.abs(own - self.force[at]), np.abs(out[at] - self.force[at])
-            nearer = ~(before <= off)
+        for at, own in self.found.over(self.frequency_hz, self.found.force):
+            before = np.abs(out[at] - self.force[at])
+            nearer = ~(before <= np.abs(own - self.force[at]))
             out[at[nearer]] = own[nearer]
         return out
 
