@@ -33,7 +33,7 @@ class RunUp:
     omega : (c,) ndarray
         In the middle of each cycle, rad/s.
     lowest, highest : (c,) ndarray
-        Force of the first link within it, N.
+        Force of the first link within it, without that of a damper, N.
     least, most : (c,) ndarray
         Its stretch, m.
     state : (2r,) ndarray
@@ -102,15 +102,15 @@ def run_up(
     duration = 4 * np.pi * cycles / (begin + np.sqrt(begin**2 + 4 * np.pi * cycles * slope))
     straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
     if straight and not remainder.unbalance:
-        times, s, v, modal = Ramped(remainder, begin, slope, duration).whole(modal, told)
+        times, s, modal = Ramped(remainder, begin, slope, duration).whole(modal, told)
     else:
         run = Integrated(remainder, begin, tolerance=tolerance, ramp=slope)
-        times, s, v, modal = _by_cycles(run, cycles, modal, told)
+        times, s, modal = _by_cycles(run, cycles, modal, told)
     omega = begin + slope * times
     angle = times * (begin + omega) / 2
     factor = remainder.factor(angle) if remainder.varies else None
-    line = remainder.line(angle, omega[:, None])
-    force = remainder.forces(s, v, factor, line).value[:, 0]
+    line = remainder.line(angle, 0.0)
+    force = remainder.forces(s, np.zeros_like(s), factor, line).value[:, 0]
     along = s[:, 0] if line is None else line.along(remainder.laws[0][1], s)
     first = np.searchsorted(angle, 2 * np.pi * np.arange(cycles) - 1e-9)
     turn = 2 * np.pi * (np.arange(cycles) + 0.5)
@@ -125,17 +125,16 @@ def run_up(
 
 
 def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, told):
-    """Times (t,), stretches and rates (t, m) of a run that is integrated, and its last state."""
+    """Times (t,) and stretches (t, m) of a run that is integrated, and its last state."""
     rows = []
     for cycle in range(cycles):
         if told and cycle % TOLD == 0:
             told(cycle / cycles)
         angle = 2 * np.pi * (cycle + np.arange(LOOKS + 1) / LOOKS)
         times = 2 * angle / (run.omega + np.sqrt(run.omega**2 + 2 * run.ramp * angle))
-        modal, s, v = run.over(modal, times)
-        rows.append((times[:-1], s, v))
-    times, s, v = (np.concatenate(own) for own in zip(*rows))
-    return times, s, v, modal
+        modal, s, _ = run.over(modal, times)
+        rows.append((times[:-1], s))
+    return *(np.concatenate(own) for own in zip(*rows)), modal
 
 
 class Ramped(Run):
@@ -172,9 +171,9 @@ class Ramped(Run):
         )
 
     def whole(self, modal: np.ndarray, told: Callable[[float], None] | None):
-        """Times (t,), stretches and rates (t, m), and the last state."""
+        """Times (t,), stretches (t, m), and the last state."""
         size, count = 2 * len(self.remainder.omega), len(self.times) - 1
-        s, v = (np.empty((count, self.remainder.rows)) for _ in range(2))
+        s = np.empty((count, self.remainder.rows))
         self.omega = float(self.speeds[0])
         name = self._standing(np.append(modal, self.around[0]))
         y, k = modal, 0
@@ -187,21 +186,17 @@ class Ramped(Run):
             states[0] = y
             for j in range(len(push) - 1):
                 states[j + 1] = over @ states[j] + push[j]
-            still, unit = self.still.piece(name), self.unit.piece(name)
-            known = np.hstack([states, self.around[here]])
-            ahead = known @ still.stretch.T
+            ahead = np.hstack([states, self.around[here]]) @ self.still.piece(name).stretch.T
             gone = np.flatnonzero(self._off(name, ahead[1:]))
             stay = int(gone[0]) if len(gone) else len(push) - 1
-            kept = slice(k, k + min(stay + 1, len(push) - 1))
-            known, speed = known[: kept.stop - k], self.speeds[kept, None]
-            s[kept] = ahead[: kept.stop - k]
-            v[kept] = known @ still.rate.T + speed * (known @ (unit.rate - still.rate).T)
+            kept = min(stay + 1, len(push) - 1)
+            s[k : k + kept] = ahead[:kept]
             y, k = states[stay], k + stay
             if len(gone):
                 self.omega = float(self.speeds[k])
                 y, name = self._through(name, np.append(y, self.around[k]), self.step)
                 y, k = y[:size], k + 1
-        return self.times[:-1], s, v, y
+        return self.times[:-1], s, y
 
     def _steps(self, name: tuple[int, ...], here: slice) -> tuple[np.ndarray, np.ndarray]:
         """Transition (2r, 2r) of a state over one step, and what the excitation adds to it in each of

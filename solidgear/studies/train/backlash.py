@@ -202,9 +202,8 @@ class Backlash:
     def linear_force(self, hz: float) -> float:
         """Dynamic mesh force without backlash at one frequency, N."""
         balance = Balance(self.remainder, len(self.teeth.errors))
-        s, v = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
-        wave = s @ self.remainder.stiffness + v @ self.remainder.damper
-        return float(np.ptp(wave[:, 0]) / 2)
+        wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
+        return float(self.remainder.stiffness[0, 0] * np.ptp(wave[:, 0]) / 2)
 
     @cached_property
     def loudest(self) -> tuple[float, float]:

@@ -20,8 +20,8 @@ PHASES = (
     "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
 )
 IN_CONTACT = (
-    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz; the "
-    "damper is part of the mesh force."
+    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz; "
+    "mesh forces are told without it."
 )
 
 
