@@ -184,8 +184,7 @@ class Balance:
         make, _, read = self._series
         parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
         for kink in kinks(self.remainder, s, line):
-            gap = kink.gap
-            first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
+            gap, first = kink.gap, kink.crossed
             if not len(first):
                 continue
             ends = first, (first + 1) % len(gap)
@@ -217,10 +216,10 @@ class Balance:
         parts = np.zeros((len(read), s.shape[1]))
         by = np.zeros((*parts.shape, *parts.shape))
         for kink in kinks(self.remainder, s, line):
-            gap, speed = kink.gap, kink.speed(s, v)
-            first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
+            gap, first = kink.gap, kink.crossed
             if not len(first) or not kink.damper:
                 continue
+            speed = kink.speed(s, v)
             after = (first + 1) % len(gap)
             ends = np.where(gap[first] > 0, (first, after), (after, first))
             on, off = np.abs(gap[ends])

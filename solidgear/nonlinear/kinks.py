@@ -22,6 +22,13 @@ class Kink(NamedTuple):
     bend: np.ndarray | None = None  #: (T, m, m) slope of ``into``
     turning: np.ndarray | None = None  #: (T, m) rate of ``into`` where the line turns, 1/s
 
+    @property
+    def crossed(self) -> np.ndarray:
+        """Instants of a period between which and the next the edge lies."""
+        on = self.gap > 0
+        first = np.flatnonzero(on[:-1] != on[1:])
+        return first if on[0] == on[-1] else np.append(first, len(on) - 1)
+
     def speed(self, stretch: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """(T,) rate of the gap."""
         own = (self.into * rate).sum(axis=1)
