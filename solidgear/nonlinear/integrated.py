@@ -164,19 +164,24 @@ class Integrated:
                 return own.excess(s, rate, factor, line)[0]
             return continued(own, beyond, s, rate, factor, line)
 
-        s = base
-        if own.flexible.any():
-            s = base = base + given @ own.flexible + self._grown(t) * (turn @ own.gives).real
-            still = np.zeros_like(s)
-            for _ in range(NEWTON):
-                force = excess(s, still)
-                left = s - base - force.value @ own.flexible
-                tangent = np.eye(s.shape[1]) - own.flexible @ force.by_stretch
-                step = np.linalg.solve(tangent, left[..., None])[..., 0]
-                s = s - step
-                if np.abs(step).max() <= 1e-3 * self.tolerance * np.abs(s).max():
-                    break
-        return s, v, excess(s, v).value + given + slope @ own.drag
+        if not own.flexible.any():
+            return base, v, excess(base, v).value + given + slope @ own.drag
+        s = base = base + given @ own.flexible + self._grown(t) * (turn @ own.gives).real
+        still, eye = np.zeros_like(s), np.eye(s.shape[1])
+        force = excess(s, still)
+        for _ in range(NEWTON):
+            left = s - base - force.value @ own.flexible
+            tangent = eye - own.flexible @ force.by_stretch
+            step = np.linalg.solve(tangent, left[..., None])[..., 0]
+            s = s - step
+            if np.abs(step).max() <= 1e-3 * self.tolerance * np.abs(s).max():
+                break
+            before, force = force, excess(s, still)
+            if (before.by_stretch == force.by_stretch).all():  # straight: it has arrived
+                break
+        if own.drags:
+            force = excess(s, v)
+        return s, v, force.value + given + slope @ own.drag
 
     def _turned(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Orders (T, o) of the excitation, and their rates."""
