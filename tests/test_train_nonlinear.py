@@ -150,6 +150,7 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
         (["--backlash", "100 um", "--mean-force", "5 kN", "--min-frequency", "-3"], "above 0"),
         (["--backlash", "1e-4 m", "--mean-force", "-5 kN"], "holds no teeth"),
         (["--backlash", "1e-4 m", "--mean-force", "5 kN", "--contact-loss", "0"], "above 0 Hz"),
+        (["--backlash", "1e-4 m", "--mean-force", "5 kN", "--run-up", "0"], "--run-up 0: give 18"),
     ],
 )
 def test_teeth_that_cannot_be_are_refused(run, more, says):

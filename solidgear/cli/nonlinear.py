@@ -92,7 +92,7 @@ def nonlinear(
     from solidgear.studies.train.modes import unpublished_lines
     from solidgear.studies.train.nonlinear_told import BacklashTold
     from solidgear.studies.train.slips import slips
-    from solidgear.studies.train.speed_run import speed_run
+    from solidgear.studies.train.speed_run import ramp_of, speed_run
 
     shop = reduced.workshop(train, models.of_shafts)
     first = models.pinion, models.gear
@@ -105,6 +105,8 @@ def nonlinear(
     for option, count in (("--in-time", in_time), ("--forces", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
+    low, high = study.ends(shop, reduced.max_frequency, min_frequency)
+    ramps = [ramp_of(rpm, shop.train.pinion.teeth, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = tuple(
             study.with_backlash(shop, *pair, teeth, reduced.max_frequency, min_frequency, progress)
@@ -112,8 +114,7 @@ def nonlinear(
         )
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
         mapped = study.over_force(found[0], forces, progress) if forces else ()
-        rates = [rpm * shop.train.pinion.teeth / 60 for rpm in run_up or []]
-        runs = tuple(speed_run(found[0], rate, progress) for rate in rates)
+        runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
         lever = abs(shop.contact.pinion.lever)
         told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"

@@ -248,8 +248,10 @@ class Backlash:
         loose = ~self.stable
         kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
         real = loose & (np.abs(self.multiplier.imag) <= REAL)
-        kinds[real & (self.multiplier.real < 0)] = "two mesh periods"
-        found = {kind: kinds == kind for kind in ("a second frequency", "two mesh periods")}
+        kinds[real & (self.multiplier.real < 0)] = "a motion of two mesh periods"
+        found = {
+            kind: kinds == kind for kind in ("a second frequency", "a motion of two mesh periods")
+        }
         return tuple(
             (kind, one)
             for kind, where in found.items()

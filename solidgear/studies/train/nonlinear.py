@@ -158,6 +158,25 @@ def _mesh(system: System) -> RowSpring:
     return mesh
 
 
+def ends(
+    workshop: Workshop, highest_hz: float | None, lowest_hz: float | None
+) -> tuple[float, float]:
+    """Lowest and highest frequency of the mesh, those of the file where they are not given.
+
+    Raises
+    ------
+    SolidgearError
+        For a range that holds zero.
+    """
+    highest = highest_hz or workshop.train.ask.max_frequency
+    lowest = BEGIN * highest if lowest_hz is None else lowest_hz
+    if not 0 < lowest < highest:
+        raise SolidgearError(
+            f"mesh frequencies from {lowest:g} to {highest:g} Hz; give ascending ends above 0"
+        )
+    return lowest, highest
+
+
 def with_backlash(
     workshop: Workshop,
     pinion: str,
@@ -195,15 +214,10 @@ def with_backlash(
     >>> [jump.rising for jump in found.jumps][:2]
     [True, False]
     """
-    asked = workshop.train.ask.max_frequency
-    highest = highest_hz or asked
-    lowest = BEGIN * highest if lowest_hz is None else lowest_hz
-    if not 0 < lowest < highest:
-        raise SolidgearError(
-            f"mesh frequencies from {lowest:g} to {highest:g} Hz; give ascending ends above 0"
-        )
+    lowest, highest = ends(workshop, highest_hz, lowest_hz)
     begin = process_time()
-    own = backlash_model(workshop, pinion, gear, teeth, max(asked, highest))
+    most = max(workshop.train.ask.max_frequency, highest)
+    own = backlash_model(workshop, pinion, gear, teeth, most)
     if told:
         told(f"branch of {pinion} + {gear}")
     branch = follow(own, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)

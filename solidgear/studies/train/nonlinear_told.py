@@ -193,12 +193,12 @@ class BacklashTold:
                 parted = f"the teeth part in {share:.2g} %, from {self._range(one.lost)}"
             lines.append(
                 f"Run {way} at {self._rpm(abs(one.ramp)):.4g} rpm/s: largest dynamic mesh force "
-                f"{size:.0f} N at {self._at(at)}; that of steady motions is {steady:.0f} N at "
-                f"{self._at(steady_at)}."
+                f"{size:.0f} N at {self._at(at)}; stable motions of one mesh period "
+                f"reach {steady:.0f} N at {self._at(steady_at)}."
             )
             lines.append(
                 f"In {100 * one.followed(band):.0f} % of its {len(one.force)} mesh cycles the force is "
-                f"within {100 * band:g} % of a steady motion's; {parted}."
+                f"within {100 * band:g} % of such a motion's; {parted}."
             )
         return lines
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.nonlinear.run_up import RunUp, run_up
+from solidgear.nonlinear.run_up import FEWEST_CYCLES, MOST_CYCLES, RunUp, run_up
 from solidgear.studies.train.backlash import Backlash, Range
 
 
@@ -72,6 +72,25 @@ class SpeedRun:
         return float(np.mean(np.abs(self.force / self.steady_force - 1) <= tolerance))
 
 
+def ramp_of(rpm: float, teeth: int, low: float, high: float) -> float:
+    """Ramp of the mesh frequency, Hz/s, from one of the pinion in rpm/s, through a range in Hz.
+
+    Raises
+    ------
+    SolidgearError
+        For one that stands still, passes in a few mesh cycles, or takes very many.
+    """
+    cycles = (high**2 - low**2) / 2 * 60 / teeth  # times the ramp in rpm/s
+    least, most = cycles / MOST_CYCLES, cycles / FEWEST_CYCLES
+    if not least <= abs(rpm) <= most:
+        raise SolidgearError(
+            f"--run-up {rpm:g}: give {float(f'{1.05 * least:.2g}'):g} to "
+            f"{float(f'{0.95 * most:.2g}'):g} rpm/s, or so much below 0; from {low:g} to {high:g} Hz "
+            f"that is {MOST_CYCLES} to {FEWEST_CYCLES} mesh cycles"
+        )
+    return rpm * teeth / 60
+
+
 def speed_run(found: Backlash, ramp: float, told: Callable[[str], None] | None = None) -> SpeedRun:
     """A run from one end of a branch to the other by integration in time.
 
@@ -79,14 +98,7 @@ def speed_run(found: Backlash, ramp: float, told: Callable[[str], None] | None =
     ----------
     ramp : float
         Of the mesh frequency, Hz/s; below zero it falls from the highest.
-
-    Raises
-    ------
-    SolidgearError
-        For a ramp of zero, or one that passes in a few mesh cycles or takes very many.
     """
-    if not np.isfinite(ramp) or ramp == 0:
-        raise SolidgearError("a run-up of 0 rpm/s stands still; give more, or less to run down")
     ends = found.branch.omega[[0, -1]]
     begin, end = ends.tolist() if ramp > 0 else ends[::-1].tolist()
     point = found.points[0 if ramp > 0 else -1]
