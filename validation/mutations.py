@@ -787,6 +787,23 @@ MUTATIONS = (
         "::test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns",
     ),
     Mutation(
+        "teeth whose line of action turns push along the mean line alone",
+        "solidgear/nonlinear/sway.py",
+        "Line.force",
+        "own.value * share",
+        "own.value * np.eye(1, share.shape[1])",
+        "tests/test_nonlinear_line.py"
+        "::test_teeth_whose_line_turns_move_as_the_equations_written_out",
+    ),
+    Mutation(
+        "run-up: the angle of the excitation is that of the speed of the moment all along",
+        "solidgear/nonlinear/run_up.py",
+        "Ramped.__init__",
+        "middle * (begin + self.speeds) / 2",
+        "middle * self.speeds",
+        "tests/test_nonlinear_run_up.py::test_a_linear_run_is_that_of_the_closed_form",
+    ),
+    Mutation(
         "Floquet: where damping sets in, small motions leap the other way",
         "solidgear/nonlinear/stability.py",
         "_saltation",

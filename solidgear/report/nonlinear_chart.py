@@ -137,7 +137,7 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
 
 
 def _run_name(one: Any, teeth: int) -> str:
-    return f"run-{'up' if one.ramp > 0 else 'down'} at {60 * abs(one.ramp) / teeth:.4g} rpm/s"
+    return f"run-{'up' if one.ramp > 0 else 'down'} at {60 * abs(one.ramp) / teeth:.6g} rpm/s"
 
 
 def _envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -23,10 +23,15 @@ def lead(found: Any, shown: Units) -> str:
     teeth = found.teeth
     gap = shown.text(2 * teeth.half_gap, "m moved", 4)
     error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)
+    if teeth.phases:
+        error += f" at phases {', '.join(f'{np.degrees(p):.4g}°' for p in teeth.phases)}"
+    named = {"stiffness": teeth.cycle, "line of action": teeth.turns}
+    varying = " and ".join(name for name, there in named.items() if there)
+    cycle = f" {varying.capitalize()} over the mesh cycle as in the file." if varying else ""
     force = shown.text(teeth.mean_force, "N", 4)
     return (
         f"Backlash {gap}, mean mesh force {force} ({teeth.source}), transmission error {error}; "
-        f"{found.judge.label}."
+        f"{found.judge.label}.{cycle}"
     )
 
 

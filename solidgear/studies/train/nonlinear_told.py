@@ -192,7 +192,7 @@ class BacklashTold:
                 share = 100 * float(np.mean(one.apart))
                 parted = f"the teeth part in {share:.2g} %, from {self._range(one.lost)}"
             lines.append(
-                f"Run {way} at {self._rpm(abs(one.ramp)):.4g} rpm/s: largest dynamic mesh force "
+                f"Run {way} at {self._rpm(abs(one.ramp)):.6g} rpm/s: largest dynamic mesh force "
                 f"{size:.0f} N at {self._at(at)}; stable motions of one mesh period "
                 f"reach {steady:.0f} N at {self._at(steady_at)}."
             )
