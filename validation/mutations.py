@@ -787,11 +787,11 @@ MUTATIONS = (
         "::test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns",
     ),
     Mutation(
-        "teeth whose line of action turns push along the mean line alone",
+        "a line of action turns the other way round over the mesh cycle",
         "solidgear/nonlinear/sway.py",
-        "Line.force",
-        "own.value * share",
-        "own.value * np.eye(1, share.shape[1])",
+        "Sway.line",
+        "(turn @ self.orders).real",
+        "(turn.conj() @ self.orders).real",
         "tests/test_nonlinear_line.py"
         "::test_teeth_whose_line_turns_move_as_the_equations_written_out",
     ),

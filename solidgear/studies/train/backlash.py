@@ -205,6 +205,12 @@ class Backlash:
         wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
         return float(self.remainder.stiffness[0, 0] * np.ptp(wave[:, 0]) / 2)
 
+    @property
+    def returns(self) -> float | None:
+        """Highest frequency of a branch that leaves the range where it began, Hz."""
+        hz = self.frequency_hz
+        return float(hz.max()) if np.isclose(hz[0], hz[-1], rtol=1e-9) else None
+
     @cached_property
     def loudest(self) -> tuple[float, float]:
         """Frequency and size of the largest dynamic mesh force of stable motions."""

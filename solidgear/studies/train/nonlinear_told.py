@@ -19,6 +19,10 @@ PHASES = (
     "The file gives no phases of the transmission error: its orders are cosines that begin where the "
     "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
 )
+RETURNS = (
+    "{0}: the branch turns back at {1} and leaves the range where it began, on another motion, so that "
+    "higher speeds are not judged; give a lower --min-frequency."
+)
 IN_CONTACT = (
     "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz; "
     "mesh forces are told without it."
@@ -117,6 +121,7 @@ class BacklashTold:
                 f"The other flank is hit from {'; from '.join(map(self._range, own.both_flanks))}."
             )
         lines += self._jumped(own.jumps)
+        lines += self._returned(own)
         lines += [WANDERS.format(self._range(one), kind) for kind, one in own.wandering]
         at, size = own.loudest
         there, linear = own.linear_loudest
@@ -147,6 +152,10 @@ class BacklashTold:
             for jump in jumps
         ]
         return [f"The motion {', and '.join(ways)}."] if ways else ["The motion does not jump."]
+
+    def _returned(self, one: Backlash) -> list[str]:
+        label = one.label[0].upper() + one.label[1:]
+        return [RETURNS.format(label, self._at(one.returns))] if one.returns else []
 
     def _off(self) -> list[str]:
         band = self.train.ask.decibels
@@ -227,7 +236,10 @@ class BacklashTold:
 
     def _verdict(self) -> list[str]:
         ask, lines = self.train.ask, []
-        for one in self.sufficiency():
+        for one, other in zip(self.sufficiency(), self.found[1:]):
+            if other.returns:
+                lines += self._returned(other)
+                continue
             expected = len(self.judge.jumps)
             if one.jumps is None:
                 jumps = f"{one.count} jumps instead of {expected}"
