@@ -10,8 +10,9 @@ from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
 from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.integrated import Integrated
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import Integrated, settled
+from solidgear.nonlinear.motion import settled
 from solidgear.nonlinear.stability import multipliers
 from solidgear.nonlinear.varying import edges, growth, hill
 from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System

@@ -11,6 +11,7 @@ import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.integrated import Integrated
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import sweep
 from solidgear.studies.train.models import Workshop
@@ -133,15 +134,20 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
     arguments = ["nonlinear", str(OVERHUNG), "--pinion", "timoshenko", "--gear", "timoshenko"]
     arguments += ["--backlash", "100 um", "--mean-force", "5 kN", "--error", "10 um"]
     arguments += ["--against", "lumped/timoshenko+lumped/timoshenko", "--max-frequency", "700"]
-    arguments += ["--min-frequency", "450", "--out", str(tmp_path / "out")]
+    arguments += ["--min-frequency", "450", "--out", str(tmp_path / "out"), "--run-up", "-2000"]
     code, out, _ = run(*arguments)
     assert code == 0 and "Jumps" not in out.splitlines()[0]
     assert "The motion jumps at 615.7 Hz (2639 rpm) as the speed rises" in out
     told = json.loads((tmp_path / "out" / "nonlinear.json").read_text())
     assert told["teeth"]["half_gap"] == 50e-6
     assert {p.name for p in (tmp_path / "out").iterdir()} == {
-        f"nonlinear.{kind}" for kind in ("html", "csv", "json", "png", "svg")
+        *(f"nonlinear.{kind}" for kind in ("html", "csv", "json", "png", "svg")),
+        "run_down_2000.csv",
     }
+    (ran,) = told["runs"]
+    # a run down keeps the upper motion beyond where it jumps at rest, 523.4 Hz
+    assert "Run down at 2000 rpm/s: largest dynamic mesh force" in out
+    assert ran["parts"]["low"] < 520 and ran["largest"]["force"] < 1.01 * 9715
 
 
 @pytest.mark.parametrize(
@@ -152,6 +158,8 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
         (["--mean-force", "5 kN"], "no backlash is given"),
         (["--backlash", "100 um", "--mean-force", "5 kN", "--min-frequency", "-3"], "above 0"),
         (["--backlash", "1e-4 m", "--mean-force", "-5 kN"], "holds no teeth"),
+        (["--backlash", "1e-4 m", "--mean-force", "5 kN", "--contact-loss", "0"], "above 0 Hz"),
+        (["--backlash", "1e-4 m", "--mean-force", "5 kN", "--run-up", "0"], "--run-up 0: give 18"),
     ],
 )
 def test_teeth_that_cannot_be_are_refused(run, more, says):
@@ -203,3 +211,83 @@ def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(sh
 def test_a_stiffness_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
     with pytest.raises(SceneError, match=says):
         cycle(shop, **changes)
+
+
+def lines(shop, turn=0.0, **changes):
+    """The train with its own mesh point and line of action over the cycle, turned about z."""
+    at, met = np.linspace(0.0, PITCH, 41), shop.contact.pinion
+    c, s = np.cos(turn * np.cos(14 * at)), np.sin(turn * np.cos(14 * at))
+    nx, ny, nz = met.normal
+    normal = np.column_stack([c * nx - s * ny, s * nx + c * ny, np.full(41, nz)])
+    table = {"angle": at, "point": np.tile(met.point, (41, 1)), "normal": normal} | changes
+    table = {key: np.asarray(values).tolist() for key, values in table.items()}
+    mesh = shop.train.mesh.with_changes(line_cycle=table)
+    return shop.with_train(shop.train.with_changes(mesh=mesh))
+
+
+def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
+    first, other = (
+        backlash_model(one, *BEAMS, teeth_of(one, 5000.0), 4000.0) for one in (shop, lines(shop))
+    )
+    assert other.sway is None
+    for name in ("omega", "seen", "mean", "losses", "flexible", "stiffness", "error"):
+        a, b = getattr(first, name), getattr(other, name)
+        np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-10, atol=1e-10 * np.abs(a).max())
+
+
+def test_a_line_of_action_that_turns_moves_the_train_alike_by_balance_and_in_time(shop):
+    turned = lines(shop, 0.15)
+    found = teeth_of(turned, 5000.0)
+    own = backlash_model(turned, "lumped/timoshenko", "lumped/timoshenko", found, 2000.0)
+    assert own.rows > 1 and found.turns
+    point = follow(own, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
+    still = backlash_model(shop, "lumped/timoshenko", "lumped/timoshenko", found, 2000.0)
+    other = follow(still, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
+    force, straight = (np.ptp(one.forces()[:, 0]) for one in (point, other))
+    assert abs(force / straight - 1) > 0.01, "the line is to matter"
+    run, state = Integrated(own, point.omega), point.state()
+    after, s, _ = run.period(state)
+    line = own.line(2 * np.pi * np.arange(run.looks) / run.looks, 0.0)
+    mesh = own.forces(s, np.zeros_like(s), np.ones_like(s), line).value[:, 0]
+    # asked 0.1 %: a cycle from the motion of the balance brings it back
+    assert np.ptp(mesh) == pytest.approx(force, rel=1e-3)
+    np.testing.assert_allclose(after, state, atol=1e-3 * np.abs(state).max())
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"normal": np.tile([0.0, 0.0, 0.9], (41, 1))}, "normal 1 has length 0.9; give unit"),
+        ({"point": np.linspace([-0.06, 0, 0], [-0.05, 0, 0], 41)}, "is not periodic"),
+        ({"point": [[-0.06, 0, 0]] * 4}, "4 points for 41 angles"),
+        ({"angle": np.linspace(0.0, 0.3, 41)}, "one of its 14 teeth takes"),
+    ],
+)
+def test_a_line_of_action_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
+    with pytest.raises(SceneError, match=says):
+        lines(shop, **changes)
+
+
+def test_tables_over_the_cycle_that_begin_apart_or_push_elsewhere_are_refused(shop):
+    with pytest.raises(SceneError, match="both tell one cycle"):
+        lines(cycle(shop), angle=np.linspace(0.1, 0.1 + PITCH, 41))
+    met = shop.contact.pinion
+    moved = lines(shop, point=np.tile(met.point * [0.5, 1.0, 1.0], (41, 1)))
+    with pytest.raises(SceneError, match="has lever arms of"):
+        backlash_model(moved, *BEAMS, teeth_of(moved, 5000.0), 4000.0)
+
+
+def test_phases_of_the_transmission_error_shift_it_in_time_or_change_its_force(shop):
+    def force(phases):
+        error = {"orders": ("10 um", "5 um"), "phases": phases}
+        mesh = shop.train.mesh.with_changes(transmission_error=error)
+        one = shop.with_train(shop.train.with_changes(mesh=mesh))
+        own = backlash_model(one, *BEAMS, teeth_of(one, 5e5), 4000.0)
+        balance = Balance(own, 3)
+        motion = balance.linear(2 * np.pi * 300.0)
+        return np.ptp(balance.stretch(motion, 2 * np.pi * 300.0)[0])
+
+    assert force(("40 deg", "80 deg")) == pytest.approx(force(()), rel=1e-3)  # looks elsewhere
+    assert abs(force(("0 deg", "90 deg")) / force(()) - 1) > 0.02
+    with pytest.raises(SceneError, match="1 phases for 2 orders"):
+        force(("90 deg",))

@@ -859,6 +859,23 @@ MUTATIONS = (
         "::test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns",
     ),
     Mutation(
+        "a line of action turns the other way round over the mesh cycle",
+        "solidgear/nonlinear/sway.py",
+        "Sway.line",
+        "(turn @ self.orders).real",
+        "(turn.conj() @ self.orders).real",
+        "tests/test_nonlinear_line.py"
+        "::test_teeth_whose_line_turns_move_as_the_equations_written_out",
+    ),
+    Mutation(
+        "run-up: the angle of the excitation is that of the speed of the moment all along",
+        "solidgear/nonlinear/run_up.py",
+        "Ramped.__init__",
+        "middle * (begin + self.speeds) / 2",
+        "middle * self.speeds",
+        "tests/test_nonlinear_run_up.py::test_a_linear_run_is_that_of_the_closed_form",
+    ),
+    Mutation(
         "Floquet: where damping sets in, small motions leap the other way",
         "solidgear/nonlinear/stability.py",
         "_saltation",

@@ -23,6 +23,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import unpublished_lines
 from solidgear.studies.train.nonlinear_told import BacklashTold
 from solidgear.studies.train.slips import slips
+from solidgear.studies.train.speed_run import ramp_of, speed_run
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds
 MOST_RUNS = 200
@@ -65,6 +66,20 @@ def nonlinear(
         int,
         typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
     ] = 0,
+    run_up: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--run-up",
+            help="Run through the range in time at so many rpm/s of the pinion; below 0 down.",
+        ),
+    ] = None,
+    contact_loss: Annotated[
+        float | None,
+        typer.Option(
+            "--contact-loss",
+            help="Hz at which a damper in contact alone has the loss factor of the mesh.",
+        ),
+    ] = None,
     forces: Annotated[
         int,
         typer.Option("--forces", help="Mean forces for a map of jumps over speed and torque."),
@@ -81,10 +96,14 @@ def nonlinear(
     usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
     others = usual if against is None else [mix(text) for text in against]
     shop = _with_teeth(shop, backlash, error)
-    teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"))
+    if contact_loss is not None and not contact_loss > 0:
+        raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
+    teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"), contact_loss)
     for option, count in (("--in-time", in_time), ("--forces", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
+    low, high = study.ends(shop, reduced.max_frequency, min_frequency)
+    ramps = [ramp_of(rpm, shop.train.pinion.teeth, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = tuple(
             study.with_backlash(shop, *pair, teeth, reduced.max_frequency, min_frequency, progress)
@@ -92,8 +111,9 @@ def nonlinear(
         )
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
         mapped = study.over_force(found[0], forces, progress) if forces else ()
+        runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
         lever = abs(shop.contact.pinion.lever)
-        told = BacklashTold(shop.train, found, lever, swept, mapped)
+        told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
         cautions = [*slips(shop), *shop.cautions]
         files = []

@@ -17,7 +17,9 @@ from functools import cache, cached_property
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.nonlinear.kinks import kinks
 from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.sway import Line
 from solidgear.system.law import Force
 
 #: instants a harmonic, and of a period at least: with two, turning points of a law of pieces were 2 % off
@@ -82,20 +84,6 @@ class Balance:
         Harmonics H.
     instants : int
         A harmonic.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
-    >>> balance = Balance(found, 9)
-    >>> motion = balance.solve(balance.start(0.5), 0.5)
-    >>> round(float(motion[0]), 6)      # in contact throughout, around 1 + 0.1
-    1.1
     """
 
     remainder: Remainder
@@ -117,6 +105,16 @@ class Balance:
         angle = 2 * np.pi * np.arange(self.samples) / self.samples
         return self.remainder.factor(angle) if self.remainder.varies else None
 
+    def line(self, omega: float) -> Line | None:
+        """Shares of the rows at every instant; None where no line of action turns."""
+        if self._line is None:
+            return None
+        return self._line._replace(slope=omega * self._line.slope)
+
+    @cached_property
+    def _line(self) -> Line | None:
+        return self.remainder.line(2 * np.pi * np.arange(self.samples) / self.samples, 1.0)
+
     def linear(self, omega: float) -> np.ndarray:
         """(n,) motion of the linear system, whose rest is where its forces are none."""
         return as_real(self.remainder.linear(omega, self.count)[0]).ravel()
@@ -124,11 +122,13 @@ class Balance:
     def start(self, omega: float) -> np.ndarray:
         """(n,) motion of the linear system around where laws carry its mean forces."""
         out = self.linear(omega).reshape(-1, self.remainder.rows)
-        mean = np.diag(self.remainder.stiffness) * self.remainder.mean
-        for law, at in self.remainder.laws:
+        own = self.remainder
+        mean = np.diag(own.stiffness) * own.mean
+        for law, at in own.laws:
             depth = getattr(law, "depth", None)
             if depth is not None:
-                out[0, at] = [depth(force) for force in mean[at]]
+                for row in own.rows_of(at):
+                    out[0, row] = depth(mean[row])
         return out.ravel()
 
     def stretch(self, motion: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:
@@ -142,19 +142,27 @@ class Balance:
         own = self.remainder
         make, slope, read = self._series
         s, v = self.stretch(motion, omega)
-        excess, held = own.excess(s, v, self.factor)
-        parts, by = self._parts(excess, s)
+        line = self.line(omega)
+        excess, held = own.excess(s, v, self.factor, line)
+        parts, by = self._parts(excess, s, line)
         h = np.arange(self.count + 1)
         receptance, change = own.receptance(h * omega)
         linear, linear_change = own.linear(omega, self.count)
-        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
         still, soft = parts, by
+        by_omega = np.zeros_like(parts)
         if own.drags:
             if own.flexible.any():
-                still, soft = self._parts(own.excess(s, np.zeros_like(v), self.factor)[0], s)
+                at_rest = own.excess(s, np.zeros_like(v), self.factor, self.line(0.0))[0]
+                still, soft = self._parts(at_rest, s, line)
             by = by + omega * _over_parts(read, excess.by_rate, slope)
             by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
-            changed = changed + _applied(receptance, by_omega)
+            if line is not None:
+                drift = (line.drifting(s, v) - v) / omega
+                by_omega += read @ np.einsum("tij,tj->ti", excess.by_rate - own.damper, drift)
+            added, by_added = self._leaps(s, v, line, omega)
+            parts, by, by_omega = parts + added, by + by_added, by_omega + added / omega
+        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
+        changed = changed + _applied(receptance, by_omega)
         moved = _applied(receptance, parts) + still @ own.flexible
         taken = _applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
         if own.flexible.any():
@@ -163,7 +171,9 @@ class Balance:
         value = motion - (as_real(linear) + moved).ravel()
         return Residual(value, jacobian, -changed.ravel(), held or not own.hangs)
 
-    def _parts(self, excess: Force, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _parts(
+        self, excess: Force, s: np.ndarray, line: Line | None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by those of
         the stretch.
 
@@ -173,21 +183,66 @@ class Balance:
         """
         make, _, read = self._series
         parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
-        for law, at in self.remainder.laws:
-            for edge, jump in law.kinks:
-                for row in range(at.start, at.stop):
-                    gap = s[:, row] - edge
-                    first = np.flatnonzero((gap > 0) != (np.roll(gap, -1) > 0))
-                    after = (first + 1) % len(gap)
-                    u, v = np.abs(gap[first]), np.abs(gap[after])
-                    weight = jump / 4 * (read[:, first] + read[:, after])
-                    if self.factor is not None:
-                        weight = weight * (self.factor[first, row] + self.factor[after, row]) / 2
-                    parts[:, row] += weight @ (u * v / (u + v))
-                    slope = np.sign(gap[first]) * (v / (u + v)) ** 2
-                    other = np.sign(gap[after]) * (u / (u + v)) ** 2
-                    bent = slope[:, None] * make[first] + other[:, None] * make[after]
-                    by[:, row, :, row] += weight @ bent
+        for kink in kinks(self.remainder, s, line):
+            gap, first = kink.gap, kink.crossed
+            if not len(first):
+                continue
+            ends = first, (first + 1) % len(gap)
+            u, v = (np.abs(gap[end]) for end in ends)
+            # slopes of u v / (u + v)
+            slopes = [
+                np.sign(gap[end]) * (other / (u + v)) ** 2 for end, other in zip(ends, (v, u))
+            ]
+            bent = sum(
+                slope[:, None, None] * make[end][:, :, None] * kink.into[end][:, None, :]
+                for end, slope in zip(ends, slopes)
+            )
+            for end in ends:
+                weight = kink.jump / 4 * read[:, end]
+                share = 1.0 if self.factor is None else self.factor[end]
+                into, area = share * kink.into[end], u * v / (u + v)
+                parts += (weight * area) @ into
+                by += np.einsum("hk,ki,knj->hinj", weight, into, bent)
+                if kink.bend is not None:
+                    turned = area[:, None, None] * np.reshape(share, (-1, 1, 1)) * kink.bend[end]
+                    by += np.einsum("hk,kij,kn->hinj", weight, turned, make[end])
+        return parts, by
+
+    def _leaps(
+        self, s: np.ndarray, v: np.ndarray, line: Line | None, omega: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same as :meth:`_parts` adds, of dampers that set in at once: where in an interval."""
+        make, slope, read = self._series
+        parts = np.zeros((len(read), s.shape[1]))
+        by = np.zeros((*parts.shape, *parts.shape))
+        for kink in kinks(self.remainder, s, line):
+            gap, first = kink.gap, kink.crossed
+            if not len(first) or not kink.damper:
+                continue
+            speed = kink.speed(s, v)
+            after = (first + 1) % len(gap)
+            ends = np.where(gap[first] > 0, (first, after), (after, first))
+            on, off = np.abs(gap[ends])
+            share = on / (on + off)
+            bent = sum(
+                (other / (on + off) ** 2)[:, None, None]
+                * make[end][:, :, None]
+                * kink.into[end][:, None, :]
+                for end, other in zip(ends, (off, on))
+            )
+            # a product that is linear between both ends, from where it sets in
+            counted = (-((1 - share) ** 2) / 2, share**2 / 2)
+            for end, much, more in zip(ends, counted, (1 - share, share)):
+                weight = -kink.damper * read[:, end]
+                into = kink.into[end]
+                rates = omega * slope[end][:, :, None] * into[:, None, :]
+                if kink.turning is not None:
+                    rates = rates + make[end][:, :, None] * kink.turning[end][:, None, :]
+                if self.factor is not None:
+                    into = into * self.factor[end]
+                parts += (weight * (much * speed[end])) @ into
+                changes = much[:, None, None] * rates + (more * speed[end])[:, None, None] * bent
+                by += np.einsum("hk,ki,knj->hinj", weight, into, changes)
         return parts, by
 
     def solve(self, motion: np.ndarray, omega: float) -> np.ndarray:

@@ -77,7 +77,7 @@ class Point:
     def state(self) -> np.ndarray:
         """(2r,) modal state ``(omega q, q')`` at the beginning of a period, where time can begin."""
         own, count = self.balance.remainder, self.balance.count
-        excess, _ = own.excess(*self.waves(), self.balance.factor)
+        excess, _ = own.excess(*self.waves(), self.balance.factor, self.balance.line(self.omega))
         push = np.fft.rfft(excess.value, axis=0)[: count + 1] / len(excess.value)
         push[1:] *= 2
         n = 1j * self.omega * np.arange(count + 1)
@@ -92,8 +92,16 @@ class Point:
         return np.concatenate([own.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real])
 
     def forces(self) -> np.ndarray:
-        """(T, m) forces of the laws over a period."""
-        return self.balance.remainder.forces(*self.waves(), self.balance.factor).value
+        """(T, m) forces of the laws over a period, without those of their dampers."""
+        stretch, line = self.waves()[0], self.balance.line(0.0)
+        still = np.zeros_like(stretch)
+        return self.balance.remainder.forces(stretch, still, self.balance.factor, line).value
+
+    def along(self) -> np.ndarray:
+        """(T,) stretch over a period of the first link with a law, along its line of action."""
+        line, stretch = self.balance.line(self.omega), self.waves()[0]
+        at = self.balance.remainder.laws[0][1]
+        return stretch[:, 0] if line is None else line.along(at, stretch)
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,20 +35,6 @@ def doubled(branch: Branch, step: float = 0.02) -> list[Branch]:
     list of Branch
         Each until its motions have one period again or leave the range; frequencies are those of
         two periods, half of the excitation.  One that ends where another began is told once.
-
-    Examples
-    --------
-    >>> from solidgear.nonlinear.continuation import follow
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.1]}, **losses)
-    >>> (one,) = doubled(follow(found, 1.0, 2.5))
-    >>> [round(2 * float(point.omega), 2) for point in (one.points[0], one.points[-1])]
-    [1.23, 1.95]
     """
     out: list[Branch] = []
     met: list[float] = []

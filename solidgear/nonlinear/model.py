@@ -13,13 +13,14 @@ would be a pole under some harmonic.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.nonlinear.sway import Line, Sway
 from solidgear.system.law import Force, Law
 from solidgear.system.links import RowSpring
 from solidgear.system.steady import lost_stiffness
@@ -65,6 +66,8 @@ class Remainder:
         What they stretch the rows by in the modes that are flexibility, m.
     unbalance : bool
         These forces are those at 1 rad/s and grow with the square of the frequency.
+    sway : Sway or None
+        How the line of action of links turns over the cycle.
     """
 
     omega: np.ndarray
@@ -81,6 +84,7 @@ class Remainder:
     push: np.ndarray = field(repr=False)
     gives: np.ndarray = field(repr=False)
     unbalance: bool = False
+    sway: Sway | None = field(repr=False, default=None)
 
     @property
     def rows(self) -> int:
@@ -90,7 +94,16 @@ class Remainder:
     @property
     def varies(self) -> bool:
         """Whether a law varies over the cycle of the excitation."""
-        return bool(self.cycle.any())
+        return bool(self.cycle.any()) or self.sway is not None
+
+    def rows_of(self, at: slice) -> range:
+        """Rows of a link on each of which its law acts by itself."""
+        turns = self.sway is not None and at in self.sway.links
+        return range(at.start, at.start + 1 if turns else at.stop)
+
+    def line(self, angle: np.ndarray, omega: float | np.ndarray) -> Line | None:
+        """Where laws act at angles (T,) of the excitation; None where no line turns."""
+        return None if self.sway is None else self.sway.line(np.asarray(angle), omega)
 
     def factor(self, angle: np.ndarray) -> np.ndarray:
         """(T, m) what forces are multiplied by at angles (T,) of the excitation."""
@@ -98,19 +111,28 @@ class Remainder:
         return 1 + (np.exp(1j * np.asarray(angle)[:, None] * n) @ self.cycle).real
 
     def forces(
-        self, stretch: np.ndarray, rate: np.ndarray, factor: np.ndarray | None = None
+        self,
+        stretch: np.ndarray,
+        rate: np.ndarray,
+        factor: np.ndarray | None = None,
+        line: Line | None = None,
     ) -> Force:
-        """Forces of all laws, from stretches and rates (T, m), and what they are multiplied by."""
+        """Forces of all laws, from stretches and rates (T, m), what they are multiplied by, and
+        where they act.
+        """
         if factor is not None:
-            own = self.forces(stretch, rate)
+            own = self.forces(stretch, rate, None, line)
             each = factor[..., None]
             return Force(factor * own.value, each * own.by_stretch, each * own.by_rate)
         t, m = stretch.shape
-        if len(self.laws) == 1:
+        if len(self.laws) == 1 and line is None:
             return self.laws[0][0].force(stretch, rate)
         out = Force(np.zeros((t, m)), np.zeros((t, m, m)), np.zeros((t, m, m)))
         for law, at in self.laws:
-            own = law.force(stretch[:, at], rate[:, at])
+            if line is not None and at in line.links:
+                own = line.force(law, at, stretch, rate)
+            else:
+                own = law.force(stretch[:, at], rate[:, at])
             out.value[:, at] = own.value
             out.by_stretch[:, at, at], out.by_rate[:, at, at] = own.by_stretch, own.by_rate
         return out
@@ -121,10 +143,14 @@ class Remainder:
         return any(law.drags for law, _ in self.laws)
 
     def excess(
-        self, stretch: np.ndarray, rate: np.ndarray, factor: np.ndarray | None = None
+        self,
+        stretch: np.ndarray,
+        rate: np.ndarray,
+        factor: np.ndarray | None = None,
+        line: Line | None = None,
     ) -> tuple[Force, bool]:
         """p and its tangents, as :meth:`forces`, and whether there is any force."""
-        own = self.forces(stretch, rate, factor)
+        own = self.forces(stretch, rate, factor, line)
         value = stretch @ self.stiffness - own.value
         if self.drags:
             value = value + rate @ self.damper
@@ -191,9 +217,9 @@ class Remainder:
         into = np.linalg.solve(right, np.vstack([np.zeros((r, len(self.push))), self.push.T]))
         return into.T[:, :, None] * ((self.seen / self.omega) @ right[:r]).T
 
-    def growth(self, omega: float) -> float:
-        """What forces are multiplied by at a frequency."""
-        return omega**2 if self.unbalance else 1.0
+    def growth(self, omega):
+        """What forces are multiplied by at a frequency, or frequencies."""
+        return omega**2 if self.unbalance else 1.0 + 0.0 * omega
 
     def linear(self, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Stretch of the linear system in harmonics 0 to `count` of the excitation, (count + 1, m)
@@ -227,24 +253,18 @@ class Remainder:
             out[periods - 1 :: periods] = own
             return out
 
+        slow = self._with_orders(at_multiples)
         grown = periods**2 if self.unbalance else 1
-        return replace(
-            self,
-            error=at_multiples(self.error),
-            cycle=at_multiples(self.cycle),
-            push=grown * at_multiples(self.push),
-            gives=grown * at_multiples(self.gives),
-        )
+        return replace(slow, push=grown * slow.push, gives=grown * slow.gives)
 
     def scaled(self, share: float) -> Remainder:
         """The same under a share of its excitation and of what varies."""
-        return replace(
-            self,
-            error=share * self.error,
-            cycle=share * self.cycle,
-            push=share * self.push,
-            gives=share * self.gives,
-        )
+        return self._with_orders(lambda own: share * own)
+
+    def _with_orders(self, other: Callable[[np.ndarray], np.ndarray]) -> Remainder:
+        error, cycle, push, gives = map(other, (self.error, self.cycle, self.push, self.gives))
+        sway = self.sway and replace(self.sway, orders=other(self.sway.orders))
+        return replace(self, error=error, cycle=cycle, push=push, gives=gives, sway=sway)
 
 
 def remainder(
@@ -256,6 +276,7 @@ def remainder(
     load: np.ndarray | None = None,
     errors: Mapping[str, Sequence[complex]] | None = None,
     cycles: Mapping[str, Sequence[complex]] | None = None,
+    sways: Mapping[str, tuple[RowSpring, np.ndarray]] | None = None,
     forces: Sequence[np.ndarray] = (),
     unbalance: bool = False,
     highest_hz: float = np.inf,
@@ -277,6 +298,9 @@ def remainder(
         Transmission error of links by orders from 1, m: ``Re(e exp(i n w t))``.
     cycles : mapping of str to sequence of complex
         How links vary by orders from 1: forces are multiplied by ``1 + sum Re(c exp(i n w t))``.
+    sways : mapping of str to (RowSpring, (o, r) complex ndarray)
+        How the line of action of links of one row turns: further rows between the same ports, and
+        how much of each by orders from 1, ``sum Re(c exp(i n w t))``.
     forces : sequence of (N,) complex array_like
         On the coordinates by orders from 1, such as :meth:`solidgear.system.System.load` gives.
     unbalance : bool
@@ -288,28 +312,19 @@ def remainder(
     ------
     SolidgearError
         If no link has a law, a free motion stretches one, or no mode is below the highest frequency.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> found = remainder(pair, loss={"mesh": 0.1}, load=np.array([0.1]), errors={"mesh": [0.05]})
-    >>> h, _ = found.receptance(np.array([1.0]))
-    >>> complex(h[0, 0, 0].round(9))
-    -10j
     """
     if kind not in KINDS:
         raise SolidgearError(f"losses of the kind {kind!r} are unknown; use {', '.join(KINDS)}")
     if kind == "viscous" and not matched_hz > 0:
         raise SolidgearError("viscous losses need the frequency, in Hz, at which they are told")
+    sways = dict(sways or {})
     laws: list[tuple[Law, slice]] = []
     links: list[tuple[str, RowSpring]] = []
     stretch = [np.zeros((0, system.size))]
     for name, link in system.links.items():
         if isinstance(link, RowSpring) and link.law is not None:
-            rows = link.stretch(*map(system.port, link.ends))
+            turned = [link, sways[name][0]] if name in sways else [link]
+            rows = np.vstack([one.stretch(*map(system.port, link.ends)) for one in turned])
             begin = sum(map(len, stretch))
             laws.append((link.law, slice(begin, begin + len(rows))))
             links.append((name, link))
@@ -325,9 +340,16 @@ def remainder(
     orders = max([1, len(forces), *(len(e) for e in (errors or {}).values())])
     error = np.zeros((orders, len(rows)), complex)
     cycle = np.zeros((max([1, *(len(c) for c in (cycles or {}).values())]), len(rows)), complex)
+    sway = np.zeros((max([1, *(len(c) for _, c in sways.values())]), len(rows)), complex)
+    turning: tuple[slice, ...] = ()
     for (name, link), (law, at) in zip(links, laws):
         k = link.stiffness
         eye = np.eye(at.stop - at.start)
+        if name in sways:
+            shares = sways[name][1]
+            sway[: len(shares), at.start + 1 : at.stop] = shares
+            turning = (*turning, at)
+            eye[1:] = 0.0
         stiffness[at, at] = k * eye
         carried = float(k * (rows[at] @ held)[0])
         damper[at, at] = law.damping(carried) * eye
@@ -336,6 +358,7 @@ def remainder(
         for out, given in ((error, errors or {}), (cycle, cycles or {})):
             told = np.asarray(given.get(name, ()), complex)
             out[: len(told), at] = told[:, None]
+        error[:, at] *= np.diag(eye)
     whole, shapes = system.elastic
     seen = rows @ shapes
     free = np.abs(rows @ system.free).max(initial=0.0)
@@ -372,4 +395,5 @@ def remainder(
         pushed[:, kept],
         pushed[:, ~kept] / whole[~kept] @ soft.T,
         unbalance,
+        Sway(sway, turning) if turning else None,
     )

@@ -8,18 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
+from solidgear.nonlinear.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.nonlinear.model import Remainder
-from solidgear.nonlinear.pieces import SHORT, TERMS, Pieces
+from solidgear.nonlinear.pieces import SHORT, TERMS, Piece, Pieces
 
-#: looks at a stretch in a period
-LOOKS = 128
 #: what is left of a transient, relative, when a motion is steady
 STEADY = 1e-5
 #: periods of the excitation after which a motion is called unsteady, and that may make one of its own
@@ -28,8 +25,8 @@ MOST_PERIODS, LONGEST_CYCLE = 4_000, 8
 FADING = 8
 #: a change from period to period above which a motion of several periods is one, in tolerances
 STILL_FADING = 100.0
-#: relative, of laws that are integrated, and steps of Newton's method for what gives way at once
-TOLERANCE, NEWTON = 1e-7, 20
+#: changes that are no motion, of exact pieces
+ROUNDING = 1e-12
 #: Newton's steps that locate a crossing, and its rest relative to the gap
 CROSSINGS, LOCATED = 30, 1e-13
 
@@ -47,7 +44,7 @@ class Steady:
     periods : int
         That it took.
     stretch, force : (t, m) ndarray
-        Over its cycle, at equal intervals.
+        Over its cycle, at equal intervals; forces without those of dampers.
     section : (p, 2) ndarray
         First stretch and its rate at the beginning of each of the last periods (Poincare).
     state : (2r,) ndarray
@@ -74,10 +71,14 @@ class Run:
     def __init__(self, remainder: Remainder, omega: float):
         self.remainder, self.omega = remainder, omega
         self.pieces = Pieces(remainder, omega)
-        size = self.pieces.piece(self.pieces.name(remainder.mean)).size
+        size = self.piece(self.pieces.name(remainder.mean)).size
         self.looks = max(LOOKS, int(np.ceil(size / SHORT * 2 * np.pi / omega)))
         self.step = 2 * np.pi / omega / self.looks
         self._ahead: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
+
+    def piece(self, name: tuple[int, ...]) -> Piece:
+        """The linear equation on some pieces."""
+        return self.pieces.piece(name)
 
     def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
@@ -86,7 +87,7 @@ class Run:
         s, v = (np.empty((self.looks, self.remainder.rows)) for _ in range(2))
         k = 0
         while k < self.looks:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             seen, over = self._looking(name)
             left = self.looks - k
             ahead = np.concatenate([piece.stretch @ y, *(seen[:left] @ y)]).reshape(left + 1, -1)
@@ -108,7 +109,7 @@ class Run:
     def _looking(self, name: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Rows (looks, m, n) that give the stretches 1, 2 ... steps later, and transitions."""
         if name not in self._ahead:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             one = piece.over(self.step)
             over = np.empty((self.looks, *one.shape))
             over[0] = one
@@ -129,7 +130,7 @@ class Run:
         """The piece on which a state is: the one that its own stretches name."""
         name = self.pieces.name(self.remainder.mean)
         for _ in range(6):
-            own = self.pieces.name(self.pieces.piece(name).stretch @ y)
+            own = self.pieces.name(self.piece(name).stretch @ y)
             if own == name:
                 return name
             name = own
@@ -138,7 +139,7 @@ class Run:
     def _through(self, name, y, rest: float):
         """State and piece after a time in which a stretch leaves its piece."""
         while rest > 0:
-            piece = self.pieces.piece(name)
+            piece = self.piece(name)
             terms = piece.series(y)
             at, row, side = self._crossing(name, terms @ piece.stretch.T, rest)
             y = terms.T @ at ** np.arange(TERMS)
@@ -162,77 +163,6 @@ class Run:
                 if at is not None:
                     first, found = at, (at, row, side)
         return found
-
-
-class Integrated:
-    """The same for laws that are curved or vary over the cycle, integrated to a tolerance."""
-
-    def __init__(
-        self,
-        remainder: Remainder,
-        omega: float,
-        looks: int = LOOKS,
-        tolerance: float = TOLERANCE,
-    ):
-        self.remainder, self.omega, self.looks = remainder, omega, looks
-        self.tolerance = tolerance
-        orders = np.arange(1, len(remainder.error) + 1)
-        self._turn = 1j * omega * orders
-
-    def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
-        period = 2 * np.pi / self.omega
-        times = np.linspace(0.0, period, self.looks + 1)
-        found = solve_ivp(
-            self._slope,
-            (0.0, period),
-            modal,
-            "DOP853",
-            times,
-            rtol=self.tolerance,
-            atol=self._least,
-        )
-        if not found.success:
-            raise SolidgearError(f"integration in time failed: {found.message}")
-        there = [self._seen(t, y)[:2] for t, y in zip(times[:-1], found.y.T)]
-        s, v = (np.array(rows) for rows in zip(*there))
-        return found.y[:, -1], s, v
-
-    @cached_property
-    def _least(self) -> float:
-        """What a state is told to: a share of that of the linear system."""
-        own = self.remainder
-        size = np.abs(own.linear(self.omega, len(own.error))[0]).max()
-        return self.tolerance * float(own.omega[0] * size / np.abs(own.seen).max())
-
-    def _seen(self, t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Stretches and rates (m,) of a state, and the force of the excess with the excitation."""
-        own, r = self.remainder, len(self.remainder.omega)
-        turned = np.exp(self._turn * t)[:, None] * own.error
-        e, slope = turned.sum(axis=0).real, (self._turn[:, None] * turned).sum(axis=0).real
-        given = own.stiffness @ e
-        v = own.seen @ y[r:] - slope
-        turn, grown = np.exp(self._turn * t), own.growth(self.omega)
-        base = own.seen @ (y[:r] / own.omega) + own.mean - e + own.flexible @ given
-        base = base + grown * (turn @ own.gives).real
-        factor = own.factor(np.array([self.omega * t])) if own.varies else None
-        s, still = base, np.zeros_like(base)
-        for _ in range(NEWTON if own.flexible.any() else 0):
-            force, _ = own.excess(s[None], still[None], factor)
-            left = s - base - own.flexible @ force.value[0]
-            step = np.linalg.solve(np.eye(len(s)) - own.flexible @ force.by_stretch[0], left)
-            s = s - step
-            if np.abs(step).max() <= 1e-3 * self.tolerance * np.abs(s).max():
-                break
-        push = own.excess(s[None], v[None], factor)[0].value[0]
-        return s, v, push + given + own.drag @ slope
-
-    def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
-        out = self.remainder.state @ y
-        own = self.remainder
-        pushed = (np.exp(self._turn * t) @ own.push).real * own.growth(self.omega)
-        out[len(own.omega) :] += own.seen.T @ self._seen(t, y)[2] + pushed
-        return out
 
 
 def _root(series: np.ndarray, rest: float) -> float | None:
@@ -285,6 +215,7 @@ def settled(
     """
     straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
     run = Run(remainder, omega) if straight else Integrated(remainder, omega)
+    rounding = ROUNDING if straight else 10 * TOLERANCE
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
     section: list[tuple[float, float]] = []
@@ -298,7 +229,7 @@ def settled(
         for c, own in change.items():
             if len(waves) > c:
                 own.append(float(np.abs(waves[-1] - waves[-1 - c]).max()) / swing)
-        cycle = next((c for c, own in change.items() if _faded(own, steady)), 0)
+        cycle = next((c for c, own in change.items() if _faded(own, steady, rounding)), 0)
         # what still fades towards one period looks like two or three before
         if cycle > 1 and max(change[1][-FADING:]) < STILL_FADING * steady:
             cycle = 0
@@ -307,21 +238,22 @@ def settled(
     kept = np.concatenate(waves[-max(cycle, 1) :])
     angle = 2 * np.pi * np.arange(len(kept)) / run.looks
     factor = remainder.factor(angle) if remainder.varies else None
-    force = remainder.forces(kept, np.zeros_like(kept), factor).value
+    line = remainder.line(angle, 0.0)
+    force = remainder.forces(kept, np.zeros_like(kept), factor, line).value
     return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
 
 
-def _faded(change: list[float], steady: float) -> bool:
-    """Tell whether changes fade, and what all later ones add up to is little."""
+def _faded(change: list[float], steady: float, rounding: float) -> bool:
+    """Tell whether changes fade, and what all later ones add up to is little, or are rounding."""
     if len(change) < 2 * FADING:
         return False
     now, before = max(change[-FADING:]), max(change[-2 * FADING : -FADING])
-    if now <= 1e-12:
+    if now <= rounding:
         return True
     if now >= before:
         return now <= 1e-3 * steady
     rate = (now / before) ** (1 / FADING)
-    return now * rate / (1 - rate) <= steady
+    return now * rate <= steady * (1 - rate)
 
 
 @pinned
@@ -341,19 +273,6 @@ def sweep(
         rad/s, in the order in which they are run through.
     state : (2r,) ndarray, optional
         To begin at; rest at the linear mean without it.
-
-    Examples
-    --------
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
-    >>> down = sweep(found, [1.0, 0.9, 0.8, 0.75])
-    >>> round(float(down[-1].rms[0]), 3)
-    0.225
     """
     out: list[Steady] = []
     for omega in omegas:

@@ -28,24 +28,7 @@ STEPS = 4
 
 @pinned
 def multipliers(point: Point) -> np.ndarray:
-    """(2r,) Floquet multipliers of a periodic motion, largest first.
-
-    Examples
-    --------
-    A linear pair gives those of its own decay over a period:
-
-    >>> from solidgear.nonlinear.continuation import follow
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.system.law import Gap
-    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
-    >>> found = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.005]}, **losses)
-    >>> point = follow(found, 0.5, 1.3).points[0]
-    >>> bool(np.allclose(abs(multipliers(point)), np.exp(-0.05 * 2 * np.pi / 0.5)))
-    True
-    """
+    """(2r,) Floquet multipliers of a periodic motion, largest first."""
     own = point.balance.remainder
     if all(law.pieces for law, _ in own.laws) and not own.varies:
         matrix = _by_pieces(point)
@@ -122,7 +105,8 @@ def _saltation(point: Point, crossing: tuple[float, int, int], jump: np.ndarray)
 
 def _by_instants(point: Point) -> np.ndarray:
     own = point.balance.remainder
-    tangent, _ = own.excess(*point.waves(), point.balance.factor)
+    line = point.balance.line(point.omega)
+    tangent, _ = own.excess(*point.waves(), point.balance.factor, line)
     return over_cycle(own, point.omega, tangent.by_stretch, tangent.by_rate)
 
 

@@ -1,13 +1,15 @@
-r"""Mesh stiffness that varies over the mesh cycle, and where that alone makes motions grow.
+r"""Mesh stiffness and line of action that vary over the mesh cycle, and where that alone makes
+motions grow.
 
-Teeth that keep contact, with ``k (1 + c(t))``, make a linear system with periodic coefficients.  Near
+Teeth that keep contact, with ``k (1 + c(t))`` along a line that turns, make a linear system with periodic coefficients.  Near
 speeds at which the excitation, or a multiple of it, is the sum of two natural frequencies or twice
 one, its motions grow by themselves (tongues of Mathieu and Hill).  Floquet's multipliers tell which
 do.  Edges at which a multiplier is +1 or -1 have a motion that repeats itself after one cycle or two,
 
-    s_h + H(h w) (K C s)_h = 0,        h = ..., -1, 0, 1, ...   or   ..., -1/2, 1/2, 3/2, ...
+    s_h - H(h w) (P s)_h = 0,        h = ..., -1, 0, 1, ...   or   ..., -1/2, 1/2, 3/2, ...
 
-so that Hill's determinant is zero there, from receptances alone.
+with P what the tangent lacks at every instant, so that Hill's determinant is zero there, from
+receptances alone.
 """
 
 from __future__ import annotations
@@ -43,11 +45,25 @@ def growth(remainder: Remainder, omega: float) -> complex:
     >>> bool(abs(growth(found, 2.0)) > 1), bool(abs(growth(found, 1.7)) > 1 + 1e-9)
     (True, False)
     """
-    angle = 2 * np.pi * np.arange(INSTANTS) / INSTANTS
-    more = (1 - remainder.factor(angle))[:, None, :] * remainder.stiffness
-    drag = (1 - remainder.factor(angle))[:, None, :] * remainder.damper
+    more, drag = _varied(remainder, omega)
     value = np.linalg.eigvals(over_cycle(remainder, omega, more, drag))
     return complex(value[np.abs(value).argmax()])
+
+
+def _varied(remainder: Remainder, omega: float) -> tuple[np.ndarray, np.ndarray]:
+    """(INSTANTS, m, m) tangents of the excess of teeth that keep contact, over stretch and rate."""
+    angle = 2 * np.pi * np.arange(INSTANTS) / INSTANTS
+    line, factor = remainder.line(angle, omega), remainder.factor(angle)[..., None]
+    stiffness, damper = remainder.stiffness, remainder.damper
+    if line is None:
+        return stiffness - factor * stiffness, damper - factor * damper
+    # the tangent of a law is told on the first row of its link: taken there, and given back to all
+    into = np.tile(np.eye(remainder.rows), (INSTANTS, 1, 1))
+    drift = np.zeros_like(into)
+    for at in line.links:
+        into[:, at.start, at], drift[:, at.start, at] = line.share[:, at], line.slope[:, at]
+    out = factor * into.transpose(0, 2, 1)
+    return stiffness - out @ (stiffness @ into + damper @ drift), damper - out @ damper @ into
 
 
 def hill(remainder: Remainder, omega: float, half: bool, count: int = HARMONICS) -> float:
@@ -61,13 +77,11 @@ def hill(remainder: Remainder, omega: float, half: bool, count: int = HARMONICS)
     m = remainder.rows
     place = np.arange(-count, count + 1 - half) + (0.5 if half else 0.0)
     moves, _ = remainder.receptance(omega * place)
-    moves = (moves + remainder.flexible) @ remainder.stiffness
+    moves = moves + remainder.flexible
+    parts = np.fft.fft(_varied(remainder, omega)[0], axis=0) / INSTANTS
     out = np.eye(len(place) * m, dtype=complex).reshape(len(place), m, len(place), m)
-    for order, own in enumerate(remainder.cycle, start=1):
-        for to in range(len(place)):
-            for at, share in ((to - order, own / 2), (to + order, own.conj() / 2)):
-                if 0 <= at < len(place):
-                    out[to, :, at, :] += moves[to] * share
+    between = np.arange(len(place))[:, None] - np.arange(len(place))
+    out -= np.einsum("tij,tajk->tiak", moves, parts[between])
     return float(np.linalg.det(out.reshape(len(place) * m, -1)).real)
 
 

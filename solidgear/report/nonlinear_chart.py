@@ -77,8 +77,11 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     hz, size = judge.linear
     linear = units.values(size, "N")
     curves = {one.label: units.values(one.force, "N") for one in found.found}
-    top = 1.08 * max(float(linear.max()), *(float(v.max()) for v in curves.values()))
-    others = {one.label: Series(OTHERS[k]) for k, one in enumerate(found.found[1:])}
+    ran = {_run_name(one, teeth): one for one in found.runs}
+    sizes = [linear, *curves.values(), *(units.values(one.force, "N") for one in ran.values())]
+    top = 1.08 * max(float(size.max()) for size in sizes)
+    named = [*(one.label for one in found.found[1:]), *ran]
+    others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
     panel = Panel(
         Axis("speed of the pinion in rpm", ends),
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
@@ -100,6 +103,9 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         for part, (a, b) in enumerate(_runs(inside)):
             rows = _line(places[a:b], own[a:b], one.label, part)
             panel.draw({"type": "line", "strokeWidth": 1.1, "clip": True}, rows)
+    for name, one in ran.items():
+        places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
+        panel.draw({"type": "line", "strokeWidth": 1.4}, _line(places, own, name))
     force = curves[judge.label]
     for name, where, dash in ((UNSTABLE, ~judge.stable, [3, 2]), (STABLE, judge.stable, [1, 0])):
         for part, (a, b) in enumerate(_runs(where)):
@@ -130,6 +136,16 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     return panel
 
 
+def _run_name(one: Any, teeth: int) -> str:
+    return f"run-{'up' if one.ramp > 0 else 'down'} at {60 * abs(one.ramp) / teeth:.6g} rpm/s"
+
+
+def _envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The largest of every few cycles, no more of them than are seen."""
+    first = np.arange(0, len(x), -(-len(x) // (3 * BINS)))
+    return x[first], np.maximum.reduceat(y, first)
+
+
 def _line(x: np.ndarray, y: np.ndarray, name: str, part: int = 0) -> list[dict[str, Any]]:
     rows = zip(x.tolist(), y.tolist())
     return [{"x": a, "y": b, "name": name, "detail": part} for a, b in rows]
@@ -146,19 +162,21 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float) -> Panel:
         Axis("speed of the pinion in rpm", ends),
         Axis("share of the cycle in %", (0.0, 100.0)),
         130.0,
-        "Contact of the teeth over a mesh cycle; of several motions, the one that parts longest",
+        "Contact over a mesh cycle; of several motions, the one that parts longest; blank: none is stable",
         series=CONTACT,
         legend={"orient": "top", "columns": 3 if width > NARROW else 1},
     )
-    edges = np.linspace(ends[0], ends[1], BINS + 1).tolist()
+    edges = np.linspace(ends[0], ends[1], BINS + 1)
+    middle = (edges[1:] + edges[:-1]) / 2 * judge.frequency_hz[0] / rpm[0]
+    drives, backs = np.full(BINS, np.inf), np.zeros(BINS)
+    pairs = zip(judge.over(middle, judge.driving), judge.over(middle, judge.backside))
+    for (at, drive), (_, back) in pairs:
+        longer = drive < drives[at]
+        drives[at[longer]], backs[at[longer]] = drive[longer], back[longer]
     rows = []
-    for low, high in zip(edges, edges[1:]):
-        inside = np.flatnonzero(judge.stable & (rpm >= low) & (rpm <= high))
-        if len(inside):
-            k = int(inside[judge.driving[inside].argmin()])
-        else:
-            k = int(np.abs(np.where(judge.stable, rpm, np.inf) - (low + high) / 2).argmin())
-        drive, back = 100 * judge.driving[k], 100 * judge.backside[k]
+    for low, high, drive, back in zip(edges, edges[1:], 100 * drives, 100 * backs):
+        if not np.isfinite(drive):
+            continue
         for name, y, y2 in (
             (DRIVE, 0, drive),
             (BACK, drive, drive + back),

@@ -23,10 +23,15 @@ def lead(found: Any, shown: Units) -> str:
     teeth = found.teeth
     gap = shown.text(2 * teeth.half_gap, "m moved", 4)
     error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)
+    if teeth.phases:
+        error += f" at phases {', '.join(f'{np.degrees(p):.4g}°' for p in teeth.phases)}"
+    named = {"stiffness": teeth.cycle, "line of action": teeth.turns}
+    varying = " and ".join(name for name, there in named.items() if there)
+    cycle = f" {varying.capitalize()} over the mesh cycle as in the file." if varying else ""
     force = shown.text(teeth.mean_force, "N", 4)
     return (
         f"Backlash {gap}, mean mesh force {force} ({teeth.source}), transmission error {error}; "
-        f"{found.judge.label}."
+        f"{found.judge.label}.{cycle}"
     )
 
 
@@ -56,7 +61,7 @@ def write_nonlinear(
         lead(found, shown),
         [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
-        lines={"nonlinear": branch(found)},
+        lines={"nonlinear": branch(found), **runs(found)},
         charts={"nonlinear": partial(backlash_chart, found, title, shown)},
         cautions=cautions,
         verdict=found.sentences(),
@@ -78,6 +83,24 @@ def branch(found: Any) -> Table:
     }
     rows = np.column_stack(list(there.values())).tolist()
     return Table("", [Column(head, write=figures) for head in there], rows)
+
+
+def runs(found: Any) -> dict[str, Table]:
+    """Each run through the range, mesh cycle by mesh cycle, in SI, by the names of their files."""
+    out = {}
+    for one in found.runs:
+        there = {
+            "frequency [Hz]": one.frequency_hz,
+            "pinion speed [rpm]": 60 * one.frequency_hz / found.train.pinion.teeth,
+            "dynamic mesh force [N]": one.force,
+            "largest mesh force [N]": one.run.highest,
+            "steady dynamic mesh force [N]": one.steady_force,
+        }
+        rows = np.column_stack(list(there.values())).tolist()
+        rpm = 60 * abs(one.ramp) / found.train.pinion.teeth
+        stem = f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")
+        out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
+    return out
 
 
 def mixes(found: Any, units: Units = ENGINEERING) -> Table:

@@ -46,8 +46,8 @@ WORDS = {
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
     "nonlinear": (
         "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
-        "unstable, with the jumps between them, and the linear answer. Below: contact over the "
-        "cycle, and the orders of the largest force."
+        "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
+        "contact over the cycle, and the orders of the largest force."
     ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (

@@ -98,16 +98,28 @@ class Train(Model):
                 path=("mesh", "ratio"),
             )
 
-        cycle = self.mesh.stiffness_cycle
-        if cycle is not None:
-            pitch = 2 * pi / self.pinion.teeth
-            if not isclose(cycle.pitch, pitch, rel_tol=RATIO_TYPED):
+        yield from self._cycles()
+
+    def _cycles(self) -> Iterator[SceneError]:
+        """Tables over a mesh cycle cover one tooth pitch of the pinion and begin at one angle."""
+        pitch = 2 * pi / self.pinion.teeth
+        tables = {key: getattr(self.mesh, key) for key in ("stiffness_cycle", "line_cycle")}
+        given = {key: table for key, table in tables.items() if table is not None}
+        for key, table in given.items():
+            if not isclose(table.pitch, pitch, rel_tol=RATIO_TYPED):
                 yield SceneError(
-                    f"covers {cycle.pitch:.5g} rad of the pinion, and one of its "
+                    f"covers {table.pitch:.5g} rad of the pinion, and one of its "
                     f"{self.pinion.teeth} teeth takes {pitch:.5g} rad; correct the angles, or the "
                     "number of teeth",
-                    path=("mesh", "stiffness_cycle", "angle"),
+                    path=("mesh", key, "angle"),
                 )
+        first = [table.angle[0] for table in given.values()]
+        if len(first) > 1 and not isclose(*first, abs_tol=RATIO_TYPED * pitch):
+            yield SceneError(
+                f"begins at {first[1]:.5g} rad, and stiffness_cycle at {first[0]:.5g} rad; both tell "
+                "one cycle and begin at one angle",
+                path=("mesh", "line_cycle", "angle"),
+            )
 
     def _flanks(self) -> Iterator[SceneError]:
         """Left and right flanks are those of cylindrical gears, and touch their own kind."""

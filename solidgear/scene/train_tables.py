@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from math import isclose, pi
+from math import pi
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
+from solidgear.scene.mesh_cycle import LineCycle, StiffnessCycle, Vector
 from solidgear.scene.model import Scene
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
@@ -27,7 +28,6 @@ from solidgear.scene.units import (
     Thickness,
     Tolerance,
     TorsionSpring,
-    three,
 )
 
 #: teeth that a wheel may have
@@ -36,11 +36,6 @@ FEWEST_TEETH, MOST_TEETH = 3, 2000
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32
-#: points of a stiffness over a mesh cycle at least, and how near its two ends are to be
-LEAST_OF_CYCLE, CYCLE_CLOSES = 3, 1e-3
-Vector = Annotated[
-    tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
-]
 #: of cylindrical gears (ISO 21771)
 FLANKS = ("left", "right")
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
@@ -177,11 +172,15 @@ class ErrorTable(Model):
         m, at each frequency.
     orders : tuple of float
         Instead: amplitudes of the first, second, ... harmonic of the mesh, m.
+    phases : tuple of float
+        Of each of those where the mesh cycle begins, rad: ``sum A cos(n x angle + phase)``, positive
+        where teeth stand back; of nonlinear motion alone.
     """
 
     frequency: tuple[Frequency, ...] = ()
     amplitude: tuple[Thickness, ...] = ()
     orders: tuple[Thickness, ...] = ()
+    phases: tuple[SignedAngle, ...] = ()
 
     @model_validator(mode="after")
     def _one_kind(self):
@@ -191,46 +190,12 @@ class ErrorTable(Model):
         if len(self.frequency) != len(self.amplitude):
             counts = f"{len(self.amplitude)} amplitudes for {len(self.frequency)} frequencies"
             raise SceneError(f"there are {counts}; give as many", path=("amplitude",))
+        if self.phases and len(self.phases) != len(self.orders):
+            counts = f"{len(self.phases)} phases for {len(self.orders)} orders"
+            raise SceneError(f"there are {counts}; give as many", path=("phases",))
         if any(b <= a for a, b in zip(self.frequency, self.frequency[1:])):
             raise SceneError("frequencies must ascend", path=("frequency",))
         return self
-
-
-class StiffnessCycle(Model):
-    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh.
-
-    Attributes
-    ----------
-    angle : tuple of float
-        Of the pinion, ascending over one tooth pitch, both ends told, rad.
-    stiffness : tuple of float
-        N/m, at each angle; linear between.
-    """
-
-    angle: tuple[SignedAngle, ...]
-    stiffness: tuple[MeshSpring, ...]
-
-    @model_validator(mode="after")
-    def _periodic(self):
-        if len(self.angle) != len(self.stiffness) or len(self.angle) < LEAST_OF_CYCLE:
-            counts = f"{len(self.stiffness)} stiffnesses for {len(self.angle)} angles"
-            how = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
-            raise SceneError(how, path=("stiffness",))
-        if any(b <= a for a, b in zip(self.angle, self.angle[1:])):
-            raise SceneError("angles must ascend", path=("angle",))
-        first, last = self.stiffness[0], self.stiffness[-1]
-        if not isclose(first, last, rel_tol=CYCLE_CLOSES):
-            raise SceneError(
-                f"is not periodic: it begins at {first:.6g} N/m and ends at {last:.6g} N/m; both are "
-                "the same instant of neighbouring teeth",
-                path=("stiffness",),
-            )
-        return self
-
-    @property
-    def pitch(self) -> float:
-        """Angle that it covers, rad."""
-        return self.angle[-1] - self.angle[0]
 
 
 def _constant_or_table(value: Any) -> Any:
@@ -286,6 +251,8 @@ class Mesh(Model):
         A single number is a constant amplitude, m.
     stiffness_cycle : StiffnessCycle or None
         Stiffness over a mesh cycle; of nonlinear motion alone.
+    line_cycle : LineCycle or None
+        Mesh point and line of action over a mesh cycle; of nonlinear motion alone.
     backlash : float or None
         Width of the gap between both flanks along the line of action, m; of nonlinear motion alone.
     local_harmonics : tuple of int
@@ -309,6 +276,7 @@ class Mesh(Model):
     transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
     transmission_error_status: Status = "assumed"
     stiffness_cycle: StiffnessCycle | None = None
+    line_cycle: LineCycle | None = None
     backlash: Thickness | None = None
     local_harmonics: tuple[Harmonic, ...] = ()
 

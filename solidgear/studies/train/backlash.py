@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -35,6 +35,12 @@ class Teeth:
         Of the mean force.
     cycle : tuple of (float, float)
         How the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts.
+    phases : tuple of float
+        Of the transmission error by orders, rad; none where the file gives none.
+    turns : bool
+        The line of action varies over the cycle.
+    contact_loss_hz : float or None
+        Where a damper in contact alone has the loss factor of the mesh.
     """
 
     half_gap: float
@@ -42,6 +48,20 @@ class Teeth:
     errors: tuple[float, ...]
     source: str
     cycle: tuple[tuple[float, float], ...] = ()
+    phases: tuple[float, ...] = ()
+    turns: bool = False
+    contact_loss_hz: float | None = None
+
+    @property
+    def harmonics(self) -> tuple[complex, ...]:
+        """Transmission error by orders, ``Re(e exp(i n x angle))``, m."""
+        phases = self.phases or (0.0,) * len(self.errors)
+        return tuple(complex(e * np.exp(1j * p)) for e, p in zip(self.errors, phases))
+
+    @property
+    def varies(self) -> bool:
+        """Whether the mesh varies over its cycle, and the linear answer with constant teeth with it."""
+        return self.turns or bool(self.cycle)
 
 
 @dataclass(frozen=True)
@@ -103,7 +123,6 @@ class Backlash:
     pinion: str
     gear: str
     teeth: Teeth
-    stiffness: float
     remainder: Remainder = field(repr=False)
     branch: Branch = field(repr=False)
     multiplier: np.ndarray = field(repr=False)
@@ -130,6 +149,11 @@ class Backlash:
         return [point.forces()[:, 0] for point in self.points]
 
     @cached_property
+    def stretch(self) -> list[np.ndarray]:
+        """Of the teeth over a cycle, at every point, m."""
+        return [point.along() for point in self.points]
+
+    @cached_property
     def force(self) -> np.ndarray:
         """(p,) dynamic mesh force: half of its swing over a cycle, N."""
         return np.array([np.ptp(wave) / 2 for wave in self._waves])
@@ -142,17 +166,29 @@ class Backlash:
     @cached_property
     def driving(self) -> np.ndarray:
         """(p,) share of the cycle in which the flank that carries the mean touches."""
-        return np.array([np.mean(wave > 0) for wave in self._waves])
+        return np.array([np.mean(s > self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def backside(self) -> np.ndarray:
         """(p,) share of the cycle in which the other flank touches."""
-        return np.array([np.mean(wave < 0) for wave in self._waves])
+        return np.array([np.mean(s < -self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def stable(self) -> np.ndarray:
         """(p,) bool."""
         return np.abs(self.multiplier) <= 1 + ON
+
+    def over(self, hz: np.ndarray, values: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Which of some frequencies (n,) lie between two stable neighbours of the branch, and what
+        values of its points (p,) are there; once for every such pair.
+        """
+        own, good = self.frequency_hz, self.stable
+        for a, b in zip(range(len(own) - 1), range(1, len(own))):
+            low, high = sorted((own[a], own[b]))
+            at = np.flatnonzero((hz >= low) & (hz <= high))
+            if good[a] and good[b] and low < high and len(at):
+                share = (hz[at] - own[a]) / (own[b] - own[a])
+                yield at, values[a] + share * (values[b] - values[a])
 
     @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:
@@ -167,7 +203,13 @@ class Backlash:
         """Dynamic mesh force without backlash at one frequency, N."""
         balance = Balance(self.remainder, len(self.teeth.errors))
         wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
-        return float(self.stiffness * np.ptp(wave[:, 0]) / 2)
+        return float(self.remainder.stiffness[0, 0] * np.ptp(wave[:, 0]) / 2)
+
+    @property
+    def returns(self) -> float | None:
+        """Highest frequency of a branch that leaves the range where it began, Hz."""
+        hz = self.frequency_hz
+        return float(hz.max()) if np.isclose(hz[0], hz[-1], rtol=1e-9) else None
 
     @cached_property
     def loudest(self) -> tuple[float, float]:
@@ -197,7 +239,7 @@ class Backlash:
         if half == 0:
             return ()
         gone = self.driving < 1
-        ends = self.branch.crossings(lambda p: float(p.waves()[0].min()) - half)
+        ends = self.branch.crossings(lambda p: float(p.along().min()) - half)
         return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])
 
     @cached_property
@@ -212,8 +254,10 @@ class Backlash:
         loose = ~self.stable
         kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
         real = loose & (np.abs(self.multiplier.imag) <= REAL)
-        kinds[real & (self.multiplier.real < 0)] = "two mesh periods"
-        found = {kind: kinds == kind for kind in ("a second frequency", "two mesh periods")}
+        kinds[real & (self.multiplier.real < 0)] = "a motion of two mesh periods"
+        found = {
+            kind: kinds == kind for kind in ("a second frequency", "a motion of two mesh periods")
+        }
         return tuple(
             (kind, one)
             for kind, where in found.items()

@@ -124,7 +124,7 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
-    own = [_in_scene(train.member(s).apex, v) for s, v in zip(("pinion", "gear"), found)]
+    own = [in_scene(train.member(s).apex, v) for s, v in zip(("pinion", "gear"), found)]
     return Contact(own[0], own[1], stiffness, origin, wrench, tuple(cautions))
 
 
@@ -147,7 +147,7 @@ def _other_flank(train: Train, normal: np.ndarray, point: np.ndarray) -> np.ndar
     return 2 * (normal @ across) * across - normal
 
 
-def _in_scene(apex: str, vector: MeshVector) -> MeshVector:
+def in_scene(apex: str, vector: MeshVector) -> MeshVector:
     """In the axes of the scene, whose y may run towards the apex: half a turn about z."""
     if apex == "start":
         return vector
@@ -309,7 +309,7 @@ def _scene_load(train: Train, side: str, found: tuple[MeshVector, MeshVector]) -
     force = np.array(scene.load.six[:3])
     if not force.any():
         return []
-    vector = _in_scene(member.apex, found[SIDES.index(side)])
+    vector = in_scene(member.apex, found[SIDES.index(side)])
     teeth = vector.normal if side == "pinion" else -vector.normal
     along = float(force @ teeth / np.linalg.norm(force))
     told = (

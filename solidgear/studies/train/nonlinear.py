@@ -23,8 +23,8 @@ from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.nonlinear.stability import multipliers
-from solidgear.scene.train_tables import StiffnessCycle
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
+from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.operation import mesh_force
@@ -34,8 +34,6 @@ from solidgear.system.system import System
 
 #: the first frequency of a branch by default, over the highest
 BEGIN = 0.01
-#: orders of a stiffness over the mesh cycle, and places at which its table is read for them
-CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
 #: longest step of a branch, of the range of speeds
 STEP = 0.02
 #: what may be left of a transient in time: torsion against engine and load fades over thousands of
@@ -43,13 +41,18 @@ STEP = 0.02
 FADED = 1e-4
 
 
-def teeth_of(workshop: Workshop, mean_force: float | None = None) -> Teeth:
+def teeth_of(
+    workshop: Workshop, mean_force: float | None = None, contact_loss_hz: float | None = None
+) -> Teeth:
     """What the teeth of a train do, from its file.
 
     Parameters
     ----------
     mean_force : float, optional
         Instead of that of the operating point, N.
+    contact_loss_hz : float, optional
+        Frequency at which a damper in contact alone has the loss factor of the mesh; without it the
+        mesh takes part in the damping ratios of the modes.
 
     Raises
     ------
@@ -77,24 +80,33 @@ def teeth_of(workshop: Workshop, mean_force: float | None = None) -> Teeth:
             "the transmission error is a table over frequency, which has no cycle in time; give it "
             'by orders in the file, or --error "10 um"'
         )
-    orders = tuple(mesh.transmission_error.orders)
-    cycle = () if mesh.stiffness_cycle is None else cycle_orders(mesh.stiffness_cycle)
-    return Teeth(mesh.backlash / 2, float(mean_force), orders, source, cycle)
+    error, table = mesh.transmission_error, mesh.stiffness_cycle
+    cycle: tuple[tuple[float, float], ...] = ()
+    if table is not None:
+        mean, orders = orders_of(np.array(table.angle), np.array(table.stiffness)[:, None])
+        cycle = tuple((float(c.real), float(-c.imag)) for c in orders[:, 0] / mean[0])
+    return Teeth(
+        mesh.backlash / 2,
+        float(mean_force),
+        error.orders,
+        source,
+        cycle,
+        error.phases,
+        mesh.line_cycle is not None,
+        contact_loss_hz,
+    )
 
 
-def cycle_orders(table: StiffnessCycle) -> tuple[tuple[float, float], ...]:
-    """Cosine and sine parts of a stiffness over a mesh cycle by its orders, over its mean."""
-    at = np.linspace(table.angle[0], table.angle[-1], CYCLE_PLACES, endpoint=False)
-    parts = np.fft.rfft(np.interp(at, table.angle, table.stiffness))
-    own = 2 * parts[1 : CYCLE_ORDERS + 1] / parts[0].real
-    return tuple((float(c.real), float(-c.imag)) for c in own)
+def parting(system: System, teeth: Teeth, damper: float = 0.0) -> System:
+    """The system with a law on its mesh whose stiffness is what it was, and the mean force positive.
 
-
-def parting(system: System, teeth: Teeth) -> System:
-    """The system with a law on its mesh whose stiffness is what it was, and the mean force positive."""
-    mesh = system.links["mesh"]
-    assert isinstance(mesh, RowSpring)
-    law = Gap(mesh.stiffness, teeth.half_gap)
+    Parameters
+    ----------
+    damper : float
+        In contact alone, N s/m.
+    """
+    mesh = _mesh(system)
+    law = Gap(mesh.stiffness, teeth.half_gap, damper=damper)
     row, other = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
     turned = replace(mesh, row=row, to_row=other, law=law)
     return System(system.parts, {**system.links, "mesh": turned})
@@ -110,20 +122,59 @@ def backlash_model(
     highest_hz : float
         Modes above it give way like springs.
     """
-    system = parting(workshop.system(pinion, gear), teeth)
+    loss, damper = workshop.losses(), 0.0
+    if teeth.contact_loss_hz:
+        damper = loss.pop("mesh") * workshop.contact.stiffness / (2 * np.pi * teeth.contact_loss_hz)
+    system, table = workshop.system(pinion, gear), workshop.train.mesh.line_cycle
+    turning = None if table is None else turning_line(workshop, table)
+    if turning is not None:
+        system = System(system.parts, {**system.links, "mesh": turning.mean_of(_mesh(system))})
+    system = parting(system, teeth, damper)
     refuse_unresolved(workshop, system, highest_hz)
-    lever = {"engine": workshop.contact.pinion.lever, "load": -workshop.contact.gear.lever}
+    mesh = _mesh(system)
+    row, other = np.ravel(np.asarray(mesh.row)), np.ravel(np.asarray(mesh.to_row))
+    lever = {"engine": row[AXIAL], "load": -other[AXIAL]}
     load = system.load(
-        {name: np.array([0, 0, 0, 0, -teeth.mean_force * h, 0]) for name, h in lever.items()}
+        {name: np.array([0, 0, 0, 0, teeth.mean_force * h, 0]) for name, h in lever.items()}
     )
+    sways = {}
+    if turning is not None and len(turning.further):
+        # both rows turned as that of the mean line is
+        sways["mesh"] = turning.further_of(mesh), -turning.orders
     return remainder(
         system,
-        loss=workshop.losses(),
+        loss=loss,
         load=load,
-        errors={"mesh": teeth.errors},
+        errors={"mesh": teeth.harmonics},
         cycles={"mesh": [complex(c, -s) for c, s in teeth.cycle]},
+        sways=sways,
         highest_hz=highest_hz,
     )
+
+
+def _mesh(system: System) -> RowSpring:
+    mesh = system.links["mesh"]
+    assert isinstance(mesh, RowSpring)
+    return mesh
+
+
+def ends(
+    workshop: Workshop, highest_hz: float | None, lowest_hz: float | None
+) -> tuple[float, float]:
+    """Lowest and highest frequency of the mesh, those of the file where they are not given.
+
+    Raises
+    ------
+    SolidgearError
+        For a range that holds zero.
+    """
+    highest = highest_hz or workshop.train.ask.max_frequency
+    lowest = BEGIN * highest if lowest_hz is None else lowest_hz
+    if not 0 < lowest < highest:
+        raise SolidgearError(
+            f"mesh frequencies from {lowest:g} to {highest:g} Hz; give ascending ends above 0"
+        )
+    return lowest, highest
 
 
 def with_backlash(
@@ -163,21 +214,16 @@ def with_backlash(
     >>> [jump.rising for jump in found.jumps][:2]
     [True, False]
     """
-    asked = workshop.train.ask.max_frequency
-    highest = highest_hz or asked
-    lowest = BEGIN * highest if lowest_hz is None else lowest_hz
-    if not 0 < lowest < highest:
-        raise SolidgearError(
-            f"mesh frequencies from {lowest:g} to {highest:g} Hz; give ascending ends above 0"
-        )
+    lowest, highest = ends(workshop, highest_hz, lowest_hz)
     begin = process_time()
-    own = backlash_model(workshop, pinion, gear, teeth, max(asked, highest))
+    most = max(workshop.train.ask.max_frequency, highest)
+    own = backlash_model(workshop, pinion, gear, teeth, most)
     if told:
         told(f"branch of {pinion} + {gear}")
     branch = follow(own, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
     largest = np.array([multipliers(point)[0] for point in branch.points])
     seconds = process_time() - begin
-    return Backlash(pinion, gear, teeth, float(own.stiffness[0, 0]), own, branch, largest, seconds)
+    return Backlash(pinion, gear, teeth, own, branch, largest, seconds)
 
 
 def over_force(

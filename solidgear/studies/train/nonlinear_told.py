@@ -6,15 +6,26 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
+
 from solidgear.scene.train import Train
 from solidgear.studies.train.backlash import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.studies.train.nonlinear import InTime
+from solidgear.studies.train.speed_run import SpeedRun
 
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
 PHASES = (
     "The file gives no phases of the transmission error: its orders are cosines that begin where the "
     "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
+)
+RETURNS = (
+    "{0}: the branch turns back at {1} and leaves the range where it began, on another motion, so that "
+    "higher speeds are not judged; give a lower --min-frequency."
+)
+IN_CONTACT = (
+    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz; "
+    "mesh forces are told without it."
 )
 
 
@@ -60,6 +71,8 @@ class BacklashTold:
         Of the first.
     over_force : tuple of AtForce
         Of the first.
+    runs : tuple of SpeedRun
+        Of the first.
     """
 
     train: Train
@@ -67,6 +80,7 @@ class BacklashTold:
     lever: float
     in_time: tuple[InTime, ...] = ()
     over_force: tuple[AtForce, ...] = ()
+    runs: tuple[SpeedRun, ...] = ()
 
     @property
     def judge(self) -> Backlash:
@@ -90,11 +104,12 @@ class BacklashTold:
     def sentences(self) -> list[str]:
         """What the first mix says, and which of the others is enough."""
         own = self.judge
-        calm = not own.lost and not own.teeth.cycle
+        calm = not own.lost and not own.teeth.varies
         if calm:
             return [
                 "The teeth keep contact in all of the range: the linear answer holds to the last "
                 "digit.",
+                *self._run(),
                 *self._verdict(),
             ]
         if own.lost:
@@ -106,6 +121,7 @@ class BacklashTold:
                 f"The other flank is hit from {'; from '.join(map(self._range, own.both_flanks))}."
             )
         lines += self._jumped(own.jumps)
+        lines += self._returned(own)
         lines += [WANDERS.format(self._range(one), kind) for kind, one in own.wandering]
         at, size = own.loudest
         there, linear = own.linear_loudest
@@ -113,14 +129,16 @@ class BacklashTold:
             f"Largest dynamic mesh force {size:.0f} N at {self._at(at)}; the linear answer says "
             f"{linear:.0f} N at {self._at(there)}."
         )
-        if not own.teeth.cycle:
+        if not own.teeth.varies:
             lines.append(
                 f"At mean forces above {linear:.0f} N ({linear * self.lever:.0f} N m on the pinion) "
                 "the teeth never part in this range."
             )
         lines += self._off()
-        lines += [*self._checked(), *self._verdict()]
-        if own.teeth.cycle or len(own.teeth.errors) > 1:
+        lines += [*self._checked(), *self._run(), *self._verdict()]
+        if own.teeth.contact_loss_hz:
+            lines.append(IN_CONTACT.format(own.teeth.contact_loss_hz))
+        if not own.teeth.phases and (own.teeth.varies or len(own.teeth.errors) > 1):
             lines.append(PHASES)
         lines.append(
             "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
@@ -134,6 +152,10 @@ class BacklashTold:
             for jump in jumps
         ]
         return [f"The motion {', and '.join(ways)}."] if ways else ["The motion does not jump."]
+
+    def _returned(self, one: Backlash) -> list[str]:
+        label = one.label[0].upper() + one.label[1:]
+        return [RETURNS.format(label, self._at(one.returns))] if one.returns else []
 
     def _off(self) -> list[str]:
         band = self.train.ask.decibels
@@ -167,6 +189,28 @@ class BacklashTold:
             lines.append(f"It came to no steady motion at {', '.join(never)}.")
         return lines
 
+    def _run(self) -> list[str]:
+        """Each run through the range, beside the steady motions."""
+        lines = []
+        for one in self.runs:
+            at, size = one.loudest
+            steady_at, steady = self.judge.loudest
+            way = "up" if one.ramp > 0 else "down"
+            band, parted = self.train.ask.tolerance, "the teeth keep contact"
+            if one.lost:
+                share = 100 * float(np.mean(one.apart))
+                parted = f"the teeth part in {share:.2g} %, from {self._range(one.lost)}"
+            lines.append(
+                f"Run {way} at {self._rpm(abs(one.ramp)):.6g} rpm/s: largest dynamic mesh force "
+                f"{size:.0f} N at {self._at(at)}; stable motions of one mesh period "
+                f"reach {steady:.0f} N at {self._at(steady_at)}."
+            )
+            lines.append(
+                f"In {100 * one.followed(band):.0f} % of its {len(one.force)} mesh cycles the force is "
+                f"within {100 * band:g} % of such a motion's; {parted}."
+            )
+        return lines
+
     def sufficiency(self) -> tuple[Sufficiency, ...]:
         """Each further mix beside the first."""
         return tuple(self._beside(one) for one in self.found[1:])
@@ -192,7 +236,10 @@ class BacklashTold:
 
     def _verdict(self) -> list[str]:
         ask, lines = self.train.ask, []
-        for one in self.sufficiency():
+        for one, other in zip(self.sufficiency(), self.found[1:]):
+            if other.returns:
+                lines += self._returned(other)
+                continue
             expected = len(self.judge.jumps)
             if one.jumps is None:
                 jumps = f"{one.count} jumps instead of {expected}"
@@ -214,6 +261,19 @@ class BacklashTold:
             "beside_the_first": [asdict(one) for one in self.sufficiency()],
             "over_mean_force": [asdict(one) for one in self.over_force],
             "in_time": [asdict(one) | {"off": one.off} for one in self.in_time],
+            "runs": [self._ran(one) for one in self.runs],
+        }
+
+    def _ran(self, one: SpeedRun) -> dict[str, Any]:
+        at, size = one.loudest
+        return {
+            "mesh_frequency_hz_each_second": one.ramp,
+            "cycles": len(one.force),
+            "largest": {"frequency_hz": at, "force": size},
+            "parts": asdict(one.lost) if one.lost else None,
+            "share_that_parts": float(np.mean(one.apart)),
+            "tolerance": self.train.ask.tolerance,
+            "share_within_tolerance_of_steady": one.followed(self.train.ask.tolerance),
         }
 
     def _plain(self, one: Backlash) -> dict[str, Any]:

@@ -1,0 +1,109 @@
+"""The tables of what varies over a mesh cycle: stiffness, mesh point and line of action."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import dist, hypot, isclose
+from typing import Annotated
+
+from pydantic import model_validator
+
+from solidgear.errors import SceneError
+from solidgear.scene.typed import Model
+from solidgear.scene.units import MeshSpring, SignedAngle, three
+
+#: places of a mesh cycle at least, and how near its two ends are to be
+LEAST_OF_CYCLE, CYCLE_CLOSES = 3, 1e-3
+#: a normal typed with four digits
+UNIT = 1e-4
+Vector = Annotated[
+    tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
+]
+
+
+class Cycle(Model):
+    """What a table over one mesh cycle has in common.
+
+    Attributes
+    ----------
+    angle : tuple of float
+        Of the pinion, ascending over one tooth pitch, both ends told, rad; linear between.
+    """
+
+    angle: tuple[SignedAngle, ...]
+
+    @property
+    def pitch(self) -> float:
+        """Angle that it covers, rad."""
+        return self.angle[-1] - self.angle[0]
+
+    def told(self, key: str, what: str, values: Sequence) -> None:
+        """Refuse angles that do not ascend, or other than one value at each."""
+        if len(self.angle) != len(values) or len(self.angle) < LEAST_OF_CYCLE:
+            counts = f"{len(values)} {what} for {len(self.angle)} angles"
+            how = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
+            raise SceneError(how, path=(key,))
+        if any(b <= a for a, b in zip(self.angle, self.angle[1:])):
+            raise SceneError("angles must ascend", path=("angle",))
+
+
+class StiffnessCycle(Cycle):
+    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh.
+
+    Attributes
+    ----------
+    stiffness : tuple of float
+        N/m, at each angle.
+    """
+
+    stiffness: tuple[MeshSpring, ...]
+
+    @model_validator(mode="after")
+    def _periodic(self):
+        self.told("stiffness", "stiffnesses", self.stiffness)
+        first, last = self.stiffness[0], self.stiffness[-1]
+        if not isclose(first, last, rel_tol=CYCLE_CLOSES):
+            raise SceneError(
+                f"is not periodic: it begins at {first:.6g} N/m and ends at {last:.6g} N/m; both are "
+                "the same instant of neighbouring teeth",
+                path=("stiffness",),
+            )
+        return self
+
+
+class LineCycle(Cycle):
+    """Mesh point and line of action over one mesh cycle, in the pinion's frame from its lumped point.
+
+    Attributes
+    ----------
+    point : tuple of (float, float, float)
+        Mesh point at each angle, m.
+    normal : tuple of (float, float, float)
+        Unit, the direction of the force on the pinion.
+    """
+
+    point: tuple[Vector, ...]
+    normal: tuple[tuple[float, float, float], ...]
+
+    @model_validator(mode="after")
+    def _periodic(self):
+        self.told("point", "points", self.point)
+        self.told("normal", "normals", self.normal)
+        for number, normal in enumerate(self.normal, start=1):
+            if not isclose(hypot(*normal), 1.0, abs_tol=UNIT):
+                raise SceneError(
+                    f"normal {number} has length {hypot(*normal):.6g}; give unit vectors",
+                    path=("normal",),
+                )
+        size = max(hypot(*point) for point in self.point)
+        for key, unit, most in (("point", " m", size), ("normal", "", 1.0)):
+            first, last = getattr(self, key)[0], getattr(self, key)[-1]
+            if dist(first, last) > CYCLE_CLOSES * most:
+                told = (", ".join(f"{v:.6g}" for v in end) for end in (first, last))
+                ends = "{} and ends at {}".format(*(f"({text}){unit}" for text in told))
+                raise SceneError(
+                    f"is not periodic: it begins at {ends}; both are the same instant of "
+                    "neighbouring teeth",
+                    path=(key,),
+                )
+        return self
