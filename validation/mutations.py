@@ -829,8 +829,8 @@ MUTATIONS = (
         "harmonic balance: what lies between two instants at a kink has the wrong sign",
         "solidgear/nonlinear/balance.py",
         "Balance._parts",
-        "jump / 4",
-        "-jump / 4",
+        "kink.jump / 4",
+        "-kink.jump / 4",
         "tests/test_nonlinear_pair.py::test_three_motions_live_at_one_speed",
     ),
     Mutation(
