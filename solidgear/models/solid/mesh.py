@@ -48,6 +48,10 @@ class SolidMesh:
     nodes: np.ndarray
     segment: np.ndarray
 
+    def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(n, 3) displacements of the nodes."""
+        return moved["full"].reshape(-1, 3)
+
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The boundary of the mesh."""
         from solidgear.models.solid.drawing import solid_surface
