@@ -171,7 +171,7 @@ class Names:
         # a part that is not round promises no twins, however near its frequencies lie
         self._split = not body.mesh.get("round", True)
         self._planes = self._split and len(body.blocks) > 1
-        self._without_axis = not body.mesh.get("axis", True)
+        self.without_axis = not body.mesh.get("axis", True)
         self._mirrored = any(block.mirror is not None for block in body.blocks)
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
@@ -198,7 +198,7 @@ class Names:
         else:
             energy = self._by_block(vectors)
         waves, family = max(energy, key=energy.__getitem__)
-        if self._without_axis:
+        if self.without_axis:
             family = "mode"
         if self._round is not None:
             profile = profile[waves]

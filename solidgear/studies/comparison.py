@@ -165,7 +165,7 @@ def compare(
     ('resolved', 0.21)
     """
     from solidgear.scene import Scene
-    from solidgear.scene.shaft import is_block
+    from solidgear.scene.shaft import without_axis
     from solidgear.scene.train import Train
 
     if isinstance(scene, Train) or isinstance(models, Train):
@@ -173,9 +173,10 @@ def compare(
             "compare takes scenes of one shaft; trains are compared by the command: "
             "solidgear compare A.toml B.toml"
         )
-    if is_block(scene) or is_block(models):
+    if without_axis(scene) or without_axis(models):
         raise SolidgearError(
-            "compare: a block has one model, the 3D solid; solidgear modes tells its frequencies and bars"
+            "compare: a body without an axis has one model, the 3D solid; solidgear modes tells its "
+            "frequencies and bars"
         )
     if isinstance(models, Scene):
         from solidgear.studies.two_shafts import two_shafts

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,42 +38,41 @@ def part_body(
     graded_size: float | None,
     refinement: float,
     around: int,
+    coarser: int,
 ) -> Body:
     """Free body, in one block, of the part of a scene with a ``body``; sizes as for
-    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is.
+    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is, or one of
+    those coarser than it.
 
     SolidgearError where the file has changed since the scene was read, or no face lies on a seat;
     MeshError where it cannot be meshed.
     """
     file = scene.body
-    try:
-        same = hashlib.sha256(Path(file.path).read_bytes()).hexdigest() == file.sha256
-    except OSError as error:
-        raise SolidgearError(f"{file.name} cannot be opened: {error.strerror}") from None
-    if not same:
-        raise SolidgearError(f"{file.name} has changed since the scene was read: read it again")
+    source = _read(file, coarser)
     place = Placing(file.unit, file.turn, file.foot)
-    facts = {"file": file.name, "refinement": refinement}
+    facts = {"file": source.name, "refinement": refinement, "coarser": coarser}
     named = tuple(g.name for g in file.groups if g.name)
     materials = file.materials(scene.material) if file.groups else None
     if file.kind == "mesh":
-        found = _apart(file, mesh_from, file.path, place, named)
+        found = _apart(source, mesh_from, source.path, place, named)
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
         element = SOLVED_AS.get(found.element, found.element)
         if element != found.element:
             facts["file_element"] = found.element
-        return solid_body(
+        free = file.edges is not None
+        body = solid_body(
             found.mesh,
             scene,
             element=element,
-            wanted=wanted,
+            wanted=() if free else wanted,
             clipped=True,
-            facts=facts,
+            facts=facts | {"axis": not free},
             owner=found.owner if materials else None,
             materials=materials,
         )
+        return replace(body, scale=_rough_scale(file, scene.material)) if free else body
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
@@ -88,6 +89,32 @@ def part_body(
         owner=owner if materials else None,
         materials=materials,
     )
+
+
+def _read(file: Any, coarser: int) -> Any:
+    """The file of a part, or of one of its coarser meshes, as long as it is what the scene has read."""
+    if coarser > len(file.coarser):
+        raise SolidgearError(
+            f"solid: coarser = {coarser}, and the scene lists {len(file.coarser)} meshes coarser than "
+            f"{file.name}"
+        )
+    source = (*file.coarser, file)[-1 - coarser]
+    try:
+        same = hashlib.sha256(Path(source.path).read_bytes()).hexdigest() == source.sha256
+    except OSError as error:
+        raise SolidgearError(f"{source.name} cannot be opened: {error.strerror}") from None
+    if not same:
+        raise SolidgearError(f"{source.name} has changed since the scene was read: read it again")
+    return source
+
+
+def _rough_scale(file: Any, material: Any) -> float:
+    """Lowest elastic eigenvalue, rad^2/s^2, of a rod as long as a body and of its volume, or of half
+    a wave of shear along it.
+    """
+    length = max(file.edges)
+    wave = material.E / material.density * (4.73 / length) ** 4 * file.volume / length
+    return min(wave / (4 * math.pi), (math.pi / length) ** 2 * material.E / material.density / 3)
 
 
 def _apart(file, function, *arguments) -> Any:

@@ -9,13 +9,13 @@ from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.settle import Settled, bars_of_modes, nested_bars, settle
+from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
-from solidgear.scene.shaft import is_block
+from solidgear.scene.shaft import without_axis
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.sweep.bench import surface
@@ -95,7 +95,7 @@ def computed_up_to(
     """
     limit = BEYOND * highest
     settled = None
-    if before is None or not (LADDER[before.rung].bounded or is_block(scene)):
+    if before is None or not (LADDER[before.rung].bounded or without_axis(scene)):
         settled = settle(scene, tolerance, progress=progress)
         rung, options, body = settled.rung, dict(settled.options), settled.body
     else:
@@ -142,8 +142,8 @@ def _barred(
     found = _modes(scene, body, limit)
     if LADDER[body.fidelity].bounded:
         told = mode_bars(scene, body, as_supports(scene), found)
-    elif is_block(scene):
-        told = nested_bars(scene, body, found)
+    elif without_axis(scene):
+        told = stepped_bars(scene, body, found)
     else:
         told = bars_of_modes(scene, body, found, settled)
     listed = _elastic(found)
