@@ -58,6 +58,13 @@ class SolidMesh:
 
         return solid_surface(self, moved.get("full"))
 
+    def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
+        """(3 k, n) displacements of some points of the surface by those of the nodes."""
+        from solidgear.models.solid.drawing import on_nodes
+
+        own = on_nodes(self)[chosen].toarray()
+        return np.einsum("kj,xy->kxjy", own, np.eye(3)).reshape(3 * len(chosen), -1)
+
     def volume(self) -> Volume:
         """The mesh itself."""
         return Volume(self.name, self.nodes, self.dofs, self.element.doflocs)
