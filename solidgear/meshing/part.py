@@ -47,7 +47,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         unit = _unit(table, content)
         foot = _foot(table)
         place = Placing(unit, TURNS[table.axis if shaft else "y"], foot)
-        found_in = read(table, path, place)
+        found_in = read(table, path, place, content)
         points, triangles = skin(found_in)
         _sizes(table, points)
         coarser = coarser_meshes(table, coarse, place, found_in)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.machine.isolated import IsolatedError, isolated
-from solidgear.meshing.mesh_file import mesh_from
+from solidgear.meshing.mesh_file import FileMesh, mesh_from
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.step import look
@@ -52,7 +53,13 @@ class Found(NamedTuple):
     own_mesh: dict[str, Any] = {}
 
 
-def read(table: BodyTable, path: Path, place: Placing) -> Found:
+@lru_cache(maxsize=8)
+def file_mesh(path: str, sha256: str, place: Placing, named: tuple[str, ...]) -> FileMesh:
+    """The mesh of a file of some content, kept: what varies other entries of a scene asks for it again."""
+    return isolated(mesh_from, path, place, named, seconds=LOOK_SECONDS)
+
+
+def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> Found:
     """Content of the file of a part."""
     named = tuple(table.materials)
     try:
@@ -60,7 +67,8 @@ def read(table: BodyTable, path: Path, place: Placing) -> Found:
             seen = isolated(look, str(path), place, named, seconds=LOOK_SECONDS)
             groups = _groups(table, seen.volumes, seen.rest)
             return Found(seen.points, seen.triangles, seen.sides, seen.volume, groups)
-        found = isolated(mesh_from, str(path), place, named, seconds=LOOK_SECONDS)
+        sha = hashlib.sha256(content).hexdigest()
+        found = file_mesh(str(path), sha, place, named)
     except (IsolatedError, MemoryError) as error:
         raise MeshError(
             f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
@@ -103,7 +111,8 @@ def coarser_meshes(
     size = np.ptp(skin(finest)[0], axis=1)
     for k in reversed(range(len(paths))):
         try:
-            content, found = content_of(paths[k]), read(table, paths[k], place)
+            content = content_of(paths[k])
+            found = read(table, paths[k], place, content)
         except MeshError as error:
             raise SceneError(str(error), path=("mesh", k)) from None
         off = np.append(np.ptp(skin(found)[0], axis=1) / size, found.volume / finest.volume) - 1

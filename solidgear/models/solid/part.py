@@ -15,7 +15,7 @@ from solidgear.kernel.room import assemblable
 from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
-from solidgear.meshing.mesh_file import mesh_from
+from solidgear.meshing.part_file import file_mesh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.meshing.revolved import graded_corners
@@ -54,7 +54,7 @@ def part_body(
     named = tuple(g.name for g in file.groups if g.name)
     materials = file.materials(scene.material) if file.groups else None
     if file.kind == "mesh":
-        found = _apart(source, mesh_from, source.path, place, named)
+        found = _apart(source, file_mesh, source.path, source.sha256, place, named)
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
@@ -76,7 +76,9 @@ def part_body(
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    mesh, owner = _apart(file, step.mesh, file.path, place, plan, named)
+    mesh, owner = _apart(
+        file, isolated, step.mesh, file.path, place, plan, named, seconds=MESH_SECONDS
+    )
     # four times what the arcs lose by themselves
     check_mesh(mesh, volume=file.volume, rtol=max(2e-3, 15.0 / plan["around"] ** 4 * 4))
     return solid_body(
@@ -117,10 +119,10 @@ def _rough_scale(file: Any, material: Any) -> float:
     return min(wave / (4 * math.pi), (math.pi / length) ** 2 * material.E / material.density / 3)
 
 
-def _apart(file, function, *arguments) -> Any:
+def _apart(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
     """Mesh of a file, made in a process of its own."""
     try:
-        return isolated(function, *arguments, seconds=MESH_SECONDS)
+        return function(*arguments, **limits)
     except IsolatedError as error:
         raise MeshError(f"{file.name} cannot be meshed: the mesher {error}") from None
     except MeshError as error:
