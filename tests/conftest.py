@@ -66,9 +66,9 @@ def read_once():
 
     Each start costs more than the reading; files that end a process are another function's.
     """
-    from solidgear.meshing import part
+    from solidgear.meshing import part_file
 
-    known, starts = {}, part.isolated
+    known, starts = {}, part_file.isolated
 
     def once(function, path, *arguments, **limits):
         content = hashlib.sha256(Path(path).read_bytes()).digest()
@@ -78,7 +78,7 @@ def read_once():
         return pickle.loads(known[key])
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(part, "isolated", once)
+        patch.setattr(part_file, "isolated", once)
         patch.setattr("solidgear.models.solid.part.isolated", once)
         yield
 

@@ -1,10 +1,14 @@
-"""Free rectangular blocks: frequencies against polynomials that share no code with the solid."""
+"""Free bodies without an axis, as blocks and from mesh files: frequencies against polynomials that share
+no code with the solid.
+"""
 
 from itertools import product
 
+import meshio
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
+from skfem import MeshTet
 
 import solidgear as sg
 from solidgear.judge.settle import settle
@@ -16,6 +20,34 @@ E, NU, DENSITY = 207e9, 0.29, 7850.0
 FILE = f"""material = {{ E = {E}, nu = {NU}, density = {DENSITY} }}
 body = {{ block = {list(EDGES)} }}
 """
+
+
+HEAD = FILE.splitlines()[0]
+
+
+def write_tets(path, cells, edges=EDGES):
+    """A block of so many cells along every edge, each of tetrahedra, in mm and away from the origin."""
+    lines = [np.linspace(0, 1e3 * edge, cells + 1) for edge in edges]
+    mesh = MeshTet.init_tensor(*lines)
+    turned = np.linalg.det(np.diff(mesh.p[:, mesh.t], axis=1).transpose(2, 0, 1)) < 0
+    mesh.t[:2, turned] = mesh.t[1::-1, turned]
+    meshio.write(path, meshio.Mesh(mesh.p.T + [3.0, 5.0, -7.0], [("tetra", mesh.t.T)]))
+
+
+def free(folder, *files, more=""):
+    """A scene file of a body without an axis."""
+    path = folder / "free.toml"
+    listed = ", ".join(f'"{file}"' for file in files)
+    path.write_text(f'{HEAD}\nbody = {{ mesh = [{listed}], unit = "mm", axis = "none"{more} }}\n')
+    return path
+
+
+@pytest.fixture(scope="module")
+def meshed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("meshed")
+    for cells in (2, 4):
+        write_tets(folder / f"{cells}.vtu", cells)
+    return folder
 
 
 @pytest.fixture(scope="module")
@@ -110,4 +142,49 @@ def test_nothing_is_attached_to_a_block(tmp_path):
     path = tmp_path / "held.toml"
     path.write_text(FILE + 'mass = [{ name = "m", position = 0, mass = "1 g" }]\n')
     with pytest.raises(sg.SceneError, match="a block is free"):
+        sg.load(path)
+
+
+def test_two_meshes_of_a_body_are_judged_by_their_step(meshed):
+    scene = sg.load(free(meshed, "2.vtu", "4.vtu"))
+    settled = settle(scene, 0.05, "modes")
+    found = sg.modes(settled.body, scene, n=10).modes
+    elastic = [mode for mode in found if mode.frequency_hz > 0]
+    assert [str(mode.name) for mode in elastic] == [f"mode {k}" for k in range(1, 11)]
+    assert {str(mode.name) for mode in found} - {str(m.name) for m in elastic} == {"rigid motion"}
+    for mode, hertz in zip(elastic, by_polynomials(10)):
+        bar = settled.bars[Quantity(mode.name)]
+        assert -3e-5 < mode.frequency_hz / hertz - 1 < bar < 0.03
+    assert settled.reached and scene.body.edges == pytest.approx(EDGES)
+
+
+def test_a_single_mesh_of_a_body_has_frequencies_and_no_bars(meshed, run):
+    code, out, _ = run("modes", free(meshed, "4.vtu"), "-n", 3)
+    assert code == 3 and "nothing finer tells how good it is" in out and "mode 3" in out
+    code, out, _ = run("check", meshed / "free.toml")
+    assert code == 0 and "springs, masses and ports are not modelled" in out
+    assert "is the only one there is" in out
+
+
+@pytest.mark.parametrize(
+    "files, more, field, sentence",
+    [
+        (("4.vtu", "2.vtu"), "", r"body.mesh\[1\]", "list meshes coarse to fine"),
+        (("long.vtu", "4.vtu"), "", r"body.mesh\[1\]", "another body: its size along y is .33.3 %"),
+        (("none.vtu", "4.vtu"), "", r"body.mesh\[1\]", "cannot be opened"),
+        (("4.vtu",), ', size_check = ["1 mm", "1 mm"]', "body.size_check", "mass_check"),
+        (("4.vtu",), ', mass_check = "1 g"', "body.mass_check", "has 0.0077715 kg"),
+        (("4.vtu",), ', step = "a.step"', "body.mesh", "not both"),
+    ],
+)
+def test_a_bad_list_of_meshes_is_refused_in_one_sentence(meshed, files, more, field, sentence):
+    write_tets(meshed / "long.vtu", 1, (EDGES[0], EDGES[1] * 4 / 3, EDGES[2]))
+    with pytest.raises(sg.SceneError, match=f"{field}.*(?:{sentence})"):
+        sg.load(free(meshed, *files, more=more))
+
+
+def test_a_body_that_is_no_shaft_is_told_how_to_say_so(meshed):
+    path = free(meshed, "4.vtu")
+    path.write_text(path.read_text().replace(', axis = "none"', ""))
+    with pytest.raises(sg.SceneError, match='write axis = "none" for a body that is none'):
         sg.load(path)

@@ -433,6 +433,13 @@ def test_a_mesh_file_has_one_mesh_and_no_bar(shipped, tmp_path):
     found = sg.answer(from_file, ask=["C_zz"])
     assert not found.reached and found.values[0].bar == math.inf
     assert "nothing finer tells" in found.steps[-1].why
+    # a coarser one before it makes a bar, which is wider than the step between both
+    coarse = sg.build(scene, "solid", refinement=0.15)
+    written(coarse, tmp_path / "coarse.vtu")
+    two = load(tmp_path, mesh=["coarse.vtu", "part.vtu"], unit="mm")
+    (value,) = sg.answer(two, ask=["C_zz"]).values
+    before, after = numbers(coarse, scene)[0], numbers(body, scene)[0]
+    assert value.how == "2 meshes" and abs(before / after - 1) < value.bar < 0.5
 
 
 def test_left_handed_hexahedra_are_told(tmp_path):

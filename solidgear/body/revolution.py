@@ -45,12 +45,19 @@ def wave(n, start, radial, tangential, axial, swirl=0.0) -> Wave:
     return Wave(n, start, *full)
 
 
+def _on_axis(rings: Rings) -> np.ndarray:
+    return rings.r <= 1e-9 * rings.r.max()
+
+
+def ring_of(rings: Rings) -> np.ndarray:
+    """Ring of every point of the surface."""
+    return np.repeat(np.arange(len(rings.r)), np.where(_on_axis(rings), 1, TURNS))
+
+
 def revolve(rings: Rings, waves: list[Wave]) -> Surface:
     """Sweep rings around the axis; a ring of no radius is one point."""
-    on_axis = rings.r <= 1e-9 * rings.r.max()
-    count = np.where(on_axis, 1, TURNS)
-    first = np.concatenate([[0], np.cumsum(count)[:-1]])
-    ring = np.repeat(np.arange(len(count)), count)
+    on_axis, ring = _on_axis(rings), ring_of(rings)
+    first = np.searchsorted(ring, np.arange(len(on_axis)))
     step = np.arange(len(ring)) - first[ring]
     t = 2 * np.pi * step / TURNS
     r, y = np.where(on_axis, 0.0, rings.r)[ring], rings.y[ring]

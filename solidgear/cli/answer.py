@@ -166,7 +166,7 @@ def _of_round_part(scene: Scene, found: Answered) -> list[str]:
     return [
         f"Numbers of the round part of {body.name}, whose volume is "
         f"{percent(body.round_volume - 1)} from that of its mesh; the mesh itself is solved "
-        "by -f solid of stiffness and modes, without a bar."
+        f"by -f solid of stiffness and modes, {'and judged by compare' if body.coarser else 'without a bar'}."
     ]
 
 

@@ -32,7 +32,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import one_run
 from solidgear.machine.threads import pinned
 from solidgear.quantity import ACROSS, QUANTITIES, Quantity
-from solidgear.scene.shaft import is_block
+from solidgear.scene.shaft import without_axis
 from solidgear.scene.units import quantity
 from solidgear.solve.families import FAMILIES
 from solidgear.solve.modes import modes
@@ -138,10 +138,8 @@ def answer(
     >>> found.reached, found.rung, found.bar <= 0.01
     (True, 'harmonic', True)
     """
-    if is_block(scene):
-        raise SolidgearError(
-            f"answer: {scene.name} is a block, which has modes alone; ask for modes"
-        )
+    if without_axis(scene):
+        raise SolidgearError(f"answer: {scene.name} has no axis, and modes alone; ask for modes")
     start = time.perf_counter()
     tol = usable(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)

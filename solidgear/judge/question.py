@@ -113,6 +113,9 @@ def mesh_words(level: Mapping[str, Any]) -> str:
             ] * bool(lines)
         elif name in level:
             out.append(f"{word} {level[name]}")
+    if "coarser" in level:
+        back = level["coarser"]
+        out.append(f"mesh file {back} before the last" if back else "the last mesh file")
     return ", ".join(out)
 
 

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 Progress = Callable[[str], None]
+#: reason for no bar
+ONE_MESH = "the mesh is that of the file, and nothing finer tells how good it is"
 
 #: a frequency that rises with a finer mesh of a list, by more than the eigensolver leaves, is
 #: rounding: the bar is this many times the rise
@@ -191,11 +193,7 @@ class Loop(ABC):
         """Reason for no further mesh."""
         if not self.model.bounded:
             only_one = self.plan.fixed and len(self.plan.levels) == 1
-            return (
-                "the mesh is that of the file, and nothing finer tells how good it is"
-                if only_one
-                else "no finer mesh is calibrated"
-            )
+            return ONE_MESH if only_one else "no finer mesh is calibrated"
         count = len(self.levels)
         tried = "one mesh" if count == 1 else f"{count} meshes"
         return f"{tried} did not do; most of the bar comes from {self.stops_at()}"

@@ -22,20 +22,22 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
+from solidgear.bounds.safety import REFINEMENT
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.answer import climbed, usable
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question, mesh_words
-from solidgear.judge.refinement import Progress
+from solidgear.judge.refinement import ONE_MESH, Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
+from solidgear.meshing.corners import SHOULDER, is_notched
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
-from solidgear.scene.shaft import is_block
+from solidgear.scene.shaft import without_axis
 from solidgear.solve.modes import ModeSet, modes
 
 if TYPE_CHECKING:
@@ -172,10 +174,12 @@ def settle(
     tol = usable(scene.ask.tolerance if tol is None else tol)
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
-    if is_block(scene):
+    if without_axis(scene):
         if ask == "stiffness":
-            raise SolidgearError(f"{scene.name}: a block has no seat to be stiff at; ask for modes")
-        return _settled_block(scene, tol, progress)
+            raise SolidgearError(
+                f"{scene.name}: a body without an axis has no seat to be stiff at; ask for modes"
+            )
+        return _settled_body(scene, tol, progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
         both = {scene.port.name, *points}
@@ -209,8 +213,8 @@ def bars_of_modes(
     """
     if settled is None:
         return {}
-    if is_block(scene):
-        return nested_bars(scene, body, found)
+    if without_axis(scene):
+        return stepped_bars(scene, body, found)
     bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
         bars = mode_bars(scene, body, as_supports(scene), found)
@@ -219,7 +223,7 @@ def bars_of_modes(
     return bars | {name: settled.bars[name] for name in asked}
 
 
-#: the only model that holds a block
+#: the only model that holds a body without an axis
 MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
 NESTED = (1.0, 2.0, 4.0)
@@ -227,21 +231,29 @@ NESTED = (1.0, 2.0, 4.0)
 #: errors of smooth modes fall to a sixteenth, which leaves a fifteenth of it; this is what errors
 #: that fall to an eighth leave, twice as much
 LEFT = 1 / 7
+#: the exponent of that, where a mesh file has no concave edge
+CONVEX = 1.5
 
 
-def _settled_block(scene: Scene, tol: float, progress: Progress) -> Settled:
-    """The first of the nested meshes of a block whose bars of its lowest modes are within a tolerance."""
+def _settled_body(scene: Scene, tol: float, progress: Progress) -> Settled:
+    """A body without an axis on the first of its meshes whose bars of the lowest modes are within a
+    tolerance: of a block on nested ones, else on the last one of its files.
+    """
     steps: list[Step] = []
-    for refinement in NESTED[1:]:
-        options = {**LADDER[MODEL].given(scene, {}), "refinement": refinement}
-        progress(f"{LADDER[MODEL].title}: refinement {refinement:g}")
+    assert scene.body is not None  # that is without an axis
+    block = scene.body.kind == "block"
+    meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
+    for mesh in meshes:
+        options = {**LADDER[MODEL].given(scene, {}), **mesh}
+        progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
         body = build(scene, MODEL, **options)
         found = modes(body, scene, scene.ask.modes)
-        bars = {Quantity(name): bar for name, bar in nested_bars(scene, body, found).items()}
+        bars = {Quantity(name): bar for name, bar in stepped_bars(scene, body, found).items()}
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
-        done = reached or refinement == NESTED[-1]
-        why = "no finer mesh is calibrated" * (done and not reached)
+        done = reached or mesh is meshes[-1]
+        why = "no finer mesh is calibrated" if bars else ONE_MESH
+        why *= done and not reached
         setting = mesh_words(options)
         steps.append(
             Step(MODEL, setting, True, why, largest, body.size, chosen=done, options=options)
@@ -254,19 +266,41 @@ def _settled_block(scene: Scene, tol: float, progress: Progress) -> Settled:
     )
 
 
-def nested_bars(scene: Scene, body: Body, found: ModeSet) -> dict[str, float]:
-    """Relative bars of the frequencies of a block, from a mesh with half as many cells along every
-    edge: the finer one holds all motions of the coarser, and both integrate exactly, so that the
-    mode of each place in the list comes from above on both.
+def stepped_bars(scene: Scene, body: Body, found: ModeSet) -> dict[str, float]:
+    """Relative bars of the frequencies of a body without an axis, from those of the next coarser mesh
+    at the same places of the list; empty where there is none.
+
+    Of a block that mesh has half as many cells along every edge: the finer one holds all motions of
+    the coarser, and both integrate exactly, so that frequencies come from above on both. Mesh files
+    are of any shape: what a step leaves rests on the size of their cells and on how sharp edges are,
+    with the safety of other meshes in a sequence.
     """
-    options = {"element": body.mesh["element"], "refinement": body.mesh["refinement"] / 2}
     elastic = [mode for mode in found.modes if mode.frequency_hz > 0]
-    coarse = modes(build(scene, MODEL, **options), scene, len(elastic))
+    before = _before(scene, body)
+    if before is None:
+        return {}
+    coarse = modes(before, scene, len(elastic))
     above = [mode.frequency_hz for mode in coarse.modes if mode.frequency_hz > 0]
-    return {
-        str(mode.name): LEFT * max(before / mode.frequency_hz - 1, 0.0) + mode.error
-        for mode, before in zip(elastic, above)
-    }
+    if "coarser" in body.mesh:
+        sizes = (before.mesh["representative_size"], body.mesh["representative_size"])
+        exponent = SHOULDER if is_notched(body.geometry.mesh) else CONVEX  # type: ignore[union-attr]
+        factor = REFINEMENT.steps[0] / ((sizes[0] / sizes[1]) ** (2 * exponent) - 1)
+        changes = [abs(hertz / mode.frequency_hz - 1) for mode, hertz in zip(elastic, above)]
+    else:
+        factor = LEFT
+        changes = [max(hertz / mode.frequency_hz - 1, 0) for mode, hertz in zip(elastic, above)]
+    return {str(mode.name): factor * change + mode.error for mode, change in zip(elastic, changes)}
+
+
+def _before(scene: Scene, body: Body) -> Body | None:
+    """The body on the next coarser mesh; None where that of a file is the coarsest."""
+    assert scene.body is not None  # that is without an axis
+    given = {"element": body.mesh["element"]}
+    if "coarser" not in body.mesh:
+        return build(scene, MODEL, **given, refinement=body.mesh["refinement"] / 2)
+    if body.mesh["coarser"] == len(scene.body.coarser):
+        return None
+    return build(scene, MODEL, **given, coarser=body.mesh["coarser"] + 1)
 
 
 class Whole(Climb):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.factoring import Factoring
-from solidgear.models.kinds import BLOCKS, CYCLIC
+from solidgear.models.kinds import BODIES, CYCLIC
 from solidgear.models.options import FACTORING_OPTIONS, Option, checked
 
 if TYPE_CHECKING:
@@ -192,8 +192,9 @@ class Model:
             return self.limits(scene) if CYCLIC in held_here else ""
         if not self.holds and all(f.round for f in features):
             return ""
-        if BLOCKS in sorts and BLOCKS not in self.holds:
-            return f"the {self.title} is of a shaft, and a block has no axis"
+        if BODIES in sorts and BODIES not in self.holds:
+            (body,) = (f for f in features if f.sort == BODIES)
+            return f"the {self.title} is of a shaft, and a {body.what} has no axis"
         strange = [f for f in features if f.sort not in self.holds]
         unfit = f"the {self.title} is {self._nature} and the scene has {named(strange or features)}"
         if not self.holds:

@@ -9,7 +9,7 @@ from solidgear.elements import ELEMENTS
 from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, least_radius, levels
 from solidgear.ladder.model import Options, Series, features_of
 from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
-from solidgear.models.kinds import BLOCKS, CUTS, CYCLIC, PARTS
+from solidgear.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.models.options import SOLID_OPTIONS
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Solid(Volume):
     marker = "D"
     options = SOLID_OPTIONS
     coarser = "lower refinement or the layers, or raise size"
-    holds = (CUTS, CYCLIC, PARTS, BLOCKS)
+    holds = (CUTS, CYCLIC, PARTS, BODIES)
     together = frozenset((CUTS, CYCLIC))
     _nature = "one mesh of tetrahedra,"
 
@@ -122,16 +122,20 @@ class Solid(Volume):
         or from a file, and hexahedra in a block, which has no arcs: layered hexahedra converge too slowly beside fillets for error bars.
         """
         features = features_of(scene)
-        if BLOCKS in {f.sort for f in features}:
+        if "block" in {getattr(f, "kind", "") for f in features}:
             return {"element": "hex27", **options}
         special = features or scene.outline.corners
         return {**({"element": "tet10"} if special else {}), **options}
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
-        """The one mesh of a file, or a list."""
+        """The meshes of files, or a list."""
         given = {**self.preset, **self.given(scene, options)}
-        if getattr(getattr(scene, "body", None), "one_mesh", False):
-            return Sequence((given,), True, False)
+        body = getattr(scene, "body", None)
+        if body is not None and body.one_mesh:
+            if not body.coarser:
+                return Sequence((given,), True, False)
+            levels = ({**given, "coarser": k} for k in range(len(body.coarser), -1, -1))
+            return Sequence(tuple(levels), True, False)
         return self.meshes(given)
 
     def meshes(self, options: Options) -> Sequence:

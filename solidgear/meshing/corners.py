@@ -7,7 +7,7 @@ layers a mesh needs towards the corner.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -98,3 +98,32 @@ def corner_layers(
     angle = max((edge.sharp_angle for edge in edges), default=np.pi)
     lacking = (1.0 - corner_exponent(angle)) / (1.0 - SHOULDER)
     return min(layers, int(np.ceil(layers * lacking - 0.05)))
+
+
+#: turn of the surface across an edge, rad, from which on it is one and no facet of something round
+EDGE = np.pi / 4
+
+
+def is_notched(mesh: Any) -> bool:
+    """True for a volume mesh of scikit-fem whose surface has a sharp concave edge.
+
+    Examples
+    --------
+    >>> from skfem import MeshHex
+    >>> cube = MeshHex().refined(1)
+    >>> is_notched(cube), is_notched(cube.remove_elements([0]))
+    (False, True)
+    """
+    outside = mesh.boundary_facets()
+    corners = mesh.p[:, mesh.facets[:, outside]]  # (3, corner, facet)
+    middle = corners.mean(axis=1)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0)
+    inside = mesh.p[:, mesh.t[:, mesh.f2t[0, outside]]].mean(axis=1) - middle
+    normal *= -np.sign(np.sum(normal * inside, axis=0)) / np.linalg.norm(normal, axis=0)
+    edge = mesh.f2e[:, outside]
+    facet = np.broadcast_to(np.arange(len(outside)), edge.shape).ravel()
+    order = np.argsort(edge.ravel(), kind="stable")
+    one, other = facet[order[::2]], facet[order[1::2]]
+    turned = np.sum(normal[:, one] * normal[:, other], axis=0) < np.cos(EDGE)
+    rising = np.sum(normal[:, one] * (middle[:, other] - middle[:, one]), axis=0) > 0
+    return bool(np.any(turned & rising))

@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.machine.isolated import IsolatedError, isolated
-from solidgear.meshing.mesh_file import mesh_from
+from solidgear.meshing.part_file import Found, coarser_meshes, content_of, read, skin
 from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
-from solidgear.meshing.step import look
-from solidgear.scene.body_file import UNITS, BodyFile, BodyTable, PartGroup
+from solidgear.scene.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Frustum, Outline
 from solidgear.scene.recognised import Recognised
 
-#: seconds after which a file is given up
-LOOK_SECONDS = 25.0
 #: least share of the surface that is round about the axis, for a part to be a shaft
 LEAST_ROUND = 0.2
 #: of a part, m
@@ -34,8 +31,6 @@ SIZE_CHECK = 1e-3
 #: factors between units that are taken for one another
 SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
 SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
-#: largest STEP or mesh file, bytes
-LARGEST = 500_000_000
 
 
 def recognise(table: BodyTable, folder: Path) -> Recognised:
@@ -45,17 +40,19 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     """
     if table.block is not None:
         return _block(table.block)
-    path = (folder / table.file).resolve()
+    *coarse, path = ((folder / file).resolve() for file in table.files)
+    shaft = table.axis != NONE
     try:
-        content = _content(path)
+        content = content_of(path)
         unit = _unit(table, content)
         foot = _foot(table)
-        place = Placing(unit, TURNS[table.axis], foot)
-        found_in = _surface(table, path, place)
-        points, triangles = _skin(found_in)
+        place = Placing(unit, TURNS[table.axis if shaft else "y"], foot)
+        found_in = read(table, path, place, content)
+        points, triangles = skin(found_in)
         _sizes(table, points)
-        found = round_part(points, triangles)
-        if not found.share >= LEAST_ROUND:
+        coarser = coarser_meshes(table, coarse, place, found_in)
+        found = round_part(points, triangles) if shaft else _rod(points, found_in.volume)
+        if shaft and not found.share >= LEAST_ROUND:
             raise SceneError(_not_round(table, place, points, triangles, found), path=("axis",))
     except MeshError as error:
         raise SceneError(str(error), path=("body", table.key)) from None
@@ -89,6 +86,8 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
         remarks=found_in.remarks,
+        edges=None if shaft else tuple(float(v) for v in np.ptp(points, axis=1)),
+        coarser=coarser,
         **found_in.own_mesh,
     )
     cylinders = tuple(
@@ -103,6 +102,15 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         partial(seat_share, points, triangles),
         tuple(tuple((kinds[k], part) for k, part in share.groups) for share in shares),
     )
+
+
+def _rod(points, volume: float) -> RoundPart:
+    """A cylinder as long along y as a body without an axis, and of its volume: places are told along
+    it, and nothing is solved.
+    """
+    low, high = float(points[1].min()), float(points[1].max())
+    radius = math.sqrt(volume / math.pi / (high - low))
+    return RoundPart((Frustum(low, high, radius, radius, 0.0, 0.0),), (), 0.0)
 
 
 def _block(edges: list[float]) -> Recognised:
@@ -134,17 +142,6 @@ def _block(edges: list[float]) -> Recognised:
 
 def _rounded(value: float) -> float:
     return round(float(value), 13) + 0.0
-
-
-def _content(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > LARGEST:
-            raise SceneError(
-                f"the file is larger than {LARGEST / 1e6:.0f} MB: simplify the part", path=("file",)
-            )
-        return path.read_bytes()
-    except OSError as error:
-        raise MeshError(f"cannot be opened: {error.strerror or error}") from None
 
 
 _LENGTHS = re.compile(rb"\(([^;]*?LENGTH_UNIT\s*\(\s*\)[^;]*?)\)\s*;", re.S)
@@ -190,71 +187,12 @@ def _foot(table: BodyTable) -> Triple:
     if isinstance(table.origin, tuple):
         return table.origin
     # along the axis of the file, whichever way the shaft runs
-    x, y, z = (table.origin if name == table.axis[-1] else 0.0 for name in "xyz")
+    along = "y" if table.axis == NONE else table.axis[-1]
+    x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
     return (x, y, z)
 
 
-class _Found(NamedTuple):
-    """Content of a file, in the scene.
-
-    ``points`` (3, n) and ``triangles`` (3, t) of its surface and of what lies between groups;
-    ``sides`` (2, t), group on each side, -1 outside; ``own_mesh``, fields of a :class:`BodyFile`.
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    sides: np.ndarray
-    volume: float
-    groups: tuple[PartGroup, ...]
-    told: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
-    own_mesh: dict[str, Any] = {}
-
-
-def _surface(table: BodyTable, path: Path, place: Placing) -> _Found:
-    """Content of the file of a part."""
-    named = tuple(table.materials)
-    try:
-        if table.step is not None:
-            seen = isolated(look, str(path), place, named, seconds=LOOK_SECONDS)
-            groups = _groups(table, seen.volumes, seen.rest)
-            return _Found(seen.points, seen.triangles, seen.sides, seen.volume, groups)
-        found = isolated(mesh_from, str(path), place, named, seconds=LOOK_SECONDS)
-    except (IsolatedError, MemoryError) as error:
-        raise MeshError(
-            f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
-            "large"
-        ) from None
-    mesh = found.mesh
-    counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
-    groups = _groups(table, found.volumes(len(named) + 1), found.rest)
-    own_mesh = {"element": found.element, "counts": counts}
-    points, triangles, sides = found.faces()
-    more = (found.told, found.remarks, own_mesh)
-    return _Found(points, triangles, sides, found.volume, groups, *more)
-
-
-def _groups(table: BodyTable, volumes, rest: tuple[str, ...]) -> tuple[PartGroup, ...]:
-    """Groups with materials of their own, and the rest where there is one."""
-    if not table.materials:
-        return ()
-    groups = [
-        PartGroup(name=name, material=material, volume=float(volume))
-        for (name, material), volume in zip(table.materials.items(), volumes)
-    ]
-    if len(volumes) > len(groups) and volumes[-1] > 0:
-        groups.append(PartGroup(name="", volume=float(volumes[-1]), members=rest))
-    return tuple(groups)
-
-
-def _skin(found: _Found) -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles of the surface alone."""
-    outside = (found.sides < 0).any(axis=0)
-    used, triangles = np.unique(found.triangles[:, outside], return_inverse=True)
-    return found.points[:, used], triangles.reshape(3, -1)
-
-
-def _shared_out(found: _Found, walls) -> tuple[list[Share], list[int]]:
+def _shared_out(found: Found, walls) -> tuple[list[Share], list[int]]:
     """Materials of the frusta, and the first group of each material that they speak of.
 
     Groups of one material are one; walls stay where they are.
@@ -285,9 +223,12 @@ def _sizes(table: BodyTable, points) -> None:
                 f"the {what} of the part about {table.axis} is {1e3 * own:.6g} mm{_slip(ratio)}",
                 path=("size_check", k),
             )
+    about = f" about {table.axis}"
+    if table.axis == NONE:
+        length, about = float(np.ptp(points, axis=1).max()), ""
     if not LEAST_LENGTH <= length <= MOST_LENGTH:
         raise SceneError(
-            f"the part is {length:.4g} m long about {table.axis}, outside 1 mm to 20 m: probably "
+            f"the part is {length:.4g} m long{about}, outside 1 mm to 20 m: probably "
             "drawn in another unit than the file says",
             path=("unit",) if table.unit else (table.key,),
         )
@@ -334,6 +275,8 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
                     f"write that point as origin{', and that axis' * (axis != table.axis)}"
                 )
     words = f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
+    if table.mesh:
+        words += f'; write axis = "{NONE}" for a body that is none'
     own = raw / place.unit
     for digits in range(6 if table.mesh else 0):
         step = 10.0**-digits * 1e3 * place.unit

@@ -3,5 +3,5 @@
 from __future__ import annotations
 
 #: cut out at one place, or repeating themselves around the axis; whole parts;
-#: and blocks, which have no axis
-CUTS, CYCLIC, PARTS, BLOCKS = "cut", "cyclic", "part", "block"
+#: and blocks and other bodies, which have no axis
+CUTS, CYCLIC, PARTS, BODIES = "cut", "cyclic", "part", "body"

@@ -221,6 +221,13 @@ SOLID_OPTIONS = {
     "refinement": _REFINEMENT,
     "attachments": _TIES,
     "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
+    "coarser": Option(
+        "of a list of mesh files, how many come after the one that is solved",
+        "whole",
+        least=0,
+        most=4,
+        why="a list has five",
+    ),
     **FACTORING_OPTIONS,
 }
 

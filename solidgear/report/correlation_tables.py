@@ -176,18 +176,25 @@ def alone(found: Any) -> Table:
 def overlay_chart(overlay: Any, found: Any, title: str, width: float = WIDE) -> Chart:
     """A response, and the root mean square of all, measured and computed."""
     k = overlay.loudest
-    parts = [(overlay.names[k], np.abs(overlay.measured[k]), np.abs(overlay.computed[k]))]
+    every = [np.abs(overlay.measured), np.abs(overlay.computed)]
+    if overlay.band is not None:
+        every += [np.maximum(every[1] - overlay.band, 0.0), every[1] + overlay.band]
+    parts = [(overlay.names[k], *(values[k] for values in every))]
     if len(overlay.names) > 1:
-        both = [
-            np.sqrt(np.mean(np.abs(v) ** 2, axis=0)) for v in (overlay.measured, overlay.computed)
-        ]
+        both = [np.sqrt(np.mean(values**2, axis=0)) for values in every]
         parts.append((f"root mean square of all {len(overlay.names)}", *both))
     panels = [_responses(overlay, found, *part, last=part is parts[-1]) for part in parts]
     return Chart([[panel] for panel in panels], width, title)
 
 
 def _responses(
-    overlay: Any, found: Any, what: str, measured: np.ndarray, computed: np.ndarray, last: bool
+    overlay: Any,
+    found: Any,
+    what: str,
+    measured: np.ndarray,
+    computed: np.ndarray,
+    *band: np.ndarray,
+    last: bool,
 ) -> Panel:
     khz = overlay.hertz / 1e3
     low, high = (float(end(measured[measured > 0])) for end in (np.min, np.max))
@@ -201,6 +208,13 @@ def _responses(
         if not last or what[:4] != "root"
         else None,
     )
+    if band:
+        kept, floor = outline(khz, band[1] - band[0]), 1e-6 * high
+        places = zip(khz[kept].tolist(), *(values[kept].clip(floor).tolist() for values in band))
+        ends = [{"x": x, "y": low, "y2": high} for x, low, high in places]
+        panel.draw(
+            {"type": "area", "opacity": 0.25, "color": BOTH["computed"].colour, "clip": True}, ends
+        )
     for name, values in (("measured", measured), ("computed", computed)):
         kept = outline(khz, values)
         rows = [

@@ -39,8 +39,8 @@ WORDS = {
         "that is the mode's, on the measuring points."
     ),
     "overlay": (
-        "Measured (dark) and computed (green) responses at the same points; dots: resonances that were "
-        "found."
+        "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
+        "resonances that were found."
     ),
     "designs": "The goal in every design that was solved, each with its error bar.",
     "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",

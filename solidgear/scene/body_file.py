@@ -20,7 +20,11 @@ from solidgear.scene.units import Mass, PositiveLength, quantity
 #: units of length of a file, m
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}
 Unit = Literal["mm", "cm", "m", "inch", "in"]
-Axis = Literal["x", "y", "z", "-x", "-y", "-z"]
+#: axes of a shaft, and that of a body that is none
+Axis = Literal["x", "y", "z", "-x", "-y", "-z", "none"]
+NONE = "none"
+#: meshes of one body, coarse to fine
+MOST_MESHES = 5
 #: share of the surface and relative difference of volume to which a part is its segments
 ALL_ROUND, SAME_VOLUME = 1 - 1e-9, 1e-6
 
@@ -36,6 +40,11 @@ def _place(value: Any) -> Any:
     return quantity(value, "length")
 
 
+def _several(value: Any) -> Any:
+    """One file is a list of one."""
+    return [value] if isinstance(value, str) else value
+
+
 Origin = Annotated[float | tuple[float, float, float] | None, BeforeValidator(_place)]
 
 
@@ -43,7 +52,10 @@ class BodyTable(Model):
     """The [body] of a scene file."""
 
     step: str | None = None
-    mesh: str | None = None
+    mesh: Annotated[
+        Annotated[list[str], Field(min_length=1, max_length=MOST_MESHES)] | None,
+        BeforeValidator(_several),
+    ] = None
     block: list[PositiveLength] | None = None
     unit: Unit | None = None
     axis: Axis = "y"
@@ -69,6 +81,13 @@ class BodyTable(Model):
                 raise SceneError("give three edges, along x, y and z", path=("block",))
             for key in sorted(self.model_fields_set - {"block", "mass_check"}):
                 raise SceneError("this key is of a file, and a block has none", path=(key,))
+        if self.axis == NONE and self.step is not None:
+            raise SceneError("a body without an axis is read from a mesh file", path=("axis",))
+        if self.axis == NONE and self.size_check is not None:
+            raise SceneError(
+                "length and diameter are of a shaft; check a body by its mass_check",
+                path=("size_check",),
+            )
         if self.mesh is not None and self.unit is None:
             raise SceneError(
                 f"this key is missing: a mesh file does not say it; one of {', '.join(UNITS)}",
@@ -82,25 +101,26 @@ class BodyTable(Model):
         return next(k for k in ("step", "mesh", "block") if getattr(self, k) is not None)
 
     @property
-    def file(self) -> str:
-        """The file as written."""
-        return self.step if self.step is not None else str(self.mesh)
+    def files(self) -> list[str]:
+        """The files as written, the finest mesh last."""
+        return [self.step] if self.step is not None else self.mesh or []
 
 
-#: what would hold a block or be held by it, and what is told by beams, which a block has not
+#: what would hold a body without an axis or be held by it, and what is told by beams
 _ATTACHED = ("bearing", "port", "mass", "housing", "load", "lubrication", "uncertain")
 
 
 def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a file; of a block, which is free, with the port that every scene has, on the
-    face at y = 0.
+    """The tables of a file; of a body without an axis, which is free, with the port that every scene
+    has, on the face at y = 0.
     """
     body = raw.get("body")
-    if not isinstance(body, Mapping) or "block" not in body:
+    if not isinstance(body, Mapping) or ("block" not in body and body.get("axis") != NONE):
         return raw
     given = [key for key in _ATTACHED if key in raw]
     if given:
-        why = "a block is free, and has modes alone; leave this out"
+        what = "block" if "block" in body else 'body with axis = "none"'
+        why = f"a {what} is free, and has modes alone; leave this out"
         raise SceneError.of(SceneError(why, path=(key,)) for key in given)
     return {**raw, "port": {"at": "start", "attach_to": "s1", "attachment": "section"}}
 
@@ -134,6 +154,14 @@ class PartGroup(Model):
         if self.name:
             return f'"{self.name}"'
         return f"the rest{self.members and f' ({listed(self.members, 6)})' or ''}"
+
+
+class CoarseMesh(Model):
+    """A coarser mesh of a part, in a file of its own."""
+
+    name: str
+    path: str = Field(exclude=True, repr=False)
+    sha256: str
 
 
 class BodyFile(Model):
@@ -176,7 +204,9 @@ class BodyFile(Model):
     remarks : tuple of str
         What is odd about the file.
     edges : tuple of float or None
-        Of a block along x, y and z, m.
+        Along x, y and z, m, of a block, or around a body without an axis.
+    coarser : tuple of CoarseMesh
+        Meshes of the same part, coarse to fine, of which it is the finest.
 
     Raises
     ------
@@ -210,17 +240,18 @@ class BodyFile(Model):
     mixed: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     edges: Triple | None = None
+    coarser: tuple[CoarseMesh, ...] = ()
 
     @property
     def sort(self) -> str:
         """Its sort among features and parts."""
-        return "part" if self.edges is None else "block"
+        return "part" if self.edges is None else "body"
 
     @property
     def what(self) -> str:
         """Its kind in words."""
         if self.edges is not None:
-            return "block"
+            return self.kind if self.kind == "block" else "body"
         return "part of several materials side by side," if self.mixed else "part"
 
     @property

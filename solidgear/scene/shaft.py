@@ -49,8 +49,8 @@ def resolved(scene: Any) -> tuple[Any, ...]:
     return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *whole)
 
 
-def is_block(scene: Any) -> bool:
-    """True for a rectangular block, which has no axis; its segments only tell places."""
+def without_axis(scene: Any) -> bool:
+    """True for a rectangular block or another body that is no shaft; its segments only tell places."""
     body = getattr(scene, "body", None)
     return body is not None and body.edges is not None
 

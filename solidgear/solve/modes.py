@@ -285,6 +285,8 @@ def _rigid(names: Names, raw: list[Raw]):
         name = (
             "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
         )
+        if names.without_axis:
+            name, family = "rigid motion", "mode"
         yield Mode(
             ModeName(name),
             family,

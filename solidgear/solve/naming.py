@@ -13,7 +13,7 @@ are reported.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,7 @@ from scipy.sparse.csgraph import connected_components
 from solidgear.body import Block, Body, Supports, component_rows
 from solidgear.body.sections import signed
 from solidgear.frames import rotation
-from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.circumference import Circumference, Displacements, of_body
 from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
 from solidgear.solve.quarter_turn import alike
 
@@ -171,7 +171,7 @@ class Names:
         # a part that is not round promises no twins, however near its frequencies lie
         self._split = not body.mesh.get("round", True)
         self._planes = self._split and len(body.blocks) > 1
-        self._without_axis = not body.mesh.get("axis", True)
+        self.without_axis = not body.mesh.get("axis", True)
         self._mirrored = any(block.mirror is not None for block in body.blocks)
         self._round = of_body(body)
         self._moving_axially: dict[int, np.ndarray] = {}
@@ -198,7 +198,7 @@ class Names:
         else:
             energy = self._by_block(vectors)
         waves, family = max(energy, key=energy.__getitem__)
-        if self._without_axis:
+        if self.without_axis:
             family = "mode"
         if self._round is not None:
             profile = profile[waves]
@@ -218,15 +218,19 @@ class Names:
         share = at[0] / sum(at)
         return "z" if share > 0.99 else "x" if share < 0.01 else ""
 
-    @staticmethod
     def _around(
-        fit: Circumference, displacements: Callable[[np.ndarray], np.ndarray], vectors
+        self,
+        fit: Circumference,
+        displacements: Displacements,
+        vectors: dict[int, np.ndarray],
     ) -> tuple[dict[tuple[int, str], float], np.ndarray]:
-        profile, share = fit(displacements(vectors[0]))
+        profile, share = fit(displacements(vectors))
         radial, tangential, axial = share[0]
+        # bins lose what turns within them: both are weighed by all of the mass
+        breathes = all(self._radial_share(b, v) > 0.5 for b, v in vectors.items())
         energy = {
             (0, "torsion"): tangential,
-            (0, "axial" if axial >= radial else "breathing"): axial + radial,
+            (0, "breathing" if breathes else "axial"): axial + radial,
             (1, "bending"): share[1].sum(),
         }
         energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
@@ -244,15 +248,19 @@ class Names:
         return energy
 
     def _radial_share(self, b, v) -> float:
-        """Share of the modal mass of a block of n = 0 that moves radially: the mass couples no two
-        directions, so they fall apart by themselves.
+        """Share of the modal mass of a shape of n = 0 that moves across the axis: the mass couples no
+        two directions, so they fall apart by themselves.
         """
         block = self.body.block(b)
         known = self._moving_axially
         if b not in known:
-            count, label = connected_components(block.mass, directed=False)
-            moving = np.unique(label[np.abs(block.rigid[:, 0]) > 0])
-            known[b] = np.isin(label, moving)
+            along = np.zeros(block.size, bool)
+            if 1 in block.components:
+                along = block.rigid[:, block.components.index(1)] != 0
+            if self._round is None:  # unknowns inside elements that no rigid motion moves
+                count, label = connected_components(block.mass, directed=False)
+                along = np.isin(label, np.unique(label[along]))
+            known[b] = along
         radial = np.where(known[b], 0.0, v)
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 

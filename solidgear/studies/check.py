@@ -18,11 +18,11 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
-from solidgear.scene.shaft import is_block, named, resolved
+from solidgear.scene.shaft import named, resolved, without_axis
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing
-from solidgear.studies.round_part import against_the_part, described
+from solidgear.studies.round_part import against_the_part, described, of_files
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -86,11 +86,11 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         it rests on.
     """
     probe = probe or Probe(scene.plain, body, whole=scene)
-    block = is_block(scene)
-    said = [("shaft", _of_the_block(scene) if block else _of_the_shaft(scene))]
+    free = without_axis(scene)
+    said = [("shaft", notice) for notice in (_of_a_body if free else _of_the_shaft)(scene)]
     said += [("mesh", notice) for notice in _of_the_mesh(scene, body)]
     said += [("features", notice) for notice in _beyond_the_segments(scene)]
-    said += [("round_part", notice) for notice in described(scene) if not block]
+    said += [("round_part", notice) for notice in described(scene) if not free]
     for name in _guards(scene):
         said += [(name, notice) for notice in _heard(name, probe)]
     records = [_record(name, notice, notice.models) for name, notice in said]
@@ -242,9 +242,11 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     unfit = [m for m in unfit if LADDER[m].unfit(scene)]
     if not unfit:
         return  # a part from a file may be of revolution all through
-    if is_block(scene):
+    if without_axis(scene):
         yield Notice(
-            "avoid", tuple(unfit), "a block has no axis, and models of shafts do not hold it"
+            "avoid",
+            tuple(unfit),
+            f"{named(features)} has no axis, and models of shafts do not hold it",
         )
         return
     names = named(features)
@@ -286,22 +288,29 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 
 def _guards(scene: Scene) -> tuple[str, ...]:
-    """Names of the guards to be heard: they speak of the plain part of a shaft, and a block has none."""
-    return () if is_block(scene) else tuple(GUARDS)
+    """Names of the guards to be heard: they speak of the plain part of a shaft."""
+    return () if without_axis(scene) else tuple(GUARDS)
 
 
-def _of_the_block(scene: Scene) -> Notice:
-    """Edges and mass."""
-    assert scene.body is not None  # that is a block
-    mass = scene.body.mass(scene.material)
-    text = f"{scene.name}: block of {scene.body.name} along x, y and z, free, mass {mass:.4g} kg"
-    return Notice("fact", (), text)
+def _of_a_body(scene: Scene) -> Iterator[Notice]:
+    """Edges, mass and materials of a body without an axis, and doubts about its files."""
+    body = scene.body
+    assert body is not None and body.edges is not None  # that is without an axis
+    edges = " x ".join(f"{1e3 * edge:.6g}" for edge in body.edges)
+    block = body.kind == "block"
+    yield Notice(
+        "fact",
+        (),
+        f"{scene.name}: {'block' if block else body.name} of {edges} mm along x, y and z, free, mass "
+        f"{body.mass(scene.material):.4g} kg{'; springs, masses and ports are not modelled' * (not block)}",
+    )
+    yield from of_files(scene)
 
 
-def _of_the_shaft(scene: Scene) -> Notice:
+def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
     """Length, mass and inertia."""
     exact = mass_properties(scene.outline)
-    return Notice(
+    yield Notice(
         "fact",
         (),
         f"{scene.name}: length {1e3 * scene.length:.6g} mm, mass {exact.mass:.4g} kg, centre at y = "

@@ -31,7 +31,7 @@ from solidgear.machine.threads import pinned
 from solidgear.report.units import units_named
 from solidgear.report.write import write_all
 from solidgear.scene import Scene
-from solidgear.scene.shaft import is_block
+from solidgear.scene.shaft import without_axis
 from solidgear.scene.train import Train
 from solidgear.studies.budget import opened
 from solidgear.studies.check import notices
@@ -174,9 +174,10 @@ def compare(
             "compare takes scenes of one shaft; trains are compared by the command: "
             "solidgear compare A.toml B.toml"
         )
-    if is_block(scene) or is_block(models):
+    if without_axis(scene) or without_axis(models):
         raise SolidgearError(
-            "compare: a block has one model, the 3D solid; solidgear modes tells its frequencies and bars"
+            "compare: a body without an axis has one model, the 3D solid; solidgear modes tells its "
+            "frequencies and bars"
         )
     if isinstance(models, Scene):
         if settings:

@@ -54,15 +54,23 @@ def described(scene: Scene) -> Iterator[Notice]:
         f"{100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
         f"is of revolution, and the volume of the segment{'s' * several} is {same}",
     )
+    yield from of_files(scene)
+
+
+def of_files(scene: Scene) -> Iterator[Notice]:
+    """Materials of a part, doubts about its files, and that a single mesh is not judged."""
+    body = scene.body
+    assert body is not None  # asked of parts
     yield from _of_materials(scene)
     for sentence in body.doubts:
         yield Notice("caution", (), sentence)
-    if body.one_mesh:
+    if body.one_mesh and not body.coarser:
+        finer = "" if body.edges else "; a STEP file would be meshed coarse to fine"
         yield Notice(
             "caution",
             tuple(r.name for r in LADDER if PARTS in r.holds),
             f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
-            "judged; a STEP file would be meshed coarse to fine",
+            f'judged{finer}; mesh = ["coarser", "finer"] of the [body] judges two',
         )
 
 

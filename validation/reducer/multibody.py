@@ -22,7 +22,7 @@ from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.frames import rotation
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.file import scene_of
-from solidgear.system.gear_mesh import line_of_action, mean_radius, mesh_point, cylindrical_mesh
+from solidgear.system.gear_mesh import cylindrical_mesh, line_of_action, mean_radius, mesh_point
 from solidgear.system.law import Gap
 from validation.reducer.design import FACE, HUB, PRESSURE, Design
 from validation.reducer.stepping import Bodies

@@ -48,6 +48,12 @@ class HarmonicMesh:
         """The outline of the meridian turned around the axis."""
         return surface(self, moved)
 
+    def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
+        """(3 k, n) displacements of some points of the surface by the unknowns of a block."""
+        from solidgear.models.harmonic.drawing import rows
+
+        return rows(self, name, chosen)
+
     def volume(self) -> None:
         """None: the mesh is that of a meridian."""
         return None

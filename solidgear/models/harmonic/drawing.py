@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy.sparse as sp
 
-from solidgear.body.revolution import Rings, revolve, wave
+from solidgear.body.revolution import Rings, Wave, revolve, ring_of, wave
 from solidgear.body.surface import PIECES, Surface
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import reference
@@ -19,8 +20,28 @@ if TYPE_CHECKING:
 
 
 def surface(geometry: HarmonicMesh, moved: Mapping[str, np.ndarray]) -> Surface:
-    """The outline of the meridian mesh; inside an edge the basis itself is evaluated, whatever its
-    order.
+    """The outline of the meridian mesh turned around the axis."""
+    rings, on_rings = _rings(geometry)
+    axis = _on_axis(geometry)
+    fields = {name: _with_axis(vector, name, axis) for name, vector in moved.items()}
+    return revolve(rings, [_wave(name, rings, (on_rings @ u).T) for name, u in fields.items()])
+
+
+def rows(geometry: HarmonicMesh, name: str, chosen: np.ndarray) -> np.ndarray:
+    """(3 k, n) displacements of some points of the surface by the unknowns of a block."""
+    rings, on_rings = _rings(geometry)
+    kept = _kept(name, _on_axis(geometry))
+    moved = []
+    for unit in np.eye(kept.shape[1]):
+        alike = np.broadcast_to(unit[:, None], (len(unit), len(rings.r)))
+        moved.append(revolve(rings, [_wave(name, rings, alike)]).displacement[chosen])
+    own = on_rings[ring_of(rings)[chosen]].toarray()
+    return np.einsum("ckx,kj->kxjc", moved, own).reshape(3 * len(chosen), -1)[:, kept.ravel()]
+
+
+def _rings(geometry: HarmonicMesh) -> tuple[Rings, sp.csr_matrix]:
+    """Circles of the outline, and a scalar field on them by its unknowns; inside an edge the basis
+    itself is evaluated, whatever its order.
     """
     points, cells, dofs = geometry.meridian.points, geometry.meridian.cells, geometry.dofs
     pieces = 1 if dofs.shape[0] == 4 else PIECES
@@ -49,32 +70,34 @@ def surface(geometry: HarmonicMesh, moved: Mapping[str, np.ndarray]) -> Surface:
             "bq,cbe->ceq", values[k], place[:, dofs[:, cell[here]]]
         )
 
-    def on_rings(field):
-        out = np.zeros((len(r), field.shape[1]))
-        for k in range(4):
-            here = side == k
-            out[ring[here]] = np.einsum("bq,bec->eqc", values[k], field[dofs[:, cell[here]]])
-        return out.T
+    found = []
+    for k in range(4):
+        own = dofs[:, cell[side == k]]
+        at = np.arange(own.shape[1] * len(s)).reshape(1, -1, len(s))
+        entry = np.broadcast_arrays(values[k][:, None], at, own[:, :, None])
+        size = (at.size, int(dofs.max()) + 1)
+        found.append(sp.csr_matrix((entry[0].ravel(), (entry[1].ravel(), entry[2].ravel())), size))
+    order = np.concatenate([ring[side == k].ravel() for k in range(4)])
+    on_rings = sp.vstack(found).tocsr()[np.unique(order, return_index=True)[1]]
+    drawn = np.column_stack([ring[:, :-1].ravel(), ring[:, 1:].ravel()])
+    return Rings(r, y, drawn, np.arange(len(vertex))), on_rings
 
-    rings = Rings(
-        r, y, np.column_stack([ring[:, :-1].ravel(), ring[:, 1:].ravel()]), np.arange(len(vertex))
-    )
-    axis = _on_axis(geometry)
-    waves = []
-    for name, vector in moved.items():
-        if name == "torsion":
-            waves.append(wave(0, 0.0, 0.0, 0.0, 0.0 * r, r * on_rings(vector[:, None])[0]))
-            continue
-        n = {"axial": 0, "bending_z": 1, "bending_x": 1}.get(name)
-        n = int(name.rsplit("_", 1)[1]) if n is None else n
-        amplitude = on_rings(_with_axis(vector, n, axis))
-        if n == 0:
-            waves.append(wave(0, 0.0, amplitude[0], 0.0, amplitude[1]))
-        else:
-            p, q, w = amplitude
-            start = np.pi / (2 * n) if name.startswith("sine_") else 0.0
-            waves.append(wave(n, np.pi / 2 if name == "bending_x" else start, p + q, p - q, w))
-    return revolve(rings, waves)
+
+def _waves(name: str) -> int:
+    known = {"axial": 0, "torsion": 0, "bending_z": 1, "bending_x": 1}
+    return known[name] if name in known else int(name.rsplit("_", 1)[1])
+
+
+def _wave(name: str, rings: Rings, amplitude: np.ndarray) -> Wave:
+    """Motion of rings by the amplitudes (c, rings) of a block."""
+    n = _waves(name)
+    if name == "torsion":
+        return wave(0, 0.0, 0.0, 0.0, 0.0 * rings.r, rings.r * amplitude[0])
+    if n == 0:
+        return wave(0, 0.0, amplitude[0], 0.0, amplitude[1])
+    p, q, w = amplitude
+    start = np.pi / (2 * n) if name.startswith("sine_") else 0.0
+    return wave(n, np.pi / 2 if name == "bending_x" else start, p + q, p - q, w)
 
 
 def _on_axis(geometry: HarmonicMesh) -> np.ndarray:
@@ -93,8 +116,11 @@ def _on_axis(geometry: HarmonicMesh) -> np.ndarray:
     return out
 
 
-def _with_axis(vector, n, axis) -> np.ndarray:
-    """(n_scalar, c) unknowns with the zeros on the axis put back."""
+def _kept(name: str, axis: np.ndarray) -> np.ndarray:
+    """(n_scalar, c) unknowns of a block, without those that are zero on the axis."""
+    if name == "torsion":
+        return np.ones((len(axis), 1), bool)
+    n = _waves(name)
     keep = np.ones((len(axis), 2 if n == 0 else 3), bool)
     if n == 0:
         keep[axis, 0] = False
@@ -102,9 +128,16 @@ def _with_axis(vector, n, axis) -> np.ndarray:
         keep[axis, 1:] = False
     else:
         keep[axis] = False
+    return keep
+
+
+def _with_axis(vector: np.ndarray, name: str, axis: np.ndarray) -> np.ndarray:
+    """(n_scalar, c) unknowns with the zeros on the axis put back."""
+    keep = _kept(name, axis)
     if keep.sum() != len(vector):
         raise SolidgearError(
-            f"a shape of harmonic n = {n} has {len(vector)} values where its mesh has {int(keep.sum())} unknowns"
+            f"a shape of harmonic n = {_waves(name)} has {len(vector)} values where its mesh has "
+            f"{int(keep.sum())} unknowns"
         )
     out = np.zeros(keep.shape)
     out[keep] = vector

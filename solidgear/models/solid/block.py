@@ -179,5 +179,5 @@ def free_block(
         else:
             rows.append(_mean(mesh, facets, station.y, n, within=within))
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
-    ports = sp.vstack(rows).tocsr()
+    ports = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, 3 * n))
     return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties

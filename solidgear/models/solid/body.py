@@ -17,7 +17,7 @@ from solidgear.kernel.room import assemblable
 from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.quality import check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
-from solidgear.models.kinds import BLOCKS, CYCLIC, PARTS
+from solidgear.models.kinds import BODIES, CYCLIC, PARTS
 from solidgear.models.options import SOLID_OPTIONS, checked
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.featured import featured_body, meshed
@@ -28,7 +28,7 @@ from solidgear.models.solid.rectangular import block_body
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.closed_form import volume_of
-from solidgear.scene.shaft import named, resolved
+from solidgear.scene.shaft import named, resolved, without_axis
 
 
 def solid(
@@ -46,6 +46,7 @@ def solid(
     refinement: float = 1.0,
     attachments: tuple[str, ...] | None = None,
     half: bool = True,
+    coarser: int = 0,
 ) -> Body:
     """Free 3D solid of a scene.
 
@@ -77,6 +78,8 @@ def solid(
     half : bool
         For a scene with features that share a mirror plane: solve two half models. A part from a
         file is solved whole.
+    coarser : int
+        Of a part with several mesh files, how many come after the one that is solved.
 
     Returns
     -------
@@ -110,7 +113,7 @@ def solid(
         )
     wanted = [*attached_stations(scene.stations, attachments)]
     features = resolved(scene)
-    if any(f.sort == BLOCKS for f in features):
+    if without_axis(scene) and scene.body.kind == "block":
         return block_body(scene, wanted, element=element, size=size, refinement=refinement)
     if features:
         if element != "tet10":
@@ -119,8 +122,8 @@ def solid(
             )
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement
-        if all(f.sort == PARTS for f in features):
-            return part_body(scene, wanted, around=around, **sizes)
+        if all(f.sort in (PARTS, BODIES) for f in features):
+            return part_body(scene, wanted, around=around, coarser=coarser, **sizes)
         if all(f.sort == CYCLIC for f in features):
             from solidgear.models.sector.body import whole  # slow to import, and seldom needed
 

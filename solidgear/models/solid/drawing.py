@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy.sparse as sp
 
 from solidgear.body.surface import PIECES, Surface
 from solidgear.kernel.assembly import reference
@@ -55,6 +56,17 @@ def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray)
     return np.concatenate(
         [np.einsum("bq,bef->eqf", value, field[dofs]).reshape(-1, 3) for value, dofs in parts]
     )
+
+
+def on_nodes(geometry: SolidMesh) -> sp.csr_matrix:
+    """A scalar field at all points of the boundary by its values at the nodes."""
+    found, size = [], geometry.nodes.shape[1]
+    for value, dofs in geometry.outline.parts:
+        at = np.arange(dofs.shape[1] * value.shape[1]).reshape(1, -1, value.shape[1])
+        entry = np.broadcast_arrays(value[:, None], at, dofs[:, :, None])
+        places = entry[1].ravel(), entry[2].ravel()
+        found.append(sp.csr_matrix((entry[0].ravel(), places), (at.size, size)))
+    return sp.vstack(found).tocsr()[geometry.outline.first]
 
 
 def outline(geometry: SolidMesh) -> Outline:

@@ -103,21 +103,43 @@ class HalfDrawing:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Both halves, the second as a mirror image of the first."""
-        kinds = dict(zip((name for name, _ in PARTS[self.axis]), (1.0, -1.0)))
-        zero = np.zeros(3 * self.mesh.nodes.shape[1])
-        first = sum((vector for name, vector in moved.items() if name in kinds), zero)
-        second = sum((kinds[name] * v for name, v in moved.items() if name in kinds), zero)
+        first, second = self._halves(moved)
         here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
-        flip = np.ones(3)
-        flip[self.axis] = -1.0
         count = len(here.points)
         return Surface(
-            np.vstack([here.points, image.points * flip]),
-            np.vstack([here.displacement, image.displacement * flip]),
+            np.vstack([here.points, image.points * self._flip]),
+            np.vstack([here.displacement, image.displacement * self._flip]),
             np.vstack([here.faces, count + image.faces[:, ::-1]]),
             np.vstack([here.triangles, count + image.triangles[:, ::-1]]),
             np.vstack([here.lines, count + image.lines]),
         )
+
+    def _halves(self, moved: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Unknowns of the half, and of the other one before it is turned over."""
+        kinds = dict(zip((name for name, _ in PARTS[self.axis]), (1.0, -1.0)))
+        zero = np.zeros(3 * self.mesh.nodes.shape[1])
+        first = sum((vector for name, vector in moved.items() if name in kinds), zero)
+        second = sum((kinds[name] * v for name, v in moved.items() if name in kinds), zero)
+        return first, second
+
+    @property
+    def _flip(self) -> np.ndarray:
+        return np.where(np.arange(3) == self.axis, -1.0, 1.0)
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """(3, 2 n) nodes of both halves, m; those in the plane are there twice."""
+        return np.hstack([self.mesh.nodes, self._flip[:, None] * self.mesh.nodes])
+
+    @property
+    def dofs(self) -> np.ndarray:
+        """(nb, 2 ne) nodes of the elements of both halves."""
+        return np.hstack([self.mesh.dofs, self.mesh.nodes.shape[1] + self.mesh.dofs])
+
+    def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(2 n, 3) displacements of the nodes."""
+        first, second = (half.reshape(-1, 3) for half in self._halves(moved))
+        return np.vstack([first, second * self._flip])
 
     def volume(self) -> Volume | None:
         """No single mesh of the whole part."""

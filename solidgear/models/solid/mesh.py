@@ -49,9 +49,20 @@ class SolidMesh:
     nodes: np.ndarray
     segment: np.ndarray
 
+    def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
+        """(n, 3) displacements of the nodes."""
+        return moved["full"].reshape(-1, 3)
+
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The boundary of the mesh."""
         return solid_surface(self, moved.get("full"))
+
+    def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
+        """(3 k, n) displacements of some points of the surface by those of the nodes."""
+        from solidgear.models.solid.drawing import on_nodes
+
+        own = on_nodes(self)[chosen].toarray()
+        return np.einsum("kj,xy->kxjy", own, np.eye(3)).reshape(3 * len(chosen), -1)
 
     def volume(self) -> Volume:
         """The mesh itself."""

@@ -71,7 +71,8 @@ def solid_body(
     >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
     True
     """
-    wanted = wanted or [(s, s.attachment) for s in shaft.stations]
+    if wanted is None:
+        wanted = [(s, s.attachment) for s in shaft.stations]
     quality = check_mesh(mesh)
     if owner is None:
         y = mesh.p[1][mesh.t].mean(axis=0)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,7 @@ from solidgear.kernel.room import assemblable
 from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
-from solidgear.meshing.mesh_file import mesh_from
+from solidgear.meshing.part_file import file_mesh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.meshing.revolved import graded_corners
@@ -36,46 +38,47 @@ def part_body(
     graded_size: float | None,
     refinement: float,
     around: int,
+    coarser: int,
 ) -> Body:
     """Free body, in one block, of the part of a scene with a ``body``; sizes as for
-    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is.
+    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is, or one of
+    those coarser than it.
 
     SolidgearError where the file has changed since the scene was read, or no face lies on a seat;
     MeshError where it cannot be meshed.
     """
     file = scene.body
-    try:
-        same = hashlib.sha256(Path(file.path).read_bytes()).hexdigest() == file.sha256
-    except OSError as error:
-        raise SolidgearError(f"{file.name} cannot be opened: {error.strerror}") from None
-    if not same:
-        raise SolidgearError(f"{file.name} has changed since the scene was read: read it again")
+    source = _read(file, coarser)
     place = Placing(file.unit, file.turn, file.foot)
-    facts = {"file": file.name, "refinement": refinement}
+    facts = {"file": source.name, "refinement": refinement, "coarser": coarser}
     named = tuple(g.name for g in file.groups if g.name)
     materials = file.materials(scene.material) if file.groups else None
     if file.kind == "mesh":
-        found = _apart(file, mesh_from, file.path, place, named)
+        found = _apart(source, file_mesh, source.path, source.sha256, place, named)
         # flat elements of first order are taken as the shape only, since they lock in bending: on a
         # rod of 16 faces around they miss the deflection by -7.7 %, those of second order with straight
         # sides by +2.3 %, which is what the flat faces take from the section
         element = SOLVED_AS.get(found.element, found.element)
         if element != found.element:
             facts["file_element"] = found.element
-        return solid_body(
+        free = file.edges is not None
+        body = solid_body(
             found.mesh,
             scene,
             element=element,
-            wanted=wanted,
+            wanted=() if free else wanted,
             clipped=True,
-            facts=facts,
+            facts=facts | {"axis": not free},
             owner=found.owner if materials else None,
             materials=materials,
         )
+        return replace(body, scale=_rough_scale(file, scene.material)) if free else body
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    mesh, owner = _apart(file, step.mesh, file.path, place, plan, named)
+    mesh, owner = _apart(
+        file, isolated, step.mesh, file.path, place, plan, named, seconds=MESH_SECONDS
+    )
     # four times what the arcs lose by themselves
     check_mesh(mesh, volume=file.volume, rtol=max(2e-3, 15.0 / plan["around"] ** 4 * 4))
     return solid_body(
@@ -90,10 +93,36 @@ def part_body(
     )
 
 
-def _apart(file, function, *arguments) -> Any:
+def _read(file: Any, coarser: int) -> Any:
+    """The file of a part, or of one of its coarser meshes, as long as it is what the scene has read."""
+    if coarser > len(file.coarser):
+        raise SolidgearError(
+            f"solid: coarser = {coarser}, and the scene lists {len(file.coarser)} meshes coarser than "
+            f"{file.name}"
+        )
+    source = (*file.coarser, file)[-1 - coarser]
+    try:
+        same = hashlib.sha256(Path(source.path).read_bytes()).hexdigest() == source.sha256
+    except OSError as error:
+        raise SolidgearError(f"{source.name} cannot be opened: {error.strerror}") from None
+    if not same:
+        raise SolidgearError(f"{source.name} has changed since the scene was read: read it again")
+    return source
+
+
+def _rough_scale(file: Any, material: Any) -> float:
+    """Lowest elastic eigenvalue, rad^2/s^2, of a rod as long as a body and of its volume, or of half
+    a wave of shear along it.
+    """
+    length = max(file.edges)
+    wave = material.E / material.density * (4.73 / length) ** 4 * file.volume / length
+    return min(wave / (4 * math.pi), (math.pi / length) ** 2 * material.E / material.density / 3)
+
+
+def _apart(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
     """Mesh of a file, made in a process of its own."""
     try:
-        return isolated(function, *arguments, seconds=MESH_SECONDS)
+        return function(*arguments, **limits)
     except IsolatedError as error:
         raise MeshError(f"{file.name} cannot be meshed: the mesher {error}") from None
     except MeshError as error:

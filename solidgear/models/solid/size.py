@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import without
 from solidgear.meshing.hexahedra import straight_hexahedra
-from solidgear.models.kinds import BLOCKS, CUTS, CYCLIC, PARTS
+from solidgear.models.kinds import BODIES, CUTS, CYCLIC
 from solidgear.models.size import Size, coupled, of_mesh
 from solidgear.models.solid.body import _tets
 from solidgear.models.solid.featured import meshed
@@ -31,6 +31,7 @@ def solid_size(
     refinement: float,
     around: int,
     half: bool,
+    coarser: int,
     attachments: tuple[str, ...] | None,
     **grading: Any,
 ) -> Size:
@@ -43,9 +44,10 @@ def solid_size(
     wanted = [*attached_stations(scene.stations, attachments)]
     sorts = {f.sort for f in resolved(scene)}
     sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    if PARTS in sorts and scene.body.counts is not None:
-        return _of_file(scene.body)
-    if BLOCKS in sorts:
+    file = getattr(scene, "body", None)
+    if file is not None and file.counts is not None:
+        return _of_file(file)
+    if BODIES in sorts:
         mesh = block_mesh(scene, wanted, element, size, refinement)
         return of_mesh(mesh, basis_of(element))
     if sorts == {CYCLIC}:

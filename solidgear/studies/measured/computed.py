@@ -9,13 +9,14 @@ from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.settle import Settled, bars_of_modes, nested_bars, settle
+from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
+from solidgear.quantity import COMPLIANCE
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
-from solidgear.scene.shaft import is_block
+from solidgear.scene.shaft import without_axis
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.sweep.bench import surface
@@ -47,6 +48,8 @@ class Computed:
         Of its builder.
     limit : float
         Hz, up to which there are all modes.
+    static : float or None
+        Largest bar of compliances at the port; None where nothing holds the scene, or tells it.
     """
 
     scene: Scene
@@ -57,6 +60,7 @@ class Computed:
     rung: str
     options: dict[str, Any]
     limit: float
+    static: float | None = None
 
     @property
     def mesh(self) -> str:
@@ -95,7 +99,7 @@ def computed_up_to(
     """
     limit = BEYOND * highest
     settled = None
-    if before is None or not (LADDER[before.rung].bounded or is_block(scene)):
+    if before is None or not (LADDER[before.rung].bounded or without_axis(scene)):
         settled = settle(scene, tolerance, progress=progress)
         rung, options, body = settled.rung, dict(settled.options), settled.body
     else:
@@ -111,7 +115,11 @@ def computed_up_to(
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
         listed, bars = _barred(scene, body, limit, settled)
-    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit)
+    told = {q: bar for q, bar in settled.bars.items() if q.kind == COMPLIANCE} if settled else {}
+    static = max(told.values(), default=None) if settled else before.static if before else None
+    return Computed(
+        scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit, static
+    )
 
 
 @pinned
@@ -130,9 +138,20 @@ def computed_like(before: Computed, scene: Scene) -> Computed:
 
 
 @pinned
-def motions_up_to(computed: Computed, limit: float) -> list[Mode]:
-    """All modes up to a frequency, Hz, with the rigid motions that nothing holds."""
-    return list(_modes(computed.scene, computed.body, limit, 2 * len(computed.modes)).modes)
+def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
+    """All modes up to a frequency, Hz, with the rigid motions that nothing holds, and their bars: of
+    the highest of a family the largest of all, and infinite where nothing tells one.
+    """
+    scene, body = computed.scene, computed.body
+    found = _modes(scene, body, limit, 2 * len(computed.modes))
+    known = {str(mode.name): bar for mode, bar in zip(computed.modes, computed.bars)}
+    bars = known | _bars(scene, body, found, None)
+    usual = max((bar for bar in bars.values() if math.isfinite(bar)), default=math.inf)
+    told = [
+        usual if math.isinf(bars.get(str(m.name), math.inf)) else bars[str(m.name)]
+        for m in found.modes
+    ]
+    return [(m, bar if m.frequency_hz > 0 else 0.0) for m, bar in zip(found.modes, told)]
 
 
 def _barred(
@@ -140,14 +159,18 @@ def _barred(
 ) -> tuple[list[Mode], list[float]]:
     """Modes of a body and their bars."""
     found = _modes(scene, body, limit)
-    if LADDER[body.fidelity].bounded:
-        told = mode_bars(scene, body, as_supports(scene), found)
-    elif is_block(scene):
-        told = nested_bars(scene, body, found)
-    else:
-        told = bars_of_modes(scene, body, found, settled)
+    told = _bars(scene, body, found, settled)
     listed = _elastic(found)
     return listed, [told.get(str(mode.name), math.inf) for mode in listed]
+
+
+def _bars(scene: Scene, body: Body, found: ModeSet, settled: Settled | None) -> dict[str, float]:
+    """Relative bars by the names of modes."""
+    if LADDER[body.fidelity].bounded:
+        return mode_bars(scene, body, as_supports(scene), found)
+    if without_axis(scene):
+        return stepped_bars(scene, body, found)
+    return bars_of_modes(scene, body, found, settled)
 
 
 def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:

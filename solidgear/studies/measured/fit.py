@@ -60,9 +60,15 @@ class Fit:
         self.middle = np.array([one.middle for one in varied]) - x
         unknowns = int(np.count_nonzero(self.known == 0))
         if len(self.pairs) < max(unknowns, 1):
+            bare = not np.isfinite(computed.bars).any()
             raise SolidgearError(
                 f"identify: resonances with a sure mode: {len(self.pairs)}, fewer than the {unknowns} "
-                "entries that are to be found; vary fewer, or measure more"
+                "entries that are to be found; "
+                + (
+                    "nothing tells how good the one mesh is: list a coarser one before it"
+                    if bare
+                    else "vary fewer, or measure more"
+                )
             )
         modes = [measured.modes[i] for i, _ in self.pairs]
         at = [j for _, j in self.pairs]

@@ -83,7 +83,7 @@ def _diameters(body: Body, system: System, part: str, shapes, still: np.ndarray)
         return out
     fit, displacements = fitted
     for k in np.flatnonzero(still):
-        _, share = fit(displacements(system.expand(part, shapes[:, k])[0]))
+        _, share = fit(displacements(system.expand(part, shapes[:, k])))
         out[k] = max(2, int(share.sum(axis=1).argmax()))
     return out
 

@@ -1,0 +1,33 @@
+"""Names of modes of 3D meshes by what their shapes do around the axis, as the harmonic solid has them
+by construction.
+"""
+
+import pytest
+
+import solidgear as sg
+
+STOUT = sg.Scene.from_parts([sg.Segment.cylinder("body", length=0.0134, diameter=0.019)])
+#: lowest shapes of the harmonic solid: 23 modes, of n = 0 to 4, axial, breathing and torsion among them
+SHAPES = 41
+
+
+def elastic(scene, shapes, model, **options):
+    found = sg.modes(sg.build(scene, model, **options), scene, n=shapes).modes
+    return {str(m.name): m.frequency_hz for m in found if m.frequency_hz > 0}
+
+
+@pytest.mark.parametrize("options", [{"element": "tet10", "refinement": 0.6}, {}], ids=str)
+def test_meshes_name_the_modes_of_a_stout_cylinder_as_the_harmonic_solid_does(options):
+    exact = elastic(STOUT, SHAPES, "harmonic", order=5)
+    assert {"ovalising n=4 1", "breathing 2", "axial 3"} <= exact.keys()
+    meshed = elastic(STOUT, SHAPES + 4, "solid", **options)  # whose order may be another
+    # a name given to another mode puts it off by 4 % and more here, these meshes by 2.3 % at most
+    assert {name: meshed.get(name) for name in exact} == pytest.approx(exact, rel=0.03)
+
+
+def test_no_mode_of_a_keyed_shaft_bends_whose_sections_stand_still():
+    scene = sg.load("geometry/pinion_keyed.toml")
+    found = sg.modes(sg.build(scene, "solid", refinement=0.4), scene, n=22).modes
+    still = [mode for mode in found if mode.captured < 0.2]
+    # the harmonic solid of the plain shaft has two pairs of n = 2 below 21.5 kHz
+    assert [mode.family for mode in still] == 4 * ["ovalising n=2"]
