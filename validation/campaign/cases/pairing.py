@@ -142,7 +142,8 @@ def _solved(text: str, springs: Sequence[float]) -> Computed:
     scene = scene_of(tomllib.loads(text.format(*springs)), "shaft.toml")
     body = sg.build(scene, "harmonic", order=3)
     modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
-    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {})
+    limit = modes[-1].frequency_hz
+    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {}, limit)
 
 
 def _shapes(rng: np.random.Generator, true: Computed, at: np.ndarray, noise: float) -> Shapes:
