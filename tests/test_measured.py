@@ -337,12 +337,12 @@ def test_modes_may_have_changed_places_where_entries_can_move_them_so(rod):
     springs = varied_of(keys, parse(str(rod)))
     # each of two entries moves one mode: bending 2 and 3
     rows = np.array([[0.0, 0.0], [0.4, 0.0], [0.0, 0.4]] + [[0.0, 0.0]] * 9)
-    exchanged = Fit(measured, springs, x, computed, rows[: len(computed.modes)], 0.9).exchanges()
+    exchanged = Fit(measured, springs, x, computed, rows[: len(computed.modes)], 0.9).exchanges(6.0)
     gap = math.log(hertz[2] / hertz[1])
     assert len(exchanged) == 1 and exchanged[0] == pytest.approx([gap / 0.4, -gap / 0.4])
     # a modulus moves all alike
     rows = np.full((len(computed.modes), 1), 0.5)
-    assert not Fit(measured, springs[:1], x[:1], computed, rows, 0.9).exchanges()
+    assert not Fit(measured, springs[:1], x[:1], computed, rows, 0.9).exchanges(6.0)
 
 
 @pytest.mark.long

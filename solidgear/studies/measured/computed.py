@@ -23,8 +23,8 @@ from solidgear.studies.sweep.bench import surface
 Progress = Callable[[str], None]
 #: of the highest measured frequency: modes above it may be what was measured
 BEYOND = 1.1
-#: shapes that are asked for first, and beside those of a scene like it
-FEW, MORE = 60, 6
+#: shapes that are asked for first, and beside those that are thought to be there
+FEW, MORE = 24, 6
 #: highest order of elements that is tried, and steps between
 HIGHEST, STEP = 11, 2
 
@@ -96,7 +96,7 @@ def computed_up_to(
     limit = BEYOND * highest
     settled = None
     if before is None or not (LADDER[before.rung].bounded or is_block(scene)):
-        settled = settle(scene, tolerance, progress=progress)
+        settled = settle(scene, tolerance, "modes", progress=progress)
         rung, options, body = settled.rung, dict(settled.options), settled.body
     else:
         rung, options = before.rung, dict(before.options)
@@ -154,9 +154,10 @@ def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:
     """All modes up to a frequency: as many shapes are asked for as it takes to pass it."""
     while True:
         found = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
-        if count >= MOST_MODES or sum(m.multiplicity for m in _elastic(found)) < count:
+        listed = _elastic(found)
+        if count >= MOST_MODES or sum(m.multiplicity for m in listed) < count:
             return found
-        count *= 2
+        count = math.ceil(count * limit / listed[-1].frequency_hz) + MORE
 
 
 def _elastic(found: ModeSet) -> list[Mode]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
+from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.solve.modes import Mode
 from solidgear.studies.change import BarredMode
@@ -195,6 +196,7 @@ class Correlation(Displayed):
         }
 
 
+@pinned
 def correlate(
     scene: Scene,
     measured: Measured,
