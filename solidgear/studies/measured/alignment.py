@@ -251,7 +251,7 @@ def _steps(
     # a peak that is nothing is anywhere in the range
     logs = np.concatenate([own, its])
     alone = math.log(SPURIOUS / max(float(np.ptp(logs)), scatter))
-    pair = np.array([mode.multiplicity == 2 for mode in computed])
+    pair = np.array([mode.multiplicity == 2 for mode in computed], bool)
     single = np.array([one.multiplicity != 2 for one in measured])[:, None]
     split = np.where(pair & single[:-1] & single[1:], math.log(SPLIT), -np.inf)
     # the peak is amid both, which differ by less than they can be told apart
