@@ -5,8 +5,8 @@ Both lists ascend. They are laid beside each other by a hidden Markov model: a s
 each (the same mode), two measured and one computed (a pair that was measured split), one measured
 and two computed (two modes too near each other to be told apart), two of each crosswise, or one of
 either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
-by a common shift, such as that of a modulus which is not known well, and a scatter; both are found
-with the pairing (expectation maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77,
+by a common shift, such as that of a modulus which is not known well, and a scatter beside what is told
+of each; both are found with the pairing (expectation maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77,
 257, eqs. 19 to 27) give the probability of every pair, which is what is told.
 """
 
@@ -95,14 +95,16 @@ class Seen:
 
         Of a mode, 1 - MAC is the noise outside its span, ``s^2 chi^2(n - d) / n``, and what is mixed
         into it of others of its family by the changes that scatter frequencies, to first order
-        ``scatter / sinh(ln f_j / f_k)`` of each; the sum has one chi-square of the same mean and
+        ``s_jk / sinh(ln f_j / f_k)`` of each, with the geometric mean of both scatters as one spring
+        makes it; the sum has one chi-square of the same mean and
         variance (Satterthwaite). Of a shape that is none 1 - MAC has a beta distribution.
         """
         n, free = self.components, self.components - self.spans
         logs = np.array([one.log_frequency for one in modes])
         family = np.array([one.family for one in modes])
         apart = np.sinh(np.abs(np.subtract.outer(logs, logs)))
-        mixed = scatter / np.maximum(apart, 1e-12)
+        own = np.array([math.sqrt(math.hypot(one.width, scatter)) for one in modes])
+        mixed = np.outer(own, own) / np.maximum(apart, 1e-12)
         # of two alone: square of the sine of the angle by which they turn
         mixed = (1 - 1 / np.sqrt(1 + 4 * mixed**2)) / 2
         mixed[(family[:, None] != family) | np.eye(len(modes), dtype=bool)] = 0.0
@@ -173,15 +175,20 @@ def _settled(
     apart = np.subtract.outer(
         [one.log_frequency for one in measured], [one.log_frequency for one in computed]
     )
+    told = np.hypot.outer([one.width for one in measured], [one.width for one in computed]) ** 2
     lattice = _Lattice(measured, computed, shift, SCATTER, seen)
     for _ in range(ROUNDS):
         pairs = lattice.alignment().pairs
         weight = float(pairs.sum())
         if weight < 1e-6:
             break
-        shift = float((pairs * apart).sum() / weight)
+        heavy = pairs / (told + lattice.scatter**2)
+        shift = float((heavy * apart).sum() / heavy.sum())
+        # of what is off, the part that what is told of each does not explain
+        own = lattice.scatter**2 / (told + lattice.scatter**2)
+        part = (own * (apart - shift)) ** 2 + own * told
         # drawn towards what is usual by a tenth of a pair: a scatter of none has no likelihood
-        square = float((pairs * (apart - shift) ** 2).sum()) + SCATTER**2 / 10
+        square = float((pairs * part).sum()) + SCATTER**2 / 10
         scatter = max(math.sqrt(square / (weight + 0.1)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
         lattice = _Lattice(measured, computed, shift, scatter, seen)

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.settle import Settled, bars_of_modes, nested_bars, settle
@@ -16,6 +18,7 @@ from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.shaft import is_block
+from solidgear.solve.adjoint import of_mode
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.sweep.bench import surface
@@ -63,6 +66,21 @@ class Computed:
         """Model and mesh in words."""
         order = self.options.get("order")
         return f"{self.rung}, order {order}" if order else self.rung
+
+    def widths(self, springs: float) -> np.ndarray:
+        """(modes,) standard deviations of logarithms of frequencies that those of the stiffnesses of
+        all bearings make, each on its own: half the share of a mode's energy (Rayleigh).
+        """
+        supports = as_supports(self.scene)
+        count, there = len(supports.ports), supports.rows(self.body)
+        own = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
+        own, out = own[range(count), range(count)], []
+        for mode in self.modes:
+            states = [state for state, _ in of_mode(self.body, supports, mode).pairs]
+            held = np.array([state.motions[there].reshape(count, 6) for state in states])
+            energy = np.einsum("spi,pij,spj->p", held, own, held) / len(states)
+            out.append(np.linalg.norm(energy) / (2 * np.pi * mode.frequency_hz) ** 2)
+        return springs * np.array(out) / 2
 
     @property
     def barred(self) -> tuple[BarredMode, ...]:

@@ -28,8 +28,9 @@ SURE, POSSIBLE = 0.95, 0.05
 DEVIATIONS = 2.0
 #: pairs of modes that are named which the measuring points do not tell apart
 NAMED = 3
-#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing
-UNTOLD = 1e-4
+#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing,
+#: and of a bearing's stiffness
+UNTOLD, SPRINGS = 1e-4, 0.2
 
 
 @dataclass(frozen=True)
@@ -231,11 +232,11 @@ def correlate(
     >>> [pair.computed.name for pair in found.pairs], found.rms < 0.02
     (['bending 1', 'bending 2', 'bending 3'], True)
     """
-    peaks = measured.modes
     tol = scene.ask.tolerance / 10 if tol is None else tol
-    computed = computed_up_to(scene, peaks[-1].frequency, tol, progress)
+    computed = computed_up_to(scene, measured.modes[-1].frequency, tol, progress)
     on_points = on_points_of(measured, computed)
-    found = align(*peaks_of(measured, computed), on_points.seen if on_points else None)
+    peaks = peaks_of(measured, computed, SPRINGS)
+    found = align(*peaks, on_points.seen if on_points else None)
     return _correlation(scene, measured, computed, found, on_points)
 
 
@@ -245,8 +246,12 @@ def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
     return None if shapes is None else OnPoints(shapes, measured.noise[0], computed)
 
 
-def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[Peak]]:
-    """Both lists as the pairing sees them."""
+def peaks_of(
+    measured: Measured, computed: Computed, springs: float = 0.0
+) -> tuple[list[Peak], list[Peak]]:
+    """Both lists as the pairing sees them; `springs` is the standard deviation of the logarithm of a
+    bearing's stiffness.
+    """
     mine = [
         Peak(
             math.log(one.frequency),
@@ -257,8 +262,13 @@ def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[P
         for one in measured.modes
     ]
     its = [
-        Peak(math.log(m.frequency_hz), min(bar, 0.1), min(m.multiplicity, 2), m.name.family)
-        for m, bar in zip(computed.modes, computed.bars)
+        Peak(
+            math.log(m.frequency_hz),
+            math.hypot(min(bar, 0.1), width),
+            min(m.multiplicity, 2),
+            m.name.family,
+        )
+        for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]
     return mine, its
 

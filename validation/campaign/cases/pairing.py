@@ -16,6 +16,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene.file import scene_of
+from solidgear.studies.measured import correlate
 from solidgear.studies.measured.alignment import BANDWIDTH, align
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.correlate import POSSIBLE, SURE, peaks_of
@@ -26,7 +27,7 @@ from validation.campaign.case import Case, Run
 from validation.campaign.cases.identification import NOISE, SHAPES, shaft
 from validation.campaign.rows import CLAIM, Found, Row
 
-#: of logarithms: what springs and modulus are off by
+#: standard deviations of logarithms: what springs and modulus are off by
 SPRINGS, MODULUS = 0.2, 0.03
 #: of shapes, and points that are measured
 NOISES, POINTS = (0.02, 0.05, 0.1), (3, 16)
@@ -77,7 +78,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
     """Pairs that are told, right (0) or wrong (1); of frequencies and multiplicities alone if `bare`."""
     rng = np.random.default_rng([seed, 5])
     text, springs = shaft(rng)
-    moved = [k * math.exp(rng.uniform(-SPRINGS, SPRINGS)) for k in springs]
+    moved = [k * math.exp(SPRINGS * rng.standard_normal()) for k in springs]
     true, computed = _solved(text, springs), _solved(text, moved)
     shift = math.exp(MODULUS * rng.standard_normal())
     count = len(computed.body.surface({}).points)
@@ -98,7 +99,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
             )
             for mode, shape, right in zip(true.modes, shapes.values, partner)
         ]
-        slipped = _slipped(rng, slip, peaks)
+        slipped = _slipped(rng, slip, peaks, 2 if bare else len(peaks) // 2)
         for p, sure, right in _told(slipped, None if bare else shapes, noise, computed):
             stated = next(f"{a:.0%} to {b:.0%}" for a, b in zip(BINS, BINS[1:]) if p <= b + 1e-6)
             how = f"p {p:.4f}" if bare else f"p {p:.4f}, {len(at)} points"
@@ -119,15 +120,14 @@ class _Peak:
     right: set[int] | None
 
 
-def _slipped(rng: np.random.Generator, slip: str, peaks: list[_Peak]) -> list[_Peak]:
-    """A list with a slip, by ascending frequency."""
+def _slipped(rng: np.random.Generator, slip: str, peaks: list[_Peak], near: int) -> list[_Peak]:
+    """A list with a slip, by ascending frequency; one of so many nearest neighbours changes places."""
     out = list(peaks)
     k = int(rng.integers(1, len(out) - 2))
     one, other = out[k : k + 2]
     if slip == "two changed places":
-        # neighbours, of the nearer half
         gaps = [b.log - a.log for a, b in pairwise(out)]
-        k = int(rng.choice(np.argsort(gaps)[: len(gaps) // 2]))
+        k = int(rng.choice(np.argsort(gaps)[:near]))
         one, other = out[k : k + 2]
         out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
     elif slip == "a mode is missing":
@@ -161,7 +161,7 @@ def _told(
     if shapes is not None:
         values = np.array([peak.shape for peak in peaks])
         seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
-    found = align(*peaks_of(measured, computed), seen)
+    found = align(*peaks_of(measured, computed, correlate.SPRINGS), seen)
     for peak, row in zip(peaks, found.pairs):
         told = np.flatnonzero(row > POSSIBLE)
         for j in told if peak.right is not MIXED else ():
