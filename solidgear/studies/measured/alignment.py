@@ -38,6 +38,8 @@ OTHER = 1e-4
 FINEST = 1e-6
 #: shifts of logarithms that are begun with, and the scatter: a modulus is 20 % off at most
 SHIFTS, SCATTER = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 0.02
+#: scatter that is usual beside what is told of each, and how many pairs that counts for
+USUAL, WORTH = 5e-3, 0.1
 #: least scatter; rounding of printed frequencies
 LEAST = 2e-5
 #: a frequency this many scatters from where it belongs is another
@@ -187,9 +189,9 @@ def _settled(
         # of what is off, the part that what is told of each does not explain
         own = lattice.scatter**2 / (told + lattice.scatter**2)
         part = (own * (apart - shift)) ** 2 + own * told
-        # drawn towards what is usual by a tenth of a pair: a scatter of none has no likelihood
-        square = float((pairs * part).sum()) + SCATTER**2 / 10
-        scatter = max(math.sqrt(square / (weight + 0.1)), LEAST)
+        # drawn towards what is usual, for a scatter of none has no likelihood; the shift took a pair
+        square = float((pairs * part).sum()) + WORTH * USUAL**2
+        scatter = max(math.sqrt(square / (max(weight - 1, 0.0) + WORTH)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
         lattice = _Lattice(measured, computed, shift, scatter, seen)
         if moved < 1e-3 * scatter:

@@ -191,10 +191,10 @@ class Fit:
             if abs(part) >= SHARE * abs(direction).max()
         ]
         what = " with ".join(among)
+        out = "leave one of them out" if len(among) > 1 else "leave it out"
         raise SolidgearError(
-            f"identify: these resonances do not tell {what}: any change that way moves them by less "
-            f"than their scatter ({_factor(deviation)}); "
-            "leave one of them out, or measure a mode that it moves"
+            f"identify: these resonances do not tell {what}: {_factor(deviation)}; {out}, or measure a "
+            "mode that it moves"
         )
 
 
@@ -225,7 +225,7 @@ def best_of(ends: Sequence[End]) -> End:
 def _factor(deviation: float) -> str:
     """Standard deviation of a logarithm in words."""
     return (
-        "without any bound"
+        "however far it is changed that way, they move by less than their scatter"
         if deviation > 10
-        else f"standard deviation: a factor of {math.exp(deviation):.3g}"
+        else f"they leave it open by a factor of {math.exp(deviation):.3g} either way"
     )

@@ -85,6 +85,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
     many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
     everywhere = OnPoints(many, NOISES[0], computed)
     partner = [{int(row.argmax())} if row.max() > SAME else MIXED for row in everywhere.seen.mac]
+    widths = computed.widths(correlate.SPRINGS)
     rows = []
     for slip, _ in product(SLIPS, range(SETS)):
         noise = float(rng.choice(NOISES))
@@ -99,7 +100,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
             )
             for mode, shape, right in zip(true.modes, shapes.values, partner)
         ]
-        slipped = _slipped(rng, slip, peaks, 2 if bare else len(peaks) // 2)
+        slipped = _slipped(rng, slip, peaks, widths if bare else None)
         for p, sure, right in _told(slipped, None if bare else shapes, noise, computed):
             stated = next(f"{a:.0%} to {b:.0%}" for a, b in zip(BINS, BINS[1:]) if p <= b + 1e-6)
             how = f"p {p:.4f}" if bare else f"p {p:.4f}, {len(at)} points"
@@ -120,16 +121,25 @@ class _Peak:
     right: set[int] | None
 
 
-def _slipped(rng: np.random.Generator, slip: str, peaks: list[_Peak], near: int) -> list[_Peak]:
-    """A list with a slip, by ascending frequency; one of so many nearest neighbours changes places."""
+def _slipped(
+    rng: np.random.Generator, slip: str, peaks: list[_Peak], widths: np.ndarray | None
+) -> list[_Peak]:
+    """A list with a slip, by ascending frequency; neighbours change places that may, by the widths of
+    modes if they are given.
+    """
     out = list(peaks)
     k = int(rng.integers(1, len(out) - 2))
     one, other = out[k : k + 2]
     if slip == "two changed places":
         gaps = [b.log - a.log for a, b in pairwise(out)]
-        k = int(rng.choice(np.argsort(gaps)[:near]))
-        one, other = out[k : k + 2]
-        out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
+        near = np.argsort(gaps)[: len(gaps) // 2].tolist()
+        if widths is not None:
+            reach = [max((float(widths[j]) for j in p.right or ()), default=0.0) for p in out]
+            near = [k for k, gap in enumerate(gaps) if gap < math.hypot(*reach[k : k + 2])]
+        if near:
+            k = int(rng.choice(near))
+            one, other = out[k : k + 2]
+            out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
     elif slip == "a mode is missing":
         del out[k]
     elif slip == "a peak is none":
