@@ -153,8 +153,8 @@ class Fit:
             left = aim - self.every[j] @ change
             moved = np.isin(j, list(move))
             done = abs(left[moved]) < EXCHANGED * abs(logs[i] - begun[j])[moved]
-            near = SAME < self.apart(change) and abs(change).max() <= farthest
-            if near and done.all():
+            apart = float(np.linalg.norm(self._weighed(self.every[j], weight) @ change))
+            if done.all() and apart > SAME and abs(change).max() <= farthest:
                 misfit = float(np.sum((left * weight) ** 2)) + DOUBT * (len(logs) - len(j))
                 out.append((misfit, change))
         return [change for _, change in sorted(out, key=lambda one: one[0])][:STARTS]

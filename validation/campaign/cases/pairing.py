@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import math
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene.file import scene_of
+from solidgear.scene.paths import Tables
 from solidgear.studies.measured import correlate
 from solidgear.studies.measured.alignment import BANDWIDTH, align
 from solidgear.studies.measured.computed import Computed
@@ -78,8 +79,12 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
     """Pairs that are told, right (0) or wrong (1); of frequencies and multiplicities alone if `bare`."""
     rng = np.random.default_rng([seed, 5])
     text, springs = shaft(rng)
-    moved = [k * math.exp(SPRINGS * rng.standard_normal()) for k in springs]
-    true, computed = _solved(text, springs), _solved(text, moved)
+    tables = tomllib.loads(text.format(*springs))
+    true = _solved(tables)
+    for bearing in tables["bearing"]:
+        held = bearing["stiffness"]
+        held |= {k: x * math.exp(SPRINGS * rng.standard_normal()) for k, x in held.items()}
+    computed = _solved(tables)
     shift = math.exp(MODULUS * rng.standard_normal())
     count = len(computed.body.surface({}).points)
     many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
@@ -178,8 +183,8 @@ def _told(
             yield float(row[j]), len(told) == 1 and bool(row[j] >= SURE), int(j) in peak.right
 
 
-def _solved(text: str, springs: Sequence[float]) -> Computed:
-    scene = scene_of(tomllib.loads(text.format(*springs)), "shaft.toml")
+def _solved(tables: Tables) -> Computed:
+    scene = scene_of(tables, "shaft.toml")
     body = sg.build(scene, "harmonic", order=3)
     modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
     limit = modes[-1].frequency_hz
