@@ -129,22 +129,26 @@ class _Peak:
 def _slipped(
     rng: np.random.Generator, slip: str, peaks: list[_Peak], widths: np.ndarray | None
 ) -> list[_Peak]:
-    """A list with a slip, by ascending frequency; neighbours change places that may, by the widths of
-    modes if they are given.
+    """A list with a slip, by ascending frequency; without shapes neighbours change places that may, by
+    the widths of modes.
     """
     out = list(peaks)
     k = int(rng.integers(1, len(out) - 2))
     one, other = out[k : k + 2]
     if slip == "two changed places":
         gaps = [b.log - a.log for a, b in pairwise(out)]
-        near = np.argsort(gaps)[: len(gaps) // 2].tolist()
-        if widths is not None:
-            reach = [max((float(widths[j]) for j in p.right or ()), default=0.0) for p in out]
-            near = [k for k, gap in enumerate(gaps) if gap < math.hypot(*reach[k : k + 2])]
-        if near:
-            k = int(rng.choice(near))
+        if widths is None:
+            k = int(rng.choice(np.argsort(gaps)[: len(gaps) // 2]))
             one, other = out[k : k + 2]
             out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
+            return sorted(out, key=lambda peak: peak.log)
+        reach = [max((float(widths[j]) for j in p.right or ()), default=0.0) for p in out]
+        near = [k for k, gap in enumerate(gaps) if 2 * gap < max(reach[k : k + 2])]
+        if near:
+            # the one that its springs can move that far passes the other
+            k = int(rng.choice(near))
+            a, b = (k, k + 1) if reach[k] > reach[k + 1] else (k + 1, k)
+            out[a] = replace(out[a], log=2 * out[b].log - out[a].log)
     elif slip == "a mode is missing":
         del out[k]
     elif slip == "a peak is none":
