@@ -56,9 +56,9 @@ class Pairing(Case):
     """
 
     name, question = "pairing", "probabilities of pairs of measured and computed modes"
-    parts = ((), ("stated",), ("slip",))
+    parts = (("silent",), ("stated",), ("slip",))
     details = (("noise",), ("slip", "stated"))
-    widths = False
+    widths = singly = False
     seeds = (1, 50)
 
     def options(self, parser: argparse.ArgumentParser) -> None:
@@ -110,7 +110,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
             stated = next(f"{a:.0%} to {b:.0%}" for a, b in zip(BINS, BINS[1:]) if p <= b + 1e-6)
             how = f"p {p:.4f}" if bare else f"p {p:.4f}, {len(at)} points"
             seen = "none" if bare else f"{noise:.0%}"
-            silent = "sure" if sure else "in question"
+            silent = "sure" if sure else "unsure"
             tags = {"stated": stated, "slip": slip, "noise": seen, "silent": silent}
             rows.append({"quantity": "pair", "tags": tags, "error": float(not right), "how": how})
     return rows
