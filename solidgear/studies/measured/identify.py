@@ -207,7 +207,7 @@ class _Study:
 
     def found(self, predict: int) -> Identification:
         first = self.settled(self.x)
-        first.fit.refuse_undetermined()
+        # what no pair tells here other pairs may tell
         ends = self.exchanged(first, [first])
         if (end := best_of(ends)) is not first:
             ends = self.exchanged(end, ends)
