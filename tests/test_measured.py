@@ -335,6 +335,14 @@ def test_bounds_hold_a_value_and_say_so(rod):
     assert free.low < 210e9 < free.high and not free.at_bound
 
 
+def test_a_resonance_that_no_other_tells_is_predicted_from_none(rod):
+    one = Measured(uncertainty=1e-3, mode=[{"frequency": 254.4}])
+    found = identify(rod, one, ["material.E"], tol=1e-3)
+    assert found.fitted[0].left_out is None and found.rms_left_out is None
+    assert any("No other resonance tells bending 1" in one for one in found.sentences)
+    json.dumps(found.results, allow_nan=False)
+
+
 def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
     """E over density is all that a free body tells."""
     found = identify(rod, PEAKS, ["material.E", "material.density=7700 kg/m^3 ± 0.5 %"], tol=1e-3)

@@ -41,6 +41,8 @@ EARLY, LIKELY = 2, 0.5
 STEP = 1e-4
 #: of the logarithm of entries, along what is not told where it begins
 NUDGE = 0.03
+#: a resonance that leaves less than this of itself to the others is predicted from none
+ALONE = 1e-6
 #: frequencies beyond the measured ones are looked for in steps of this factor
 WIDER = 1.15
 
@@ -237,15 +239,16 @@ class _Study:
         )
         left = fit.residual - fit.rows @ step
         leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.covariance, fit.rows) * fit.weight**2
-        out = left / np.maximum(1 - leverage, 1e-12)
+        alone = 1 - leverage < ALONE
+        out = left / np.where(alone, 1.0, 1 - leverage)
         fitted = tuple(
             Fitted(
                 str(computed.modes[j].name),
                 float(f),
                 float(f * math.exp(-a)),
-                float(f * math.exp(-b)),
+                None if own else float(f * math.exp(-b)),
             )
-            for (_, j), f, a, b in zip(fit.pairs, fit.frequencies, left, out)
+            for (_, j), f, a, b, own in zip(fit.pairs, fit.frequencies, left, out, alone)
         )
         used = {i for i, _ in fit.pairs}
         return Identification(
@@ -256,7 +259,7 @@ class _Study:
             fitted,
             tuple(m.frequency for i, m in enumerate(self.measured.modes) if i not in used),
             float(np.sqrt(np.mean(left**2))),
-            float(np.sqrt(np.mean(out**2))),
+            None if alone.all() else float(np.sqrt(np.mean(out[~alone] ** 2))),
             self._predicted(predict, fit, computed) if predict else (),
             computed.mesh,
             self.tables_at(self.x),
