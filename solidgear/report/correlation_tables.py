@@ -71,7 +71,12 @@ def fitted(found: Any) -> Table:
         Column("measured\nHz", lambda f: f.measured, hertz, kind=NUMBER),
         Column("computed\nHz", lambda f: f.computed, hertz, kind=NUMBER),
         Column("off", lambda f: f.computed / f.measured - 1, percent, kind=NUMBER),
-        Column("left out", lambda f: f.left_out / f.measured - 1, percent, kind=NUMBER),
+        Column(
+            "left out",
+            lambda f: f.left_out and f.left_out / f.measured - 1,
+            percent,
+            kind=NUMBER,
+        ),
     ]
     note = "Left out: the same where this resonance is predicted from all others."
     return Table("Fitted", columns, found.fitted, note, style="ruled")

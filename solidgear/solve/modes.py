@@ -319,8 +319,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
         frequency = float(np.sqrt(np.mean([max(r.value, 0.0) for r in members])) / (2 * np.pi))
         double = 2 if first.double else len(group)
         every.append((first.family, frequency, double))
-        if max_frequency is not None and frequency > max_frequency:
-            continue
+        over = max_frequency is not None and frequency > max_frequency
         mode = Mode(
             name=label,
             family=first.family,
@@ -333,10 +332,10 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             error=float(max(r.error for r in members) / 2),
         )
         own = all(b < FURTHER for r in members for b in r.vectors)
-        if room > 0:
+        if room > 0 and not over:
             listed.append(sound(body, mode, parts))
             of |= dict.fromkeys(group, mode)
-        elif own and own_room > 0:
+        elif own and own_room > 0 and not over:
             beyond.append(mode)
         elif own and all(r.value <= whole[b] for r in members for b in r.vectors):
             above.append(mode)

@@ -53,6 +53,8 @@ class Case:
     tag_of_costs : str
     widths : bool
         Bars are what the program says; else they are limits, of whose width nothing is to be told.
+    singly : bool
+        Rows that do not hold are named one by one; else failures alone are.
     seeds : (int, int)
         First and last, if none are given.
     seconds : float
@@ -65,6 +67,7 @@ class Case:
     details: Parts = ()
     tag_of_costs: str = "tolerance"
     widths: bool = True
+    singly: bool = True
     seeds: tuple[int, int] = (1, 20)
     seconds: float = 600.0
 

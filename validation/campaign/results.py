@@ -33,7 +33,7 @@ def result(case: Case, given: argparse.Namespace, found: Found) -> dict[str, obj
         "verdicts": table.verdicts(found.verdicts),
         "checks": table.checks(found.verdicts),
         "costs": table.costs(found.costs, case.tag_of_costs),
-        "misses": table.misses(found.rows),
+        "misses": table.misses(found.rows) if case.singly else [],
         "cases": table.cases(found.verdicts),
         "failures": found.failures,
         "problems": len(found.problems),

@@ -4,9 +4,12 @@ outcome, not the end of the run.
 
 from __future__ import annotations
 
+import ctypes
+import gc
 import multiprocessing
 import resource
 import signal
+import sys
 import traceback
 from collections.abc import Callable
 from typing import Any
@@ -75,6 +78,17 @@ def _serve(pipe) -> None:
         except EOFError:
             return
         pipe.send(_called(function, arguments))
+        _give_back()
+
+
+def _give_back() -> None:
+    """Memory that is free goes back to the system: glibc keeps what lies between small pieces that
+    live on, 50 MB more with every body.
+    """
+    gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None
+    if trim is not None:
+        trim(0)
 
 
 def _called(function: Callable, arguments: tuple) -> tuple[Any, str]:

@@ -5,8 +5,8 @@ Both lists ascend. They are laid beside each other by a hidden Markov model: a s
 each (the same mode), two measured and one computed (a pair that was measured split), one measured
 and two computed (two modes too near each other to be told apart), two of each crosswise, or one of
 either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
-by a common shift, such as that of a modulus which is not known well, and a scatter; both are found
-with the pairing (expectation maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77,
+by a common shift, such as that of a modulus which is not known well, and a scatter beside what is told
+of each; both are found with the pairing (expectation maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77,
 257, eqs. 19 to 27) give the probability of every pair, which is what is told.
 """
 
@@ -15,14 +15,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
-from scipy.special import betaln, gammaln
+from scipy.special import betaln, erf, gammaln
 
-#: how likely steps are before any frequency is looked at: one of each, a pair measured split, two
-#: computed modes under one peak, a peak or a mode alone
-SAME, SPLIT, MERGED, SPURIOUS, MISSED = 0.8, 0.02, 0.02, 0.03, 0.12
+#: how likely steps are before any frequency is looked at: one of each, a pair measured split, a
+#: peak or a mode alone
+SAME, SPLIT, SPURIOUS, MISSED = 0.8, 0.02, 0.03, 0.12
+#: modes nearer than this, relative, are under one peak: what half power spans at a damping ratio of
+#: 0.1 %
+BANDWIDTH = 2e-3
 #: two crosswise: scatter of both alone decides whether they changed places
 CROSSED = SAME**2
 #: a single resonance where a pair was computed (a split pair of which one was seen), and a pair
@@ -36,10 +38,14 @@ OTHER = 1e-4
 FINEST = 1e-6
 #: shifts of logarithms that are begun with, and the scatter: a modulus is 20 % off at most
 SHIFTS, SCATTER = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 0.02
+#: scatter that is usual beside what is told of each, and how many pairs that counts for
+USUAL, WORTH = 5e-3, 0.1
 #: least scatter; rounding of printed frequencies
 LEAST = 2e-5
 #: a frequency this many scatters from where it belongs is another
 FAR = 6.0
+#: a probability that is none
+TINY = 1e-300
 #: rounds until shift and scatter have settled, and starts that are followed
 ROUNDS, TRIED = 12, 2
 
@@ -91,14 +97,16 @@ class Seen:
 
         Of a mode, 1 - MAC is the noise outside its span, ``s^2 chi^2(n - d) / n``, and what is mixed
         into it of others of its family by the changes that scatter frequencies, to first order
-        ``scatter / sinh(ln f_j / f_k)`` of each; the sum has one chi-square of the same mean and
+        ``s_jk / sinh(ln f_j / f_k)`` of each, with the geometric mean of both scatters as one spring
+        makes it; the sum has one chi-square of the same mean and
         variance (Satterthwaite). Of a shape that is none 1 - MAC has a beta distribution.
         """
         n, free = self.components, self.components - self.spans
         logs = np.array([one.log_frequency for one in modes])
         family = np.array([one.family for one in modes])
         apart = np.sinh(np.abs(np.subtract.outer(logs, logs)))
-        mixed = scatter / np.maximum(apart, 1e-12)
+        own = np.array([math.sqrt(math.hypot(one.width, scatter)) for one in modes])
+        mixed = np.outer(own, own) / np.maximum(apart, 1e-12)
         # of two alone: square of the sine of the angle by which they turn
         mixed = (1 - 1 / np.sqrt(1 + 4 * mixed**2)) / 2
         mixed[(family[:, None] != family) | np.eye(len(modes), dtype=bool)] = 0.0
@@ -138,8 +146,7 @@ class Alignment:
     scatter: float
 
 
-#: numbers of measured and computed that a step takes, its log-likelihood, and the pairs it makes
-_Step = tuple[int, int, float, tuple[tuple[int, int], ...]]
+_Steps = dict[tuple[int, int], np.ndarray]
 
 
 def align(
@@ -170,16 +177,21 @@ def _settled(
     apart = np.subtract.outer(
         [one.log_frequency for one in measured], [one.log_frequency for one in computed]
     )
+    told = np.hypot.outer([one.width for one in measured], [one.width for one in computed]) ** 2
     lattice = _Lattice(measured, computed, shift, SCATTER, seen)
     for _ in range(ROUNDS):
         pairs = lattice.alignment().pairs
         weight = float(pairs.sum())
         if weight < 1e-6:
             break
-        shift = float((pairs * apart).sum() / weight)
-        # drawn towards what is usual by a tenth of a pair: a scatter of none has no likelihood
-        square = float((pairs * (apart - shift) ** 2).sum()) + SCATTER**2 / 10
-        scatter = max(math.sqrt(square / (weight + 0.1)), LEAST)
+        heavy = pairs / (told + lattice.scatter**2)
+        shift = float((heavy * apart).sum() / heavy.sum())
+        # of what is off, the part that what is told of each does not explain
+        own = lattice.scatter**2 / (told + lattice.scatter**2)
+        part = (own * (apart - shift)) ** 2 + own * told
+        # drawn towards what is usual, for a scatter of none has no likelihood; the shift took a pair
+        square = float((pairs * part).sum()) + WORTH * USUAL**2
+        scatter = max(math.sqrt(square / (max(weight - 1, 0.0) + WORTH)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
         lattice = _Lattice(measured, computed, shift, scatter, seen)
         if moved < 1e-3 * scatter:
@@ -198,89 +210,102 @@ class _Lattice:
         scatter: float,
         seen: Seen | None,
     ):
-        self.measured, self.computed, self.shift, self.scatter = measured, computed, shift, scatter
-        n, m = len(measured), len(computed)
-        logs = [one.log_frequency for one in (*measured, *computed)]
-        # a peak that is nothing is anywhere in the range
-        self.alone = math.log(SPURIOUS / max(max(logs) - min(logs), scatter))
-        self.like = [[self._like(one, mode) for mode in computed] for one in measured]
-        shaped = np.zeros((n, m)) if seen is None else seen.log_likelihoods(computed, scatter)
-        self.shaped = shaped.tolist()
+        self.shift, self.scatter = shift, scatter
+        shape = len(measured), len(computed)
+        shaped = np.zeros(shape) if seen is None else seen.log_likelihoods(computed, scatter)
         #: that a sum of two shapes is within noise of one alone: of its angle
-        self.chance = 0.0 if seen is None else math.log(2 * seen.noise / math.pi)
-        self.steps = {at: self._steps(*at) for at in product(range(n + 1), range(m + 1))}
-        self.forward = np.full((n + 1, m + 1), -np.inf).tolist()
-        self.backward = np.full((n + 1, m + 1), -np.inf).tolist()
-        self.forward[0][0] = self.backward[n][m] = 0.0
-        for (i, j), steps in self.steps.items():
-            here = self.forward[i][j]
-            for a, b, log, _ in steps:
-                self.forward[i + a][j + b] = _sum(self.forward[i + a][j + b], here + log)
-        for (i, j), steps in reversed(self.steps.items()):
-            for a, b, log, _ in steps:
-                there = log + self.backward[i + a][j + b]
-                self.backward[i][j] = _sum(self.backward[i][j], there)
+        chance = 0.0 if seen is None else math.log(2 * seen.noise / math.pi)
+        #: by the numbers of both lists that a step takes, its log-likelihoods by where it begins
+        self.steps = _steps(measured, computed, shift, scatter, shaped, chance)
+        self.forward = _sums(self.steps, shape)
+        back = {step: logs[::-1, ::-1] for step, logs in self.steps.items()}
+        self.backward = _sums(back, shape)[::-1, ::-1]
         #: log-likelihood of both lists
-        self.total = self.forward[n][m]
-
-    def _like(self, one: Peak, mode: Peak) -> float:
-        """Log-density of a measured frequency if it is a computed mode."""
-        variance = self.scatter**2 + one.width**2 + mode.width**2
-        away = one.log_frequency - mode.log_frequency - self.shift
-        if away**2 > FAR**2 * variance:
-            return -math.inf
-        other = one.family and mode.family and one.family != mode.family
-        named = math.log(RENAMED) if other else 0.0
-        return named - away**2 / (2 * variance) - math.log(2 * math.pi * variance) / 2
-
-    def _steps(self, i: int, j: int) -> list[_Step]:
-        """What may come after some of both lists."""
-        n, m = len(self.measured), len(self.computed)
-        out: list[_Step] = []
-        if i < n:
-            out.append((1, 0, self.alone, ()))
-        if j < m:
-            out.append((0, 1, math.log(MISSED), ()))
-        if i == n or j == m:
-            return out
-        like, shaped = self.like, self.shaped
-        here, mode = self.measured[i], self.computed[j]
-        log = like[i][j] + shaped[i][j] + math.log(SAME * _alike(here, mode))
-        out.append((1, 1, log, ((i, j),)))
-        if (
-            i + 1 < n
-            and mode.multiplicity == 2
-            and 2 not in (here.multiplicity, self.measured[i + 1].multiplicity)
-        ):
-            log = like[i][j] + like[i + 1][j] + shaped[i][j] + shaped[i + 1][j] + math.log(SPLIT)
-            out.append((2, 1, log, ((i, j), (i + 1, j))))
-        if j + 1 < m:
-            # a shape of both at once is within noise of one alone by chance
-            one = max(shaped[i][j], shaped[i][j + 1])
-            one += self.chance if one > 0 else 0.0
-            log = like[i][j] + like[i][j + 1] + one + math.log(MERGED)
-            out.append((1, 2, log, ((i, j), (i, j + 1))))
-        if i + 1 < n and j + 1 < m:
-            alike = _alike(here, self.computed[j + 1]) * _alike(self.measured[i + 1], mode)
-            log = like[i][j + 1] + like[i + 1][j] + math.log(CROSSED * alike)
-            log += shaped[i][j + 1] + shaped[i + 1][j]
-            out.append((2, 2, log, ((i, j + 1), (i + 1, j))))
-        return [step for step in out if step[2] > -math.inf]
+        self.total = float(self.forward[-1, -1])
 
     def alignment(self) -> Alignment:
         """Probabilities of pairs."""
-        n, m = len(self.measured), len(self.computed)
-        pairs, spurious, missed = np.zeros((n, m)), np.zeros(n), np.zeros(m)
-        for (i, j), steps in self.steps.items():
-            for a, b, log, made in steps:
-                share = math.exp(
-                    self.forward[i][j] + log + self.backward[i + a][j + b] - self.total
-                )
-                for one, mode in made:
-                    pairs[one, mode] += share
-                spurious[i : i + a] += share * (not made)
-                missed[j : j + b] += share * (not made)
+        share = {}
+        for (a, b), logs in self.steps.items():
+            begun = self.forward[: logs.shape[0], : logs.shape[1]]
+            share[a, b] = np.exp(begun + logs + self.backward[a:, b:] - self.total)
+        pairs = share[1, 1]
+        pairs[:-1] += share[2, 1]
+        pairs[1:] += share[2, 1]
+        pairs[:, :-1] += share[1, 2]
+        pairs[:, 1:] += share[1, 2]
+        pairs[:-1, 1:] += share[2, 2]
+        pairs[1:, :-1] += share[2, 2]
+        spurious, missed = share[1, 0].sum(axis=1), share[0, 1].sum(axis=0)
         return Alignment(pairs, spurious, missed, self.shift, self.scatter)
+
+
+def _steps(
+    measured: Sequence[Peak],
+    computed: Sequence[Peak],
+    shift: float,
+    scatter: float,
+    shaped: np.ndarray,
+    chance: float,
+) -> _Steps:
+    n, m = len(measured), len(computed)
+    own, its = (np.array([one.log_frequency for one in peaks]) for peaks in (measured, computed))
+    told = np.array([one.width for one in measured])[:, None] ** 2
+    moved = scatter**2 + np.array([one.width for one in computed]) ** 2
+    away = own[:, None] - its - shift
+    named = np.log([[_named(one, mode) for mode in computed] for one in measured])
+    near = away**2 <= FAR**2 * (moved + told)
+    like = np.where(near, named + _normal(away, moved + told), -np.inf) + shaped
+    alike = np.log([[_alike(one, mode) for mode in computed] for one in measured])
+    # a peak that is nothing is anywhere in the range
+    logs = np.concatenate([own, its])
+    alone = math.log(SPURIOUS / max(float(np.ptp(logs)), scatter))
+    pair = np.array([mode.multiplicity == 2 for mode in computed], bool)
+    single = np.array([one.multiplicity != 2 for one in measured])[:, None]
+    split = np.where(pair & single[:-1] & single[1:], math.log(SPLIT), -np.inf)
+    # the peak is amid both, which differ by less than they can be told apart
+    amid = _normal((away[:, :-1] + away[:, 1:]) / 2, told + (moved[:-1] + moved[1:]) / 4)
+    sigma, gap = np.sqrt(2 * (moved[:-1] + moved[1:])), np.diff(its)
+    within = (erf((BANDWIDTH - gap) / sigma) + erf((BANDWIDTH + gap) / sigma)) / 2
+    # a shape of both at once is within noise of one alone by chance
+    one = np.maximum(shaped[:, :-1], shaped[:, 1:])
+    amid += one + np.where(one > 0, chance, 0.0) + named[:, :-1] + named[:, 1:]
+    amid = np.where(near[:, :-1] & near[:, 1:], amid, -np.inf)
+    crossed = like[:-1, 1:] + like[1:, :-1] + alike[:-1, 1:] + alike[1:, :-1]
+    return {
+        (1, 0): np.full((n, m + 1), alone),
+        (0, 1): np.full((n + 1, m), math.log(MISSED)),
+        (1, 1): like + alike + math.log(SAME),
+        (2, 1): like[:-1] + like[1:] + split,
+        (1, 2): amid + np.log(np.maximum(SAME * within, TINY)),
+        (2, 2): crossed + math.log(CROSSED),
+    }
+
+
+def _sums(steps: _Steps, shape: tuple[int, int]) -> np.ndarray:
+    """(n + 1, m + 1) logarithms of sums over all ways from the beginning of both lists."""
+    n, m = shape
+    out = np.full((n + 1, m + 1), -np.inf)
+    missed = np.concatenate([np.zeros((n + 1, 1)), np.cumsum(steps[0, 1], axis=1)], axis=1)
+    for i in range(n + 1):
+        row = out[i]
+        row[0] = 0.0 if i == 0 else -np.inf
+        for (a, b), logs in steps.items():
+            if 0 < a <= i:
+                row[b:] = np.logaddexp(row[b:], out[i - a, : m + 1 - b] + logs[i - a])
+        # any number of modes that were missed
+        out[i] = np.logaddexp.accumulate(row - missed[i]) + missed[i]
+    return out
+
+
+def _normal(away: np.ndarray, variance: np.ndarray) -> np.ndarray:
+    """Logarithms of the density of a normal distribution."""
+    return -(away**2) / (2 * variance) - np.log(2 * np.pi * variance) / 2
+
+
+def _named(one: Peak, mode: Peak) -> float:
+    """How likely a mode is called as it is."""
+    return RENAMED if one.family and mode.family and one.family != mode.family else 1.0
 
 
 def _alike(one: Peak, mode: Peak) -> float:
@@ -288,9 +313,3 @@ def _alike(one: Peak, mode: Peak) -> float:
     if one.multiplicity is None or one.multiplicity == mode.multiplicity:
         return 1.0
     return HALF if one.multiplicity == 1 else DOUBLE
-
-
-def _sum(a: float, b: float) -> float:
-    """Logarithm of the sum of what two logarithms stand for."""
-    low, high = (a, b) if a < b else (b, a)
-    return high if low == -math.inf else high + math.log1p(math.exp(low - high))

@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from solidgear.body import Body, as_supports
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
@@ -17,6 +19,7 @@ from solidgear.quantity import COMPLIANCE
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.shaft import without_axis
+from solidgear.solve.adjoint import of_mode
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.sweep.bench import surface
@@ -24,8 +27,8 @@ from solidgear.studies.sweep.bench import surface
 Progress = Callable[[str], None]
 #: of the highest measured frequency: modes above it may be what was measured
 BEYOND = 1.1
-#: shapes that are asked for first, and beside those of a scene like it
-FEW, MORE = 60, 6
+#: shapes that are asked for first, and beside those that are thought to be there
+FEW, MORE = 24, 6
 #: highest order of elements that is tried, and steps between
 HIGHEST, STEP = 11, 2
 
@@ -68,6 +71,21 @@ class Computed:
         order = self.options.get("order")
         return f"{self.rung}, order {order}" if order else self.rung
 
+    def widths(self, springs: float) -> np.ndarray:
+        """(modes,) standard deviations of logarithms of frequencies that those of the stiffnesses of
+        all bearings make, each on its own: half the share of a mode's energy (Rayleigh).
+        """
+        supports = as_supports(self.scene)
+        count, there = len(supports.ports), supports.rows(self.body)
+        own = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
+        own, out = own[range(count), range(count)], []
+        for mode in self.modes:
+            states = [state for state, _ in of_mode(self.body, supports, mode).pairs]
+            held = np.array([state.motions[there].reshape(count, 6) for state in states])
+            energy = np.einsum("spi,pij,spj->p", held, own, held) / len(states)
+            out.append(np.linalg.norm(energy) / (2 * np.pi * mode.frequency_hz) ** 2)
+        return springs * np.array(out) / 2
+
     @property
     def barred(self) -> tuple[BarredMode, ...]:
         """Names, frequencies and bars."""
@@ -100,7 +118,7 @@ def computed_up_to(
     limit = BEYOND * highest
     settled = None
     if before is None or not (LADDER[before.rung].bounded or without_axis(scene)):
-        settled = settle(scene, tolerance, progress=progress)
+        settled = settle(scene, tolerance, "modes", progress=progress)
         rung, options, body = settled.rung, dict(settled.options), settled.body
     else:
         rung, options = before.rung, dict(before.options)
@@ -177,9 +195,10 @@ def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:
     """All modes up to a frequency: as many shapes are asked for as it takes to pass it."""
     while True:
         found = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
-        if count >= MOST_MODES or sum(m.multiplicity for m in _elastic(found)) < count:
+        listed = _elastic(found)
+        if count >= MOST_MODES or sum(m.multiplicity for m in listed) < count:
             return found
-        count *= 2
+        count = math.ceil(count * limit / listed[-1].frequency_hz) + MORE
 
 
 def _elastic(found: ModeSet) -> list[Mode]:

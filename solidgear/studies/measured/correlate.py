@@ -5,7 +5,7 @@ they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -13,22 +13,22 @@ import numpy as np
 
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
+from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
-from solidgear.solve.modes import Mode
 from solidgear.studies.change import BarredMode
 from solidgear.studies.measured.alignment import Alignment, Peak, align
+from solidgear.studies.measured.common import Common
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
-from solidgear.studies.measured.shapes import ALIKE, OnPoints
+from solidgear.studies.measured.shapes import OnPoints
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
 SURE, POSSIBLE = 0.95, 0.05
 #: standard deviations of a measured frequency that count as its bar
 DEVIATIONS = 2.0
-#: pairs of modes that are named which the measuring points do not tell apart
-NAMED = 3
-#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing
-UNTOLD = 1e-4
+#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing,
+#: and of a bearing's stiffness
+UNTOLD, SPRINGS = 1e-4, 0.2
 
 
 @dataclass(frozen=True)
@@ -101,8 +101,6 @@ class Correlation(Displayed):
         One for every measured resonance.
     missed : tuple of (BarredMode, float)
         Modes below the highest resonance that were not measured, with the probability of that.
-    shift, scatter : float
-        Of frequencies, relative: common to all, measured less computed, and what is left.
     mesh : str
         Model and mesh.
     mac : (n, m) ndarray or None
@@ -122,8 +120,6 @@ class Correlation(Displayed):
     title: str
     pairs: tuple[Pair, ...]
     missed: tuple[tuple[BarredMode, float], ...]
-    shift: float
-    scatter: float
     mesh: str
     tolerance: float
     mac: np.ndarray | None
@@ -137,6 +133,11 @@ class Correlation(Displayed):
         """Root mean square of the differences of all that have a mode, relative."""
         apart = [pair.relative for pair in self.pairs if pair.relative is not None]
         return float(np.sqrt(np.mean(np.square(apart)))) if apart else math.nan
+
+    @property
+    def common(self) -> Common | None:
+        """Shift and scatter of the pairs that are sure; None of too few."""
+        return Common.of([pair.relative for pair in self.pairs if pair.sure and pair.relative])
 
     @property
     def worst(self) -> Pair | None:
@@ -166,8 +167,7 @@ class Correlation(Displayed):
             "measurement": self.title,
             "mesh": self.mesh,
             "rms": None if self.worst is None else self.rms,
-            "shift": self.shift,
-            "scatter": self.scatter,
+            "common": self.common and vars(self.common),
             "pairs": [
                 self._damping(pair.number)
                 | {
@@ -195,6 +195,7 @@ class Correlation(Displayed):
         }
 
 
+@pinned
 def correlate(
     scene: Scene,
     measured: Measured,
@@ -229,11 +230,11 @@ def correlate(
     >>> [pair.computed.name for pair in found.pairs], found.rms < 0.02
     (['bending 1', 'bending 2', 'bending 3'], True)
     """
-    peaks = measured.modes
     tol = scene.ask.tolerance / 10 if tol is None else tol
-    computed = computed_up_to(scene, peaks[-1].frequency, tol, progress)
+    computed = computed_up_to(scene, measured.modes[-1].frequency, tol, progress)
     on_points = on_points_of(measured, computed)
-    found = align(*peaks_of(measured, computed), on_points.seen if on_points else None)
+    peaks = peaks_of(measured, computed, SPRINGS)
+    found = align(*peaks, on_points.seen if on_points else None)
     return _correlation(scene, measured, computed, found, on_points)
 
 
@@ -243,8 +244,12 @@ def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
     return None if shapes is None else OnPoints(shapes, measured.noise[0], computed)
 
 
-def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[Peak]]:
-    """Both lists as the pairing sees them."""
+def peaks_of(
+    measured: Measured, computed: Computed, springs: float = 0.0
+) -> tuple[list[Peak], list[Peak]]:
+    """Both lists as the pairing sees them; `springs` is the standard deviation of the logarithm of a
+    bearing's stiffness.
+    """
     mine = [
         Peak(
             math.log(one.frequency),
@@ -255,8 +260,13 @@ def peaks_of(measured: Measured, computed: Computed) -> tuple[list[Peak], list[P
         for one in measured.modes
     ]
     its = [
-        Peak(math.log(m.frequency_hz), min(bar, 0.1), min(m.multiplicity, 2), m.name.family)
-        for m, bar in zip(computed.modes, computed.bars)
+        Peak(
+            math.log(m.frequency_hz),
+            math.hypot(min(bar, 0.1), width),
+            min(m.multiplicity, 2),
+            m.name.family,
+        )
+        for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]
     return mine, its
 
@@ -281,6 +291,7 @@ def _correlation(
         others = tuple((barred[j], float(found.pairs[k, j])) for j in likely)
         pairs.append(Pair(k + 1, one, mode, share, others, like))
     highest = measured.modes[-1].frequency * math.exp(-found.shift)
+    below = [mode for mode in computed.modes if mode.frequency_hz <= highest]
     missed = tuple(
         (mode, float(share))
         for mode, share in zip(barred, found.missed)
@@ -291,44 +302,14 @@ def _correlation(
         measured.title,
         tuple(pairs),
         missed,
-        float(math.expm1(found.shift)),
-        found.scatter,
         computed.mesh,
         computed.tolerance,
         mac,
         tuple(mode.name for mode in barred),
         measured,
         computed,
-        _of_points(on_points, [mode for mode in computed.modes if mode.frequency_hz <= highest]),
+        () if on_points is None else on_points.sentences(below),
     )
-
-
-def _of_points(found: OnPoints | None, modes: Sequence[Mode]) -> tuple[str, ...]:
-    """Sentences on modes that the measuring points do not tell apart."""
-    if found is None:
-        return ()
-    out = []
-    names = [str(mode.name) for mode in modes]
-    shapes = sum(mode.multiplicity for mode in modes)
-    if shapes > found.seen.components:
-        out.append(
-            f"{found.seen.components} measured components tell at most as many shapes apart, and {shapes} "
-            "are computed up to the highest resonance: MAC is high by chance; measure "
-            f"{shapes - found.seen.components} more at least."
-        )
-    confused = found.confused(len(modes))
-    for one in confused[:NAMED]:
-        place = ", ".join(f"{x:.4g}" for x in one.place)
-        out.append(
-            f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their MAC "
-            f"on them is {one.mac:.2f}); one more at x, y, z = {place} m would (MAC {one.then:.2f})."
-            if one.then <= ALIKE
-            else f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their "
-            f"MAC on them is {one.mac:.2f}), nor do they with any one more."
-        )
-    if len(confused) > NAMED:
-        out.append(f"They do not tell {len(confused) - NAMED} further pairs of modes.")
-    return tuple(out)
 
 
 def _sentences(found: Correlation) -> Iterator[str]:
@@ -344,13 +325,19 @@ def _sentences(found: Correlation) -> Iterator[str]:
             f"Computed frequencies are {100 * found.rms:.2g} % rms from the measured ones, at most "
             f"{100 * worst.relative:+.2g} %, of {worst.computed.name}."
         )
+    if found.common is not None:
+        yield found.common.sentence
+    if worst is not None and all(pair.measured.width_hz is None for pair in paired):
         yield (
-            f"A shift of {100 * found.shift:+.2g} % is common to all, and {100 * found.scatter:.2g} % is "
-            "left beside it: a common shift is what a modulus, a density or a length would make."
+            "No resonance says how sure it is, so that none has a band: write for example "
+            'uncertainty = "0.1 %".'
         )
     for pair in found.pairs:
         if pair.computed is None:
-            yield f"{pair.measured.frequency:.6g} Hz was measured and not computed."
+            yield (
+                f"{pair.measured.frequency:.6g} Hz was measured and not computed: no resonance of this "
+                "part, or one of something that the scene does not have."
+            )
         elif not pair.sure:
             names = ", ".join(f"{mode.name} ({100 * share:.0f} %)" for mode, share in pair.others)
             own = f"{pair.computed.name} ({100 * pair.probability:.0f} %)"

@@ -72,13 +72,15 @@ class Fit:
             )
         modes = [measured.modes[i] for i, _ in self.pairs]
         at = [j for _, j in self.pairs]
-        self.rows = every[at]
+        self.every, self.rows = every, every[at]
         #: (pairs,) measured, Hz
         self.frequencies = np.array([m.frequency for m in modes])
         self.residual = np.log(self.frequencies / [computed.modes[j].frequency_hz for j in at])
-        own = np.array([(m.width_hz or 0.0) / m.frequency for m in modes])
-        mesh = np.array([min(computed.bars[j], 1.0) / DEVIATIONS for j in at])
-        self.variance = own**2 + mesh**2
+        own = np.array([(m.width_hz or 0.0) / m.frequency for m in measured.modes])
+        mesh = np.minimum(computed.bars, 1.0) / DEVIATIONS
+        #: of every resonance, were it any of the modes
+        self.variances = own[:, None] ** 2 + mesh**2
+        self.variance = self.variances[tuple(np.transpose(self.pairs))]
         # the scatter that is left counts for all alike, and what is known leaves more of it
         told = float(self.variance.mean())
         size = math.sqrt(told + TINY)
@@ -95,7 +97,7 @@ class Fit:
         #: deviations on either side that hold 95 %
         self.students = float(stdtrit(min(freedom, 1e6), 0.975))
         self.weight = 1 / np.sqrt(self.variance + self.scatter**2 + TINY)
-        self.linear = self._weighed(self.rows)
+        self.linear = self._weighed(self.rows, self.weight)
         _, self.sizes, self.right = np.linalg.svd(self.linear, full_matrices=False)
         sizes, right = self.sizes, self.right
         kept = np.maximum(sizes, 1e-30)
@@ -107,14 +109,17 @@ class Fit:
         residual: np.ndarray | None = None,
         rows: np.ndarray | None = None,
         moved: np.ndarray | float = 0.0,
+        weight: np.ndarray | None = None,
     ) -> np.ndarray:
         """Change of the logarithms of entries within their bounds; none along what the data do not
-        tell. Other residuals and derivatives are those at logarithms `moved` from here.
+        tell. Other residuals and derivatives are those at logarithms `moved` from here, or of other
+        pairs with weights of their own.
         """
         residual = self.residual if residual is None else residual
-        aim = np.concatenate([residual * self.weight, self.known * (self.middle - moved)])
+        weight = self.weight if weight is None else weight
+        aim = np.concatenate([residual * weight, self.known * (self.middle - moved)])
         low, high = self.low - moved, self.high - moved
-        linear = self.linear if rows is None else self._weighed(rows)
+        linear = self.linear if rows is None else self._weighed(rows, weight)
         left, sizes, right = np.linalg.svd(linear, full_matrices=False)
         told = sizes > 1 / UNDETERMINED
         step = ((left.T @ aim)[told] / sizes[told]) @ right[told]
@@ -122,34 +127,42 @@ class Fit:
             return step
         return lsq_linear(linear, aim, (low, high)).x
 
-    def _weighed(self, rows: np.ndarray) -> np.ndarray:
+    def _weighed(self, rows: np.ndarray, weight: np.ndarray) -> np.ndarray:
         """Derivatives of frequencies over their deviations, and of what is known beforehand."""
-        return np.vstack([rows * self.weight[:, None], np.diag(self.known)])
+        return np.vstack([rows * weight[:, None], np.diag(self.known)])
 
-    def exchanges(self) -> list[np.ndarray]:
+    def exchanges(self, farthest: float) -> list[np.ndarray]:
         """Changes of the logarithms of entries by which two modes of a family change places, as two
-        bearings do that are nearly alike, or one takes a resonance that was left out; those that fit
-        best first.
+        bearings do that are nearly alike, or one takes a resonance that was left out, be it instead
+        of its own; those that fit best first, and change
+        no logarithm by more than `farthest`.
         """
-        logs = [math.log(one.frequency) for one in self.measured.modes]
-        family = [self.computed.modes[j].name.family for _, j in self.pairs]
-        mine = [logs[i] for i, _ in self.pairs]
-        left_out = set(range(len(logs))) - {i for i, _ in self.pairs}
+        logs = np.log([one.frequency for one in self.measured.modes])
+        modes, pairs = self.computed.modes, {j: i for i, j in self.pairs}
+        left_out = set(range(len(logs))) - set(pairs.values())
         moves = [
-            {a: mine[b] - mine[a], b: mine[a] - mine[b]}
-            for a, b in combinations(range(len(mine)), 2)
-            if family[a] == family[b]
-        ] + [{a: logs[k] - mine[a]} for a in range(len(mine)) for k in left_out]
+            {a: pairs[b], b: pairs[a]}
+            for a, b in combinations(pairs, 2)
+            if modes[a].name.family == modes[b].name.family
+        ] + [{j: i} for j in range(len(modes)) for i in left_out]
+        now = np.log([mode.frequency_hz for mode in modes])
+        begun = now.copy()
+        begun[list(pairs)] = logs[list(pairs.values())]
         out = []
         for move in moves:
-            aim = self.residual.copy()
-            for k, by in move.items():
-                aim[k] += by
-            change = self.step(aim)
-            left = aim - self.rows @ change
-            done = all(abs(left[k]) < EXCHANGED * abs(by) for k, by in move.items())
-            if done and SAME < self.apart(change):
-                out.append((float(np.sum((left * self.weight) ** 2)), change))
+            j, i = (np.array(list(part)) for part in zip(*(pairs | move).items()))
+            aim, weight = (
+                logs[i] - now[j],
+                1 / np.sqrt(self.variances[i, j] + self.scatter**2 + TINY),
+            )
+            change = self.step(aim, self.every[j], weight=weight)
+            left = aim - self.every[j] @ change
+            moved = np.isin(j, list(move))
+            done = abs(left[moved]) < EXCHANGED * abs(logs[i] - begun[j])[moved]
+            apart = float(np.linalg.norm(self._weighed(self.every[j], weight) @ change))
+            if done.all() and apart > SAME and abs(change).max() <= farthest:
+                misfit = float(np.sum((left * weight) ** 2)) + DOUBT * (len(logs) - len(j))
+                out.append((misfit, change))
         return [change for _, change in sorted(out, key=lambda one: one[0])][:STARTS]
 
     def apart(self, change: np.ndarray) -> float:
@@ -184,10 +197,10 @@ class Fit:
             if abs(part) >= SHARE * abs(direction).max()
         ]
         what = " with ".join(among)
+        out = "leave one of them out" if len(among) > 1 else "leave it out"
         raise SolidgearError(
-            f"identify: these resonances do not tell {what}: any change that way moves them by less "
-            f"than their scatter ({_factor(deviation)}); "
-            "leave one of them out, or measure a mode that it moves"
+            f"identify: these resonances do not tell {what}: {_factor(deviation)}; {out}, or measure a "
+            "mode that it moves"
         )
 
 
@@ -218,7 +231,7 @@ def best_of(ends: Sequence[End]) -> End:
 def _factor(deviation: float) -> str:
     """Standard deviation of a logarithm in words."""
     return (
-        "without any bound"
+        "however far it is changed that way, they move by less than their scatter"
         if deviation > 10
-        else f"standard deviation: a factor of {math.exp(deviation):.3g}"
+        else f"they leave it open by a factor of {math.exp(deviation):.3g} either way"
     )

@@ -64,14 +64,17 @@ class Fitted:
 
     Attributes
     ----------
-    measured, computed, left_out : float
-        Hz; the last is what is predicted where this resonance is left out of the fit.
+    measured, computed : float
+        Hz.
+    left_out : float or None
+        What is predicted where this resonance is left out of the fit, Hz; None where the others do
+        not tell it.
     """
 
     name: str
     measured: float
     computed: float
-    left_out: float
+    left_out: float | None
 
 
 @dataclass(frozen=True)
@@ -104,8 +107,10 @@ class Identification(Displayed):
         Resonances that were fitted.
     unpaired : tuple of float
         Hz; those that were not, since no mode is surely theirs.
-    rms, rms_left_out : float
-        Relative differences of fit, and of each resonance predicted from the others.
+    rms : float
+        Relative differences of fit.
+    rms_left_out : float or None
+        Of each resonance predicted from the others; None where they tell none.
     predicted : tuple of Predicted
     tables : mapping
         Of the scene file with the values put in.
@@ -122,7 +127,7 @@ class Identification(Displayed):
     fitted: tuple[Fitted, ...]
     unpaired: tuple[float, ...]
     rms: float
-    rms_left_out: float
+    rms_left_out: float | None
     predicted: tuple[Predicted, ...]
     mesh: str
     tables: Tables
@@ -172,10 +177,16 @@ def _sentences(found: Identification) -> Iterator[str]:
             f"Not the only answer: {told} (SI) fits these resonances as well; measure shapes, or "
             "further modes, to tell which."
         )
-    yield (
-        f"{len(found.fitted)} resonances fitted: {100 * found.rms:.2g} % rms; each predicted from the "
-        f"others: {100 * found.rms_left_out:.2g} % rms."
+    yield f"{len(found.fitted)} resonances fitted: {100 * found.rms:.2g} % rms" + (
+        "."
+        if found.rms_left_out is None
+        else f"; each predicted from the others: {100 * found.rms_left_out:.2g} % rms."
     )
+    if alone := [one.name for one in found.fitted if one.left_out is None]:
+        yield (
+            f"No other resonance tells {', '.join(alone)}, whose fit proves nothing: measure more that "
+            "the same entries move."
+        )
     if found.unpaired:
         told = ", ".join(f"{one:.6g}" for one in found.unpaired)
         yield f"Left out, since no mode is surely theirs: {told} Hz."

@@ -12,6 +12,7 @@ import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.paths import Tables, changed
 from solidgear.scene.toml_file import parse
@@ -28,20 +29,25 @@ from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sweep.bench import surface
 
 Progress = Callable[[str], None]
-#: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none
-ROUNDS, LONGEST, NONE = 12, 0.5, 1e-7
-#: change of a logarithm that is none between rounds
-NEARER = 1e-5
+#: rounds of Gauss and Newton, the largest change of a logarithm in one, and the one that is none;
+#: of a deviation, that may be left
+ROUNDS, LONGEST, NONE, LEFT = 12, 0.5, 1e-7, 1e-2
+#: change of a logarithm that is none between rounds, and of a change the share by which a body that
+#: is not solved again may be mistaken
+NEARER, MISTAKEN = 1e-5, 1e-2
 #: rounds in which pairs count from a lower probability on
 EARLY, LIKELY = 2, 0.5
 #: of the logarithm of an entry, to either side, for derivatives
 STEP = 1e-4
 #: of the logarithm of entries, along what is not told where it begins
 NUDGE = 0.03
+#: a resonance that leaves less than this of itself to the others is predicted from none
+ALONE = 1e-6
 #: frequencies beyond the measured ones are looked for in steps of this factor
 WIDER = 1.15
 
 
+@pinned
 def identify(
     scene: str | os.PathLike,
     measured: Measured,
@@ -121,11 +127,9 @@ class _Study:
         self.low = np.array([one.low for one in self.varied])
         self.high = np.array([one.high for one in self.varied])
         self.x = np.array([one.begin for one in self.varied])
-        here = surface(self.scene_at(self.x))
+        self._around: tuple[np.ndarray, list[tuple[Scene, Scene]]] | None = None
         #: whether all that is varied leaves the body as it is
-        self.on_springs = all(
-            surface(self.scene_at(self.x + own)) == here for own in STEP * np.eye(len(self.x))
-        )
+        self.on_springs = all(surface(low) == surface(high) for low, high in self.around())
 
     def tables_at(self, x: np.ndarray) -> Tables:
         """Tables with the logarithms of entries moved by `x`."""
@@ -136,6 +140,14 @@ class _Study:
 
     def scene_at(self, x: np.ndarray) -> Scene:
         return scene_of(self.tables_at(x), self.path)
+
+    def around(self) -> list[tuple[Scene, Scene]]:
+        """Scenes on either side of where it stands, by entries."""
+        if self._around is None or self._around[0] is not self.x:
+            steps = STEP * np.eye(len(self.x))
+            sides = [(self.scene_at(self.x - own), self.scene_at(self.x + own)) for own in steps]
+            self._around = self.x, sides
+        return self._around[1]
 
     def settled(
         self, x: np.ndarray, computed: Computed | None = None, known: Sequence[End] = ()
@@ -167,10 +179,16 @@ class _Study:
             for end in known:
                 if fit.apart(self.x + step - end.x) < SAME:
                     return end
-            if turn >= early and abs(step).max() < max(NONE, 1e-2 * fit.deviations().min()):
-                self.x = self.x + step
-                return End(self.x, fit, step)
-            self.x = self.x + (self._nearer(fit) if self.on_springs else _short(step))
+            done = max(NONE, LEFT * fit.deviations().min())
+            if turn >= early and abs(step).max() < done:
+                return End(self.x + step, fit, step)
+            if not self.on_springs:
+                self.x = self.x + _short(step)
+                continue
+            step = self._nearer(fit)
+            if turn >= early and MISTAKEN * abs(step).max() < done:
+                return End(self.x + step, fit, step)
+            self.x = self.x + step
         raise SolidgearError(
             f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
             f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
@@ -178,9 +196,8 @@ class _Study:
 
     def exchanged(self, best: End, known: list[End]) -> list[End]:
         """Ends that are known, and those that other pairs than the best one's lead to."""
-        for change in best.fit.exchanges():
-            if abs(change).max() > LONGEST * ROUNDS:
-                continue  # further than a search goes
+        # no search goes further
+        for change in best.fit.exchanges(LONGEST * ROUNDS):
             start = np.clip(best.x + change, self.low, self.high)
             try:
                 end = self.settled(start, best.fit.computed, known)
@@ -192,7 +209,7 @@ class _Study:
 
     def found(self, predict: int) -> Identification:
         first = self.settled(self.x)
-        first.fit.refuse_undetermined()
+        # what no pair tells here other pairs may tell
         ends = self.exchanged(first, [first])
         if (end := best_of(ends)) is not first:
             ends = self.exchanged(end, ends)
@@ -222,15 +239,16 @@ class _Study:
         )
         left = fit.residual - fit.rows @ step
         leverage = np.einsum("ip,pq,iq->i", fit.rows, fit.covariance, fit.rows) * fit.weight**2
-        out = left / np.maximum(1 - leverage, 1e-12)
+        alone = 1 - leverage < ALONE
+        out = left / np.where(alone, 1.0, 1 - leverage)
         fitted = tuple(
             Fitted(
                 str(computed.modes[j].name),
                 float(f),
                 float(f * math.exp(-a)),
-                float(f * math.exp(-b)),
+                None if own else float(f * math.exp(-b)),
             )
-            for (_, j), f, a, b in zip(fit.pairs, fit.frequencies, left, out)
+            for (_, j), f, a, b, own in zip(fit.pairs, fit.frequencies, left, out, alone)
         )
         used = {i for i, _ in fit.pairs}
         return Identification(
@@ -241,7 +259,7 @@ class _Study:
             fitted,
             tuple(m.frequency for i, m in enumerate(self.measured.modes) if i not in used),
             float(np.sqrt(np.mean(left**2))),
-            float(np.sqrt(np.mean(out**2))),
+            None if alone.all() else float(np.sqrt(np.mean(out[~alone] ** 2))),
             self._predicted(predict, fit, computed) if predict else (),
             computed.mesh,
             self.tables_at(self.x),
@@ -252,21 +270,20 @@ class _Study:
         """Change of the logarithms of entries that no mesh hangs on, to the least squares of a body that
         is not solved again.
         """
-        sprung, x = Sprung(fit.computed), self.x
+        sprung, moved = Sprung(fit.computed), np.zeros(len(self.x))
+        sides = [(as_supports(low), as_supports(high)) for low, high in self.around()]
         paired = [j for _, j in fit.pairs]
         for _ in range(ROUNDS):
-            at = sprung.at(as_supports(self.scene_at(x)))
-            sides = [
-                [as_supports(self.scene_at(x + sign * own)) for sign in (-1, 1)]
-                for own in STEP * np.eye(len(x))
-            ]
+            at = sprung.at(as_supports(self.scene_at(self.x + moved)))
             rows = np.column_stack([sprung.slopes(at, *ends) for ends in sides]) / (2 * STEP)
+            # most springs grow with their entry; slopes that are not exact cost a turn
+            rows = rows[paired] * np.exp(moved)
             residual = np.log(fit.frequencies / at[0][paired])
-            step = _short(fit.step(residual, rows[paired], x - self.x))
-            x = x + step
+            step = _short(fit.step(residual, rows, moved))
+            moved = moved + step
             if abs(step).max() < NEARER:
                 break
-        return x - self.x
+        return moved
 
     def _predicted(self, count: int, fit: Fit, before: Computed) -> tuple[Predicted, ...]:
         """Modes beyond the highest that was measured."""
@@ -304,11 +321,8 @@ class _Study:
         scene, body = computed.scene, computed.body
         forms = [of_mode(body, as_supports(scene), mode) for mode in computed.modes]
         by = Derivatives(scene, body, forms, computed.rung, computed.options).by
-        columns = []
-        for own in STEP * np.eye(len(self.keys)):
-            columns.append(by(self.scene_at(self.x - own), self.scene_at(self.x + own), 2 * STEP))
-        frequencies = np.array([mode.frequency_hz for mode in computed.modes])
-        return np.column_stack(columns) / frequencies[:, None]
+        columns = np.column_stack([by(low, high, 2 * STEP) for low, high in self.around()])
+        return columns / np.array([mode.frequency_hz for mode in computed.modes])[:, None]
 
 
 def _short(step: np.ndarray) -> np.ndarray:

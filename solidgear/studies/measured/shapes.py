@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from solidgear.body import Body
 from solidgear.body.surface import Surface
 from solidgear.errors import SolidgearError
+from solidgear.solve.modes import Mode
 from solidgear.studies.measured.alignment import Seen
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.universal import Shapes
@@ -26,6 +27,8 @@ OFF = 0.05
 NEAR = 4
 #: MAC of two computed modes on the measuring points from which on these do not tell them apart
 ALIKE = 0.1
+#: pairs of modes that are named which the measuring points do not tell apart
+NAMED = 3
 #: places of the surface that are tried for one more point
 TRIED = 300
 
@@ -128,6 +131,33 @@ class OnPoints:
                 if like > ALIKE:
                     out.append((j - k, k, j, like))
         return [Confused(k, j, like, *self._told_by(k, j)) for _, k, j, like in sorted(out)]
+
+    def sentences(self, modes: Sequence[Mode]) -> tuple[str, ...]:
+        """Sentences on the first modes that the measuring points do not tell apart."""
+        out = []
+        names = [str(mode.name) for mode in modes]
+        shapes = sum(mode.multiplicity for mode in modes)
+        if shapes > self.seen.components:
+            out.append(
+                f"{self.seen.components} measured components tell at most as many shapes apart, and "
+                f"{shapes} are computed up to the highest resonance: MAC is high by chance; measure "
+                f"{shapes - self.seen.components} more at least."
+            )
+        confused = self.confused(len(modes))
+        for one in confused[:NAMED]:
+            place = ", ".join(f"{x:.4g}" for x in one.place)
+            out.append(
+                f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their "
+                f"MAC on them is {one.mac:.2f})"
+                + (
+                    f"; one more at x, y, z = {place} m would (MAC {one.then:.2f})."
+                    if one.then <= ALIKE
+                    else ", nor do they with any one more."
+                )
+            )
+        if len(confused) > NAMED:
+            out.append(f"They do not tell {len(confused) - NAMED} further pairs of modes.")
+        return tuple(out)
 
     def _told_by(self, j: int, k: int) -> tuple[tuple[float, float, float], float]:
         """Place of one more point that tells two modes best, and their MAC with it."""

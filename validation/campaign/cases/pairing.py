@@ -4,9 +4,10 @@ than those that are computed, few points, noisy shapes, and lists that have a sl
 
 from __future__ import annotations
 
+import argparse
 import math
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from typing import Any
@@ -15,9 +16,11 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene.file import scene_of
-from solidgear.studies.measured.alignment import align
+from solidgear.scene.paths import Tables
+from solidgear.studies.measured import correlate
+from solidgear.studies.measured.alignment import BANDWIDTH, align
 from solidgear.studies.measured.computed import Computed
-from solidgear.studies.measured.correlate import peaks_of
+from solidgear.studies.measured.correlate import POSSIBLE, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
 from solidgear.studies.measured.shapes import OnPoints
 from solidgear.studies.measured.universal import Shapes
@@ -25,49 +28,69 @@ from validation.campaign.case import Case, Run
 from validation.campaign.cases.identification import NOISE, SHAPES, shaft
 from validation.campaign.rows import CLAIM, Found, Row
 
-#: of logarithms: what springs and modulus are off by
+#: standard deviations of logarithms: what springs and modulus are off by
 SPRINGS, MODULUS = 0.2, 0.03
 #: of shapes, and points that are measured
 NOISES, POINTS = (0.02, 0.05, 0.1), (3, 16)
-SLIPS = ("none", "two changed places", "a mode is missing", "a peak is none", "a pair is split")
+SLIPS = (
+    "none",
+    "two changed places",
+    "a mode is missing",
+    "a peak is none",
+    "a pair is split",
+    "two are one peak",
+)
 #: sets of points and noise for each shaft and slip
 SETS = 2
 #: points that say which mode is which
 MANY = 200
 #: least MAC on many points of modes that are the same one; below, nobody can say which it is
-SAME, MIXED = 0.7, -1
+SAME, MIXED = 0.7, None
 #: probabilities that are told together
-BINS = (0.05, 0.5, 0.8, 0.95, 0.99, 1.0)
+BINS = (POSSIBLE, 0.2, 0.5, 0.8, SURE, 0.99, 1.0)
 
 
 class Pairing(Case):
-    """A pair that is told counts as held where it is right."""
+    """A pair that is told counts as held where it is right; one that is told as sure and is wrong is
+    a failure.
+    """
 
     name, question = "pairing", "probabilities of pairs of measured and computed modes"
-    parts = ((), ("stated",), ("slip",))
+    parts = (("silent",), ("stated",), ("slip",))
     details = (("noise",), ("slip", "stated"))
-    widths = False
+    widths = singly = False
     seeds = (1, 50)
 
+    def options(self, parser: argparse.ArgumentParser) -> None:
+        told = "frequencies and multiplicities alone, no shapes"
+        parser.add_argument("--frequencies", action="store_true", help=told)
+
     def judge(self, run: Run, seed: int) -> Found:
-        found, problem = run.call(judged, seed)
+        found, problem = run.call(judged, seed, run.given.frequencies)
         if problem:
             return Found(problems=[f"seed {seed}: {problem}"])
         rows = [Row(body=f"seed {seed}", bar=0.5, rule=CLAIM, **row) for row in found]
-        return Found(rows)
+        sure = (row for row in rows if row.tags["silent"] == "sure" and row.error)
+        silent = [f"{row.body}, {row.tags['slip']}: sure and wrong, {row.how}" for row in sure]
+        return Found(rows, failures=silent)
 
 
-def judged(seed: int) -> list[dict[str, Any]]:
-    """Pairs that are told, right (0) or wrong (1)."""
+def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
+    """Pairs that are told, right (0) or wrong (1); of frequencies and multiplicities alone if `bare`."""
     rng = np.random.default_rng([seed, 5])
     text, springs = shaft(rng)
-    moved = [k * math.exp(rng.uniform(-SPRINGS, SPRINGS)) for k in springs]
-    true, computed = _solved(text, springs), _solved(text, moved)
+    tables = tomllib.loads(text.format(*springs))
+    true = _solved(tables)
+    for bearing in tables["bearing"]:
+        held = bearing["stiffness"]
+        held |= {k: x * math.exp(SPRINGS * rng.standard_normal()) for k, x in held.items()}
+    computed = _solved(tables)
     shift = math.exp(MODULUS * rng.standard_normal())
     count = len(computed.body.surface({}).points)
     many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
     everywhere = OnPoints(many, NOISES[0], computed)
-    partner = [int(row.argmax()) if row.max() > SAME else MIXED for row in everywhere.seen.mac]
+    partner = [{int(row.argmax())} if row.max() > SAME else MIXED for row in everywhere.seen.mac]
+    widths = computed.widths(correlate.SPRINGS)
     rows = []
     for slip, _ in product(SLIPS, range(SETS)):
         noise = float(rng.choice(NOISES))
@@ -82,67 +105,94 @@ def judged(seed: int) -> list[dict[str, Any]]:
             )
             for mode, shape, right in zip(true.modes, shapes.values, partner)
         ]
-        slipped = _slipped(rng, slip, peaks)
-        for p, right in _told(slipped, shapes, noise, computed):
+        slipped = _slipped(rng, slip, peaks, widths if bare else None)
+        for p, sure, right in _told(slipped, None if bare else shapes, noise, computed):
             stated = next(f"{a:.0%} to {b:.0%}" for a, b in zip(BINS, BINS[1:]) if p <= b + 1e-6)
-            how = f"p {p:.4f}, {len(at)} points"
-            tags = {"stated": stated, "slip": slip, "noise": f"{noise:.0%}"}
+            how = f"p {p:.4f}" if bare else f"p {p:.4f}, {len(at)} points"
+            seen = "none" if bare else f"{noise:.0%}"
+            silent = "sure" if sure else "unsure"
+            tags = {"stated": stated, "slip": slip, "noise": seen, "silent": silent}
             rows.append({"quantity": "pair", "tags": tags, "error": float(not right), "how": how})
     return rows
 
 
 @dataclass(frozen=True)
 class _Peak:
-    """A measured resonance and the mode it is; None for a peak that is none."""
+    """A measured resonance and the modes it is: none of a peak that is none."""
 
     log: float
     multiplicity: int
     shape: np.ndarray
-    right: int | None
+    right: set[int] | None
 
 
-def _slipped(rng: np.random.Generator, slip: str, peaks: list[_Peak]) -> list[_Peak]:
-    """A list with a slip, by ascending frequency."""
+def _slipped(
+    rng: np.random.Generator, slip: str, peaks: list[_Peak], widths: np.ndarray | None
+) -> list[_Peak]:
+    """A list with a slip, by ascending frequency; without shapes neighbours change places that may, by
+    the widths of modes.
+    """
     out = list(peaks)
     k = int(rng.integers(1, len(out) - 2))
     one, other = out[k : k + 2]
     if slip == "two changed places":
-        # neighbours, of the nearer half
         gaps = [b.log - a.log for a, b in pairwise(out)]
-        k = int(rng.choice(np.argsort(gaps)[: len(gaps) // 2]))
-        one, other = out[k : k + 2]
-        out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
+        if widths is None:
+            k = int(rng.choice(np.argsort(gaps)[: len(gaps) // 2]))
+            one, other = out[k : k + 2]
+            out[k : k + 2] = [replace(one, log=other.log), replace(other, log=one.log)]
+            return sorted(out, key=lambda peak: peak.log)
+        reach = [max((float(widths[j]) for j in p.right or ()), default=0.0) for p in out]
+        near = [k for k, gap in enumerate(gaps) if 2 * gap < max(reach[k : k + 2])]
+        if near:
+            # the one that its springs can move that far passes the other
+            k = int(rng.choice(near))
+            a, b = (k, k + 1) if reach[k] > reach[k + 1] else (k + 1, k)
+            out[a] = replace(out[a], log=2 * out[b].log - out[a].log)
     elif slip == "a mode is missing":
         del out[k]
     elif slip == "a peak is none":
         where = rng.uniform(out[0].log, out[-1].log)
-        out.append(_Peak(float(where), 1, rng.standard_normal(one.shape.shape), None))
+        out.append(_Peak(float(where), 1, rng.standard_normal(one.shape.shape), set()))
     elif slip == "a pair is split" and (pairs := [p for p in out if p.multiplicity == 2]):
         one = replace(pairs[int(rng.integers(len(pairs)))], multiplicity=1)
         out = [one if p.right == one.right else p for p in out]
         out.append(replace(one, log=one.log + 2 * NOISE))
+    elif slip == "two are one peak":
+        k = min(range(len(out) - 1), key=lambda k: out[k + 1].log - out[k].log)
+        one, other = out[k : k + 2]
+        if other.log - one.log < BANDWIDTH:
+            a, b = rng.standard_normal(2)
+            right = MIXED if MIXED in (one.right, other.right) else one.right | other.right
+            amid = (one.log + other.log) / 2
+            shape = a * one.shape + b * other.shape
+            out[k : k + 2] = [_Peak(amid, one.multiplicity, shape, right)]
     return sorted(out, key=lambda peak: peak.log)
 
 
 def _told(
-    peaks: list[_Peak], shapes: Shapes, noise: float, computed: Computed
-) -> Iterator[tuple[float, bool]]:
-    """Probabilities of pairs, and whether each is right."""
+    peaks: list[_Peak], shapes: Shapes | None, noise: float, computed: Computed
+) -> Iterator[tuple[float, bool, bool]]:
+    """Probabilities of pairs, whether no other is in question, and whether each is right."""
     modes = [{"frequency": math.exp(p.log), "multiplicity": p.multiplicity} for p in peaks]
     measured = Measured(uncertainty=NOISE, noise=noise, mode=modes)
-    values = np.array([peak.shape for peak in peaks])
-    seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
-    found = align(*peaks_of(measured, computed), seen)
+    seen = None
+    if shapes is not None:
+        values = np.array([peak.shape for peak in peaks])
+        seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
+    found = align(*peaks_of(measured, computed, correlate.SPRINGS), seen)
     for peak, row in zip(peaks, found.pairs):
-        for j in np.flatnonzero(row > BINS[0]) if peak.right != MIXED else ():
-            yield float(row[j]), int(j) == peak.right
+        told = np.flatnonzero(row > POSSIBLE)
+        for j in told if peak.right is not MIXED else ():
+            yield float(row[j]), len(told) == 1 and bool(row[j] >= SURE), int(j) in peak.right
 
 
-def _solved(text: str, springs: Sequence[float]) -> Computed:
-    scene = scene_of(tomllib.loads(text.format(*springs)), "shaft.toml")
+def _solved(tables: Tables) -> Computed:
+    scene = scene_of(tables, "shaft.toml")
     body = sg.build(scene, "harmonic", order=3)
     modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
-    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {})
+    limit = modes[-1].frequency_hz
+    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {}, limit)
 
 
 def _shapes(rng: np.random.Generator, true: Computed, at: np.ndarray, noise: float) -> Shapes:
