@@ -1,8 +1,6 @@
 """The cheapest answer with a bar: whether the bar holds, what it costs, and what is passed over."""
 
 import json
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -106,9 +104,9 @@ def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
 def test_a_looser_tolerance_costs_less(scenes):
     costs = [
         sum(s.unknowns for s in answer(scenes["shaft_stepped"], tol, "C_thx").steps if s.valid)
-        for tol in (0.1, 1e-3, 1e-4)
+        for tol in (0.1, 1e-3)
     ]
-    assert costs[0] < costs[1] < costs[2]
+    assert costs[0] < costs[1]
 
 
 def test_only_what_is_asked_is_built_and_the_numbers_are_the_same(scenes):
@@ -407,22 +405,20 @@ def test_what_does_not_exist_is_said_to_be_missing():
     assert not nothing.reached and nothing.values == () and "exists" in nothing.steps[-1].why
 
 
-def test_command_line():
-    def run(*arguments):
-        command = [sys.executable, "-m", "solidgear.cli", "answer", *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=120, cwd=ROOT)
-
-    done = run("geometry/shaft_stepped.toml", "--tol", "0.05", "--ask", "bending", "--json")
-    found = json.loads(done.stdout)
-    assert done.returncode == 0 and found["reached"] and found["values"][0]["bar"] <= 0.05
-    told = run("geometry/cylinder_free.toml", "--ask", "C_zz")
-    assert told.returncode == 3 and "Not there: C_zz" in told.stdout
-    share = run("geometry/shaft_stepped.toml", "--tol", "5%", "--ask", "bending", "--json")
-    assert json.loads(share.stdout)["tolerance"] == found["tolerance"] == 0.05
-    none = run("geometry/shaft_stepped.toml", "--tol", "one")
-    assert none.returncode == 2 and "or 1%" in " ".join(none.stderr.split())
-    wrong = run("geometry/shaft_stepped.toml", "--tol", "0")
-    assert wrong.returncode == 1 and "tol = 0" in wrong.stderr
+def test_command_line(run):
+    stepped, free = (
+        ROOT / "geometry" / f"{name}.toml" for name in ("shaft_stepped", "cylinder_free")
+    )
+    code, out, _ = run("answer", stepped, "--tol", "5%", "--ask", "bending", "--json")
+    found = json.loads(out)
+    assert code == 0 and found["reached"] and found["tolerance"] == 0.05
+    assert found["values"][0]["bar"] <= 0.05
+    code, out, _ = run("answer", free, "--ask", "C_zz")
+    assert code == 3 and "Not there: C_zz" in out
+    code, _, err = run("answer", stepped, "--tol", "one")
+    assert code == 2 and "or 1%" in " ".join(err.split())
+    code, _, err = run("answer", stepped, "--tol", "0")
+    assert code == 1 and "tol = 0" in err
 
 
 def test_a_coupling_that_symmetry_forbids_is_zero_and_others_are_not(scenes):

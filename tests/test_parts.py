@@ -24,7 +24,6 @@ from solidgear.scene.outline import Outline
 from solidgear.studies import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
 
-pytestmark = pytest.mark.usefixtures("read_once")
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_step.toml"
 COARSE = {"refinement": 0.25}
@@ -365,7 +364,6 @@ def test_seats_that_are_not_there(tmp_path):
 
 def test_two_solids_and_an_open_shell(tmp_path):
     """Named by number and place."""
-    from solidgear.machine.isolated import isolated
     from validation.step_parts import write_open, write_two
 
     isolated(write_two, str(tmp_path / "part.step"), seconds=60)
