@@ -1,7 +1,6 @@
 """Every guard of `solidgear check`: a scene that sets it off, and a near miss that does not."""
 
 import json
-import pickle
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -526,22 +525,6 @@ def matching(records, case: Case) -> list[dict]:
         and case.says in r["sentence"]
         and (r["level"] != "fact" or case.level == "fact")
     ]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def solved_once():
-    """Light solids of a scene, which many guards and tests ask for."""
-    solve, known = probe_module.study, {}
-
-    def once(*asked, **more):
-        key = pickle.dumps((asked, sorted(more.items())))
-        if key not in known:
-            known[key] = solve(*asked, **more)
-        return known[key]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(probe_module, "study", once)
-        yield
 
 
 @pytest.mark.parametrize("name", CASES)

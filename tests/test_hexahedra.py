@@ -31,7 +31,10 @@ SCENES = {
 
 @pytest.fixture(
     scope="module",
-    params=[(name, around) for name in SCENES for around in (8, 12, 16)],
+    params=[
+        *(("nasty", 8), ("nasty", 12), ("nasty", 16), ("shaft_hollow", 8), ("pinion_overhung", 12)),
+        *(pytest.param(("gear_shaft", n), marks=pytest.mark.slow) for n in (8, 16)),
+    ],
     ids=lambda p: f"{p[0]}-{p[1]}",
 )
 def case(request):

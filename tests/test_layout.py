@@ -83,7 +83,14 @@ SCENES = {name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml")) for name in SHI
 }
 
 
-@pytest.fixture(scope="module", params=SCENES)
+#: of the shipped ones a pinion, a tube and a disc; the others are milder than those made up here
+SELDOM = set(SHIPPED) - {"pinion_overhung", "shaft_hollow", "rotor_disc"}
+
+
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(n, marks=pytest.mark.slow if n in SELDOM else ()) for n in SCENES],
+)
 def scene(request):
     return SCENES[request.param]()
 
@@ -439,7 +446,7 @@ def test_a_joint_that_is_no_step_leaves_lines_straight():
 def test_few_lines_are_steep_whatever_the_shaft_looks_like():
     # cones so steep that surfaces ask for one order on one side and another on the other remain
     found = []
-    for seed in range(300):
+    for seed in range(150):
         rng = np.random.default_rng(seed)
         parts = []
         for _ in range(rng.integers(2, 9)):
@@ -471,7 +478,7 @@ def test_no_line_runs_from_a_shaft_to_the_bore_of_a_drum_across_a_thin_disc():
 
 def test_bands_hold_together_whatever_bores_face():
     facing = 0
-    for seed in range(300):
+    for seed in range(150):
         rng = np.random.default_rng(seed)
         parts = []
         while len(parts) < 5:
@@ -493,7 +500,7 @@ def test_bands_hold_together_whatever_bores_face():
             assert here[[0, -1]] == pytest.approx(
                 [max(a.inner1, b.inner0), min(a.outer1, b.outer0)]
             )
-    assert facing > 20
+    assert facing > 10
 
 
 def rings_of(length, bore, **plan):

@@ -32,7 +32,9 @@ def rigid_motion_at(y):
 
 
 @pytest.mark.parametrize("attachment", ["average", "rigid", "section"])
-@pytest.mark.parametrize("model", list(OPTIONS))
+@pytest.mark.parametrize(
+    "model", [pytest.param(m, marks=pytest.mark.slow if m == "solid hex8" else ()) for m in OPTIONS]
+)
 def test_ports_follow_rigid_motions(model, attachment):
     scene = sg.load(GEOMETRY / "shaft_hollow.toml").with_attachment(attachment)
     body = sg.build(scene, model.split()[0], **OPTIONS[model])
