@@ -404,7 +404,7 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     "module", ["solidgear", pytest.param("solidgear.cli", marks=pytest.mark.long)]
 )
 def test_module_runs_as_a_program(tmp_path, module):
-    done = python("-m", module, "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
+    done = python("-m", module, "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
     done = python("-m", module, "stiffness", "nowhere.toml", cwd=tmp_path)
