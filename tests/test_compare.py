@@ -654,7 +654,7 @@ def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
 
 def test_a_lumped_model_on_a_solid_is_not_called_cheaper_than_it():
     """It is made from the solved solid, and costs as much."""
-    found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHT).results
+    found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHTEST).results
     sentences = " ".join(found["verdict"]["sentences"])
     assert found["models"]["lumped"]["valid"] and found["verdict"]["cheapest"] == "harmonic"
     assert "masses on the stiffness of the harmonic solid) is within 5 % too" in sentences
