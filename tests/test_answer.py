@@ -352,17 +352,20 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     assert [q for _, names in stuck._questions() for q in names] == ["C_yy"]
 
 
-def test_what_heavy_meshes_cost_is_told_before_they_are_made():
-    """Holes of 0.5 mm through 60 mm; those of 12 mm are no matter."""
-    from solidgear.judge.effort import heavy_meshes
+def test_what_heavy_meshes_cost_is_told_before_they_are_made(monkeypatch):
+    """Holes of 2 mm through 60 mm, where 80,000 unknowns are many; those of 12 mm are no matter."""
+    from solidgear.judge import effort
+
+    monkeypatch.setattr(effort, "HEAVY", 80_000)
+    monkeypatch.setattr(effort, "MAYBE_HEAVY", 80_000 / 3)
 
     def told(diameter):
         rim = sg.Segment.cylinder("rim", length=0.06, diameter=0.05)
         holes = BoltCircle(name="b", segment="rim", count=6, diameter=diameter, circle=0.036)
         scene = sg.Scene.from_parts([rim], features=[holes])
-        return list(heavy_meshes(scene, LADDER["sector"]))
+        return list(effort.heavy_meshes(scene, LADDER["sector"]))
 
-    (sentence,) = told(0.0005)
+    (sentence,) = told(0.002)
     assert "its coarsest mesh takes " in sentence and "without which there is no bar" in sentence
     assert "unknowns" in sentence and "GB" in sentence and "min" in sentence
     assert not told(0.012)

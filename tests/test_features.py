@@ -170,7 +170,7 @@ def test_the_plane_of_the_key_is_the_softer_one():
 
 def test_no_plane_no_halves():
     crossed = shaft(KEY, Keyway(**KEY.model_dump() | {"name": "k2", "angle": "50 deg", "y": 0.075}))
-    body = sg.build(crossed, "solid", refinement=0.4)
+    body = sg.build(crossed, "solid", refinement=0.25)
     assert len(body.blocks) == 1 and body.mesh["mirror_plane"] == "none"
     assert body.rigid_residual() < 1e-14
     assert max(sg.modes(body, crossed, n=6).multiplicity) == 1
@@ -179,10 +179,10 @@ def test_no_plane_no_halves():
 def test_a_cross_hole_and_a_bore():
     hole = CrossHole(name="oil", segment="rod", y=0.1, diameter=0.008)
     scene = shaft(hole, bore=0.02)
-    wanted, made = mesh_of(scene, 0.5)
+    wanted, made = mesh_of(scene, 0.35)
     assert made.removed == pytest.approx(hole.volume(0.03, 0.01), rel=1e-5)
     assert made.plane == 0
-    body = sg.build(scene, "solid", refinement=0.5)
+    body = sg.build(scene, "solid", refinement=0.35)
     assert body.mesh["volume"] < math.pi * (0.03**2 - 0.01**2) * 0.2
 
 

@@ -43,13 +43,14 @@ def copied(folder, name="b.toml", **replaced):
 
 @pytest.fixture(scope="module")
 def stiffer(tmp_path_factory):
-    """The shipped train beside one with twice the mesh stiffness, both on coarse solids."""
+    """The shipped train beside one with twice the mesh stiffness, both on coarse solids of the gear."""
     folder = tmp_path_factory.mktemp("two")
     other = copied(folder, stiffness=('"2.5e8 N/m"', '"5e8 N/m"'))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(models, "MESH", COARSE)
-        done = command("compare", OVERHUNG, other, "--out", folder / "out", "--json")
-        alone = respond(Workshop(sg.load_train(other)), "harmonic", "harmonic")
+        words = ("--pinion", "timoshenko", "--out", folder / "out", "--json")
+        done = command("compare", OVERHUNG, other, *words)
+        alone = respond(Workshop(sg.load_train(other)), "timoshenko", "harmonic")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), folder / "out", alone
 
