@@ -2,7 +2,6 @@
 by a refused command.
 """
 
-import json
 import os
 import re
 import subprocess
@@ -14,6 +13,7 @@ import pytest
 from solidgear.judge import climb
 from solidgear.ladder.registry import LADDER
 from solidgear.solve.choice import pardiso_missing
+from tests.command import strict
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -27,13 +27,6 @@ LIGHT = {
 HARMONIC = ["-f", "harmonic"]
 FIXED = [*HARMONIC, *LIGHT["harmonic"]]
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
-
-
-def strict(text):
-    def refuse(word):
-        raise AssertionError(f"{word} is not JSON")
-
-    return json.loads(text, parse_constant=refuse)
 
 
 class Done:

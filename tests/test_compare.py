@@ -19,6 +19,7 @@ from solidgear.models.options import ATTACHMENTS
 from solidgear.quantity import ACROSS, QUANTITIES
 from solidgear.report.outputs import OUTPUTS
 from solidgear.studies.comparison import compare
+from tests.command import strict
 
 #: charts are drawn in the folder that all tests share, once
 pytestmark = pytest.mark.usefixtures("no_charts")
@@ -39,15 +40,6 @@ K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
 
 def scene_of(name):
     return sg.load(GEOMETRY / f"{name}.toml")
-
-
-def strict(text):
-    """JSON as the standard has it: no NaN, no infinity."""
-
-    def refuse(word):
-        raise AssertionError(f"{word} is not JSON")
-
-    return json.loads(text, parse_constant=refuse)
 
 
 @pytest.fixture(scope="module")

@@ -45,7 +45,9 @@ def light(overhung):
 
 
 # --------------------------------------------------------------------------- mass
-@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("pinion_overhung", marks=pytest.mark.slow), "shaft_hollow"]
+)
 @pytest.mark.parametrize("element", ["tet10", "hex20", "hex27"])
 def test_mass_centre_and_inertia(name, element):
     scene = sg.load(GEOMETRY / f"{name}.toml")
@@ -167,6 +169,7 @@ def test_tetrahedra_are_near_the_reference(overhung):
     assert 0 < f.frequency_hz / FIRST_BENDING - 1 < 3e-3
 
 
+@pytest.mark.slow
 def test_tetrahedra_are_above_the_reference(overhung):
     body = sg.build(overhung, "solid", element="tet10", size=0.03, graded_size=0.012)
     k = sg.condense(body, overhung, "pinion").stiffness
