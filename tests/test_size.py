@@ -91,7 +91,7 @@ def test_the_law_is_near_the_analysis(scene, options):
 
 
 # ------------------------------------------------------------------------------------------------- refusals
-@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.35})])
+@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.5})])
 def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, options):
     scene = SCENES["pinion_overhung"]
     body = sg.build(scene, model, **options)
