@@ -101,14 +101,6 @@ def test_bars_of_solids_whose_geometry_is_not_exact_have_two_sides(scenes):
     assert not any(LADDER[n].bounded for n in LADDER.of("solid") if n != "harmonic")
 
 
-def test_a_looser_tolerance_costs_less(scenes):
-    costs = [
-        sum(s.unknowns for s in answer(scenes["shaft_stepped"], tol, "C_thx").steps if s.valid)
-        for tol in (0.1, 1e-3)
-    ]
-    assert costs[0] < costs[1]
-
-
 def test_only_what_is_asked_is_built_and_the_numbers_are_the_same(scenes):
     scene = scenes["pinion_overhung"]
     part = answer(scene, 1e-3, ["bending 1", "C_zz"])
@@ -416,8 +408,6 @@ def test_command_line(run):
     found = json.loads(out)
     assert code == 0 and found["reached"] and found["tolerance"] == 0.05
     assert found["values"][0]["bar"] <= 0.05
-    code, out, _ = run("answer", free, "--ask", "C_zz")
-    assert code == 3 and "Not there: C_zz" in out
     code, _, err = run("answer", stepped, "--tol", "one")
     assert code == 2 and "or 1%" in " ".join(err.split())
     code, _, err = run("answer", stepped, "--tol", "0")

@@ -44,13 +44,9 @@ def of_whole(made):
     return 3 * (2 * nodes.shape[1] - int((np.abs(nodes[made.plane]) < 1e-9).sum()))
 
 
-#: a corrected solid of them is counted by default
-COUNTED_BELOW = {"wide hole through a bore", "keyway"}
-
-
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(p, marks=pytest.mark.slow if p in COUNTED_BELOW else ()) for p in PARTS],
+    ["small hole", "narrow keyway with square ends", "flat", "three that share no plane"],
 )
 def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
     given = {"refinement": 0.25}

@@ -17,11 +17,7 @@ from solidgear.reduction.receptance import modal_receptance
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PINIONS = ("pinion_overhung", "pinion_straddle", "thesis_overhung", "thesis_straddle")
-#: two pinions, a ring gear and a tube, and on request those that are like them
-HELD = (
-    *("pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_hollow"),
-    *(pytest.param(n, marks=pytest.mark.slow) for n in (*PINIONS[2:], "shaft_stepped")),
-)
+HELD = ("pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_hollow")
 BODIES = {"euler": {}, "timoshenko": {}, "harmonic": {"order": 2, "layers": 2}}
 
 

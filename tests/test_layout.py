@@ -18,12 +18,10 @@ from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
 from solidgear.scene import Bearing, Port
 from solidgear.scene.outline import Outline
-from validation.shipped import drawn_shafts, shipped_shafts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
-# blocks of cells at fillets are not of lines and rings: tests/test_blends.py
-BLENDED = {p.stem for p in drawn_shafts() if sg.load(p).blends}
-SHIPPED = [p.stem for p in shipped_shafts() if p.stem not in BLENDED]
+#: milder than those made up here
+SHIPPED = ("pinion_overhung", "shaft_hollow", "rotor_disc")
 PLAN = {"size": 0.02, "layers": 3, "edge_layers": 1, "ratio": 0.3}
 
 
@@ -83,14 +81,7 @@ SCENES = {name: (lambda n=name: sg.load(GEOMETRY / f"{n}.toml")) for name in SHI
 }
 
 
-#: of the shipped ones a pinion, a tube and a disc; the others are milder than those made up here
-SELDOM = set(SHIPPED) - {"pinion_overhung", "shaft_hollow", "rotor_disc"}
-
-
-@pytest.fixture(
-    scope="module",
-    params=[pytest.param(n, marks=pytest.mark.slow if n in SELDOM else ()) for n in SCENES],
-)
+@pytest.fixture(scope="module", params=SCENES)
 def scene(request):
     return SCENES[request.param]()
 

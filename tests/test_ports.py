@@ -17,15 +17,12 @@ OPTIONS = {
     "timoshenko": {},
     "harmonic": {"order": 4, "layers": 1},
     "solid hex20": {"element": "hex20", "around": 8, "refinement": 0.5},
-    "solid hex8": {"element": "hex8", "around": 8, "refinement": 0.5},
     "solid tet10": {"element": "tet10", "size": 0.04, "graded_size": 0.04},
 }
 
 
 @pytest.mark.parametrize("attachment", ["average", "rigid", "section"])
-@pytest.mark.parametrize(
-    "model", [pytest.param(m, marks=pytest.mark.slow if m == "solid hex8" else ()) for m in OPTIONS]
-)
+@pytest.mark.parametrize("model", OPTIONS)
 def test_ports_follow_rigid_motions(model, attachment):
     scene = sg.load(GEOMETRY / "shaft_hollow.toml").with_attachment(attachment)
     body = sg.build(scene, model.split()[0], **OPTIONS[model])
