@@ -1,6 +1,7 @@
-"""The command in this process, and the tables that it leaves."""
+"""The command in this process, and what it leaves: tables and JSON."""
 
 import csv
+import json
 
 from typer.testing import CliRunner
 
@@ -16,3 +17,12 @@ def table(path):
     """Rows of a CSV file by the names of its columns."""
     with open(path, newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def strict(text):
+    """JSON as the standard has it: no NaN, no infinity."""
+
+    def refuse(word):
+        raise AssertionError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)

@@ -22,6 +22,14 @@ def whole(body, without=()):
     return k, m, rows
 
 
+def rigid_at(y):
+    """(6, 6) motion at y on the axis for unit rigid motions about the origin: translation, th x r."""
+    out = np.eye(6)
+    for k in range(3):
+        out[:3, 3 + k] = np.cross(np.eye(3)[k], [0.0, y, 0.0])
+    return out
+
+
 def every(found):
     """Frequencies of modes, twins twice."""
     return np.array([m.frequency_hz for m in found.modes for _ in range(m.multiplicity)])

@@ -47,7 +47,7 @@ def test_a_coarse_mesh_sees_what_a_narrow_seat_indents():
     assert held(answer(scene, 0.01, ["C_zz", "C_thx"]), scene)
 
 
-@pytest.mark.parametrize("tol", [0.1, 1e-3])
+@pytest.mark.parametrize("tol", [pytest.param(0.1, marks=pytest.mark.slow), 1e-3])
 def test_bars_hold_for_seats_narrower_than_a_bar_is_thick(tol):
     # what the seat indents is a hundredth of C_zz, and most of the error
     bearing = Bearing(name="A", y=0.13, seat_width=0.005, stiffness=springs(1e10, 1e6))
@@ -57,6 +57,7 @@ def test_bars_hold_for_seats_narrower_than_a_bar_is_thick(tol):
     assert held(answer(scene, tol, ["C_zz", "C_yy", "bending 1", "axial 1"]), scene)
 
 
+@pytest.mark.slow
 def test_bars_hold_for_seats_on_a_rotor_that_stands_out():
     # its surface is far from the shoulders of its shaft
     parts, y = [], 0.0

@@ -87,6 +87,13 @@ def by_polynomials(order):
     return np.sqrt(np.linalg.eigvalsh(stiffness)[6:] / DENSITY) / (2 * np.pi)
 
 
+def test_a_coarse_block_vibrates_a_little_faster_than_the_exact_one(block):
+    found = sg.modes(sg.build(block, "solid", refinement=0.7), block, n=6).frequency_hz[6:12]
+    assert (found > by_polynomials(10)[:6]).all()
+    assert found == pytest.approx(by_polynomials(10)[:6], rel=0.02)
+
+
+@pytest.mark.long
 def test_modes_of_a_block_lie_above_the_exact_ones_by_no_more_than_their_bars(block):
     settled = settle(block, 5e-3, "modes")
     found = sg.modes(settled.body, block, n=10).modes

@@ -364,7 +364,11 @@ def test_modes_of_small_shafts_are_those_of_dense_factors(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "seed", (26, *(pytest.param(s, marks=pytest.mark.slow) for s in (8, 25, 61, 56)))
+    "seed",
+    (
+        pytest.param(26, marks=pytest.mark.long),
+        *(pytest.param(s, marks=pytest.mark.slow) for s in (8, 25, 61, 56)),
+    ),
 )
 def test_what_must_hold_of_every_part(seed):
     """A fillet with a chamfer, teeth with a bolt circle; a keyway, three without a mirror plane, cross holes."""

@@ -99,7 +99,7 @@ def test_spectral_elements_twist_a_bar_exactly():
 
 
 @pytest.mark.parametrize(
-    "tie", ["average", "rigid", pytest.param("section", marks=pytest.mark.slow)]
+    "tie", ["rigid", *(pytest.param(t, marks=pytest.mark.slow) for t in ("average", "section"))]
 )
 def test_spectral_elements_agree_with_the_product(tie):
     scene = stepped(tie, bore=0.01)
@@ -169,6 +169,7 @@ def test_a_shaft_stands_on_its_axial_springs():
     assert found["C_yy"].uncertainty < 1e-8
 
 
+@pytest.mark.long
 def test_two_discretisations_that_share_nothing_agree():
     """All three attachments on one shaft: the harmonic solid as it comes is good to 1e-4."""
     scene = stepped()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from copy import deepcopy
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -60,12 +61,20 @@ def few(scene=None, full=False):
 
 @pytest.fixture(scope="module", autouse=True)
 def light():
-    """A small plan and a small reference, so that what is tested is the way of the numbers, not
-    their size.
+    """A small plan and a small reference, solved once, so that what is tested is the way of the
+    numbers, not their size.
     """
+    solve, known = racing._reference, {}
+
+    def once(scene, sure, *rest):
+        if sure not in known:
+            known[sure] = solve(scene, sure, *rest)
+        return deepcopy(known[sure])
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(command, "plan", few)
         patch.setattr(racing, "SURE", 1e-2)
+        patch.setattr(racing, "_reference", once)
         patch.setattr(command, "setup_seconds", lambda: SETUP)
         patch.setattr(command, "automatic_rows", list)
         yield
@@ -205,8 +214,8 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
 def test_the_automatic_choice_is_charted_at_its_largest_system():
     # the finest mesh is solved for bending and last for torsion alone, which has a fifth of it
     scene = sg.load("geometry/shaft_stepped.toml")
-    found = automatic.solved(scene, automatic.AUTO, {"tol": 3e-4}, 10)
-    told = sg.answer(scene, 3e-4, automatic.QUANTITIES)
+    found = automatic.solved(scene, automatic.AUTO, {"tol": 1e-3}, 10)
+    told = sg.answer(scene, 1e-3, automatic.QUANTITIES)
     most = max(step.unknowns or 0 for step in told.steps)
     # a mesh is told with all systems that were solved on it; the largest of three is no less than a third
     assert most / 3 <= found.body.size <= most

@@ -2,7 +2,6 @@
 by a refused command.
 """
 
-import json
 import os
 import re
 import subprocess
@@ -14,6 +13,7 @@ import pytest
 from solidgear.judge import climb
 from solidgear.ladder.registry import LADDER
 from solidgear.solve.choice import pardiso_missing
+from tests.command import strict
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -27,13 +27,6 @@ LIGHT = {
 HARMONIC = ["-f", "harmonic"]
 FIXED = [*HARMONIC, *LIGHT["harmonic"]]
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
-
-
-def strict(text):
-    def refuse(word):
-        raise AssertionError(f"{word} is not JSON")
-
-    return json.loads(text, parse_constant=refuse)
 
 
 class Done:
@@ -404,7 +397,7 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     "module", ["solidgear", pytest.param("solidgear.cli", marks=pytest.mark.long)]
 )
 def test_module_runs_as_a_program(tmp_path, module):
-    done = python("-m", module, "stiffness", SCENE, "-f", "euler", "--json", cwd=tmp_path)
+    done = python("-m", module, "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
     done = python("-m", module, "stiffness", "nowhere.toml", cwd=tmp_path)

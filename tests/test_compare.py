@@ -19,6 +19,7 @@ from solidgear.models.options import ATTACHMENTS
 from solidgear.quantity import ACROSS, QUANTITIES
 from solidgear.report.outputs import OUTPUTS
 from solidgear.studies.comparison import compare
+from tests.command import strict
 
 #: charts are drawn in the folder that all tests share, once
 pytestmark = pytest.mark.usefixtures("no_charts")
@@ -39,15 +40,6 @@ K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
 
 def scene_of(name):
     return sg.load(GEOMETRY / f"{name}.toml")
-
-
-def strict(text):
-    """JSON as the standard has it: no NaN, no infinity."""
-
-    def refuse(word):
-        raise AssertionError(f"{word} is not JSON")
-
-    return json.loads(text, parse_constant=refuse)
 
 
 @pytest.fixture(scope="module")
@@ -654,7 +646,7 @@ def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
 
 def test_a_lumped_model_on_a_solid_is_not_called_cheaper_than_it():
     """It is made from the solved solid, and costs as much."""
-    found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHT).results
+    found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHTEST).results
     sentences = " ".join(found["verdict"]["sentences"])
     assert found["models"]["lumped"]["valid"] and found["verdict"]["cheapest"] == "harmonic"
     assert "masses on the stiffness of the harmonic solid) is within 5 % too" in sentences

@@ -44,7 +44,10 @@ def of_whole(made):
     return 3 * (2 * nodes.shape[1] - int((np.abs(nodes[made.plane]) < 1e-9).sum()))
 
 
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(
+    "name",
+    ["small hole", "narrow keyway with square ends", "flat", "three that share no plane"],
+)
 def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
     given = {"refinement": 0.25}
     found = LADDER["solid"].size(PARTS[name], given).unknowns
@@ -55,7 +58,7 @@ def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["small hole", pytest.param("three that share no plane", marks=pytest.mark.slow)]
+    "name", ["keyway", *(pytest.param(p, marks=pytest.mark.slow) for p in PARTS if p != "keyway")]
 )
 def test_check_tells_of_the_part_with_its_features(name):
     scene = PARTS[name]

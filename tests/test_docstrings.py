@@ -1,6 +1,7 @@
 """Examples in docstrings run, and every noun that the package exports has one."""
 
 import doctest
+import functools
 import importlib
 import inspect
 from pathlib import Path
@@ -17,6 +18,7 @@ DEAR = {PACKAGE / "studies" / "train" / "check.py", PACKAGE / "studies" / "sweep
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 
+@functools.cache
 def examples_of(module):
     """Docstrings of a module that hold examples."""
     return [case for case in doctest.DocTestFinder().find(module) if case.examples]

@@ -42,8 +42,7 @@ def supported(body, scene, group=0):
     )
 
 
-@pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
-@pytest.mark.parametrize("bearings", [True, False])
+@pytest.mark.parametrize("fidelity, bearings", [("solid", True), ("harmonic", False)])
 def test_lanczos_and_arpack_agree(scene, fidelity, bearings, request):
     """Two algorithms on the same factor: frequencies are those of Rayleigh quotients, each good to
     the rounding of K u.

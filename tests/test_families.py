@@ -10,7 +10,7 @@ from validation.stability import circumferential_families as families
 @pytest.mark.parametrize(
     "kind",
     [
-        pytest.param(k, marks=pytest.mark.long if k == "flanged tube" else ())
+        pytest.param(k, marks=pytest.mark.slow if k in ("flanged tube", "stepped") else ())
         for k in families.KINDS
     ],
 )

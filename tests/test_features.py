@@ -79,14 +79,6 @@ def test_volume_against_closed_form(feature):
     assert body.rigid_residual() < 1e-14
 
 
-def test_centre_of_mass_moves_away_from_the_key():
-    wanted, made = mesh_of(shaft(KEY))
-    mass = featured_body(shaft(KEY), wanted, made, 0.6).mass_matrix()
-    assert mass[1, 3] > 0  # -m z_c: the centre lies towards -z
-    plain = featured_body(shaft(KEY), wanted, made, 0.6, plain=True).mass_matrix()
-    assert abs(plain[1, 3]) < 1e-3 * abs(mass[1, 3])
-
-
 def mirrored_whole(made: FeaturedMesh) -> FeaturedMesh:
     """The whole part made of the elements of its half and their images, joined on the plane."""
     from dataclasses import replace
@@ -170,7 +162,7 @@ def test_the_plane_of_the_key_is_the_softer_one():
 
 def test_no_plane_no_halves():
     crossed = shaft(KEY, Keyway(**KEY.model_dump() | {"name": "k2", "angle": "50 deg", "y": 0.075}))
-    body = sg.build(crossed, "solid", refinement=0.4)
+    body = sg.build(crossed, "solid", refinement=0.25)
     assert len(body.blocks) == 1 and body.mesh["mirror_plane"] == "none"
     assert body.rigid_residual() < 1e-14
     assert max(sg.modes(body, crossed, n=6).multiplicity) == 1
@@ -179,10 +171,10 @@ def test_no_plane_no_halves():
 def test_a_cross_hole_and_a_bore():
     hole = CrossHole(name="oil", segment="rod", y=0.1, diameter=0.008)
     scene = shaft(hole, bore=0.02)
-    wanted, made = mesh_of(scene, 0.5)
+    wanted, made = mesh_of(scene, 0.35)
     assert made.removed == pytest.approx(hole.volume(0.03, 0.01), rel=1e-5)
     assert made.plane == 0
-    body = sg.build(scene, "solid", refinement=0.5)
+    body = sg.build(scene, "solid", refinement=0.35)
     assert body.mesh["volume"] < math.pi * (0.03**2 - 0.01**2) * 0.2
 
 
@@ -205,6 +197,7 @@ def test_a_hole_beside_the_axis_takes_its_mass_where_it_is():
     assert counted[4, 5] > 0.5 * size[4] * size[5]
 
 
+@pytest.mark.slow
 def test_a_hole_that_leans_the_other_way_couples_the_other_way():
     """Half a turn of the shaft takes one to the other: compliances stay, and axial motion under a
     force across changes its sign. Meshes differ, by 2e-3; the hole makes C_zz 12 % softer.

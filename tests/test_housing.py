@@ -18,7 +18,7 @@ from solidgear.springs import in_series
 from solidgear.studies.sweep import vary
 from solidgear.studies.sweep.run import sweep, variants_of
 from tests.command import table
-from tests.dense import relative, whole
+from tests.dense import relative, rigid_at, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"harmonic": {"order": 2, "layers": 0}}
@@ -40,13 +40,6 @@ FULL = {
 @pytest.fixture(scope="module")
 def shaft():
     return sg.load(GEOMETRY / "intermediate_shaft.toml")
-
-
-def rigid_at(y):
-    out = np.eye(6)
-    for k in range(3):
-        out[:3, 3 + k] = np.cross(np.eye(3)[k], [0.0, y, 0.0])
-    return out
 
 
 def gives(entries):

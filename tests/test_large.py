@@ -128,7 +128,7 @@ def test_files_of_a_factor_go_with_it():
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
     def sizes(scene):
-        body = sg.build(scene, "solid", refinement=0.6)
+        body = sg.build(scene, "solid", refinement=0.5)
         return [needed_mb(body, Factoring(**more)) for more in ({}, {"precision": "single"})]
 
     whole = sizes(SCENES["pinion_overhung"].with_attachment("rigid"))
@@ -207,7 +207,10 @@ OFFERED = (
         (),
     ),
     ("pinion_toothed", {"refinement": 0.35}, ["-f sector", "--set refinement=", *SMALLER], ()),
-    ("shaft_step", {"refinement": 0.45}, ["--set refinement=", *SMALLER], ["-f "]),
+    pytest.param(
+        *("shaft_step", {"refinement": 0.45}, ["--set refinement=", *SMALLER], ["-f "]),
+        marks=pytest.mark.slow,
+    ),
 )
 
 
@@ -225,7 +228,7 @@ def test_a_refusal_offers_what_fits(scene, options, wanted, no, monkeypatch):
 
 @PARDISO
 def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
-    given = {"element": "tet10", "refinement": 0.6}
+    given = {"element": "tet10", "refinement": 0.5}
     message, free = refused("pinion_overhung", monkeypatch, 0.7, **given)
     room = free + of_body(sg.build(SCENES["pinion_overhung"], "solid", **given)).matrices_mb
     refinement = float(message.split("--set refinement=")[1].split()[0])

@@ -81,20 +81,6 @@ def test_against_dense_eigenvalues(name, fidelity):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param("pinion_overhung", marks=pytest.mark.slow), "shaft_hollow"]
-)
-def test_small_and_large_solvers_agree(name):
-    # below 400 unknowns a block is solved densely, above by Lanczos
-    scene = shipped(name)
-    body = sg.build(scene, "timoshenko", elements=210)
-    assert max(b.size for b in body.blocks) > 400
-    found = every(sg.modes(body, scene, n=6))
-    assert found[1:] == pytest.approx(
-        dense_frequencies(body, scene)[1 : len(found)], rel=2e-7
-    )  # dense: more eps, see above
-
-
-@pytest.mark.parametrize(
     "fidelity, options",
     [
         ("timoshenko", {}),

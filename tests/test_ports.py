@@ -9,6 +9,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.scene import Port, Scene, Segment
+from tests.dense import rigid_at
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 OPTIONS = {
@@ -16,23 +17,12 @@ OPTIONS = {
     "timoshenko": {},
     "harmonic": {"order": 4, "layers": 1},
     "solid hex20": {"element": "hex20", "around": 8, "refinement": 0.5},
-    "solid hex8": {"element": "hex8", "around": 8, "refinement": 0.5},
     "solid tet10": {"element": "tet10", "size": 0.04, "graded_size": 0.04},
 }
 
 
-def rigid_motion_at(y):
-    """(6, 6) motion at y on the axis for unit rigid motions about the origin: translation plus th x
-    r.
-    """
-    out = np.eye(6)
-    for k in range(3):
-        out[:3, 3 + k] = np.cross(np.eye(3)[k], [0.0, y, 0.0])
-    return out
-
-
 @pytest.mark.parametrize("attachment", ["average", "rigid", "section"])
-@pytest.mark.parametrize("model", list(OPTIONS))
+@pytest.mark.parametrize("model", OPTIONS)
 def test_ports_follow_rigid_motions(model, attachment):
     scene = sg.load(GEOMETRY / "shaft_hollow.toml").with_attachment(attachment)
     body = sg.build(scene, model.split()[0], **OPTIONS[model])
@@ -44,7 +34,7 @@ def test_ports_follow_rigid_motions(model, attachment):
                 found[6 * p + component, list(block.components)] = rows[
                     p * len(block.components) + i
                 ]
-    expected = np.vstack([rigid_motion_at(s.y) for s in scene.stations])
+    expected = np.vstack([rigid_at(s.y) for s in scene.stations])
     # partition of unity and weights that sum to one: rounding, with moment arms below 1 m
     assert np.abs(found - expected).max() < 1e-12
 

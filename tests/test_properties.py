@@ -30,7 +30,7 @@ settings.register_profile(
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-BEAMS = settings(settings.get_profile("properties"), max_examples=8)
+BEAMS = settings(settings.get_profile("properties"), max_examples=5)
 HARMONICS = settings(settings.get_profile("properties"), max_examples=2)
 SOLIDS = settings(settings.get_profile("properties"), max_examples=2)
 

@@ -74,7 +74,7 @@ def unit_motion(body, component):
         ("timoshenko", {}),
         ("harmonic", {"order": 1}),
         ("harmonic", {"order": 2} | RIGID),
-        ("harmonic", {"order": 5}),
+        pytest.param("harmonic", {"order": 5}, marks=pytest.mark.long),
         ("solid", {"element": "hex8"} | SOLID),
         ("solid", {"element": "hex20"} | SOLID | RIGID),
         ("solid", {"element": "tet10", "size": 0.06, "graded_size": 0.06}),

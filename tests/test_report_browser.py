@@ -124,13 +124,13 @@ def looked_at(folder, page, *flags):
 
 
 @pytest.fixture(scope="module")
-def page():
+def page(made_up_charts):
     results = fixture_results()
     results["warnings"] = ["a warning with averyveryveryverylongwordthatnobodywouldwrite" * 3]
-    return render_page(results)
+    return render_page(results, drawn=made_up_charts)
 
 
-@pytest.fixture(scope="module", params=["light", "dark"])
+@pytest.fixture(scope="module", params=["light", pytest.param("dark", marks=pytest.mark.long)])
 def seen(request, page, tmp_path_factory):
     folder = tmp_path_factory.mktemp(request.param)
     found, console = looked_at(folder, page, *([DARK] if request.param == "dark" else []))

@@ -42,7 +42,7 @@ def test_a_row_is_what_the_file_changed_by_hand_gives(tmp_path):
 
 def test_a_bar_holds_what_a_tighter_tolerance_changes():
     vary = "bearing.A.seat_width=20 mm"
-    loose, tight = (sg.sweep(SHAFT, vary, tolerance=tol, n=2) for tol in (0.05, 1e-3))
+    loose, tight = (sg.sweep(SHAFT, vary, tolerance=tol, n=2) for tol in (0.1, 5e-3))
     for name in ("C_zz", "f1_hz", "f2_hz"):
         off = abs(loose[name] - tight[name])
         assert off <= loose[f"{name} bar"] + tight[f"{name} bar"]

@@ -25,17 +25,16 @@ def motions(body):
     return out.reshape(6, STATIONS, 6)
 
 
-@pytest.mark.parametrize("attachment", ["average", "rigid"])
 @pytest.mark.parametrize(
-    "fidelity, options",
+    "fidelity, options, attachment",
     [
-        ("euler", {}),
-        ("timoshenko", {}),
-        ("harmonic", {"order": 2}),
+        ("euler", {}, "average"),
+        ("timoshenko", {}, "rigid"),
+        ("harmonic", {"order": 2}, "rigid"),
         # cells of four radii: fewer along the shaft than stations
-        ("harmonic", {"order": 6, "relative_size": 4.0, "layers": 0, "edge_layers": 0}),
-        ("solid", {"refinement": 0.5}),
-        ("solid", {"element": "tet10", "refinement": 0.7}),
+        ("harmonic", {"order": 6, "relative_size": 4.0, "layers": 0, "edge_layers": 0}, "average"),
+        ("solid", {"refinement": 0.5}, "rigid"),
+        ("solid", {"element": "tet10", "refinement": 0.7}, "average"),
     ],
 )
 def test_a_rigid_motion_moves_every_section_as_it_should(fidelity, options, attachment):

@@ -4,6 +4,7 @@ harmonic solid, and the scenes that are refused.
 
 import math
 import re
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -85,8 +86,21 @@ PARTS = {
         TEETH.with_changes(count=14), BOLTS.with_changes(count=7, angle=0.1)
     ),
 }
-#: one tooth in a sector tells what two do, and seats that average what rigid ones do
-MARKS = {"two teeth in a sector": pytest.mark.slow, "rigid seats in a bore": pytest.mark.long}
+#: one tooth in a sector tells what two do, holes what straight teeth do, and seats that average what rigid ones do
+MARKS = {
+    "two teeth in a sector": pytest.mark.slow,
+    "straight": pytest.mark.slow,
+    "rigid seats in a bore": pytest.mark.long,
+}
+
+
+@cache
+def both(name):
+    """A part as one sector and as all of its copies."""
+    scene = PARTS[name]
+    wanted = [(s, s.attachment) for s in scene.stations]
+    coarse = {"refinement": 0.1 if scene.port.attachment == "rigid" else COARSE}
+    return sector(scene, **coarse), whole(scene, wanted, **coarse)
 
 
 def apart(one, other):
@@ -107,10 +121,7 @@ def test_a_sector_is_the_whole(name):
     """The same elements, once as one sector with phases and once as all of its copies: rounding is
     all that is left. A wrong phase, turn, axis or port would be of order one.
     """
-    scene = PARTS[name]
-    wanted = [(s, s.attachment) for s in scene.stations]
-    coarse = {"refinement": 0.1 if scene.port.attachment == "rigid" else COARSE}
-    one, other = sector(scene, **coarse), whole(scene, wanted, **coarse)
+    scene, (one, other) = PARTS[name], both(name)
     half = ((1,), (4,), (2, 3), (0, 5))
     even = name in ("straight", "bolts")
     assert tuple(b.components for b in one.blocks) == (half if even else ((1, 4), (0, 2, 3, 5)))
@@ -213,9 +224,7 @@ def test_pictures_are_of_all_copies():
     """The surface of the sector's copies moves as that of the whole, point by point."""
     from scipy.spatial import cKDTree
 
-    scene = PARTS["spiral"]
-    wanted = [(s, s.attachment) for s in scene.stations]
-    one, other = sector(scene, refinement=COARSE), whole(scene, wanted, refinement=COARSE)
+    scene, (one, other) = PARTS["spiral"], both("spiral")
     for name in ("bending 1", "torsion 1"):
         moved = []
         for body in (one, other):
@@ -549,6 +558,7 @@ def test_fillets_beside_teeth_are_drawn(teeth):
     assert abs(made.quality.volume - exact) < 0.05 * added / made.parts
 
 
+@pytest.mark.slow
 def test_a_fillet_beside_teeth_does_what_one_at_the_pitch_cone_does():
     """It takes 5 % of C_zz and 11 % of C_thx of the body of revolution, and a tenth to a fifth less of
     each from the part whose face ends at the roots, by 4 elements to a radius.

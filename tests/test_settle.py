@@ -27,6 +27,7 @@ from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
+STEPPED = str(ROOT / "geometry" / "shaft_stepped.toml")
 FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 #: the same system, factored again
 ROUNDING = 1e-9
@@ -172,16 +173,15 @@ def test_the_highest_mode_of_a_family_has_no_bar(scene):
 
 
 # --------------------------------------------------------------------------- not reached
-@pytest.mark.parametrize("command", ["stiffness", "modes"])
-def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes, command):
-    code, out, err = run(command, SCENE, "--tol", "1e-6", "--json")
+def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes):
+    code, out, err = run("modes", STEPPED, "-n", "4", "--tol", "1e-5", "--json")
     found = json.loads(out)
     assert code == 3 and err == "" and found["reached"] is False
-    assert found[command] and max(found["bars"].values()) > 1e-6
+    assert found["modes"] and max(found["bars"].values()) > 1e-5
 
 
 def test_what_is_not_reached_is_said(run, two_meshes):
-    code, out, _ = run("stiffness", SCENE, "--tol", "1e-6")
+    code, out, _ = run("stiffness", SCENE, "--tol", "1e-5")
     assert code == 3 and "Not reached: " in out and "2 meshes did not do" in out
     assert "K_thx" in out and "compliance, engineering units" in out
 

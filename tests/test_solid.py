@@ -45,10 +45,9 @@ def light(overhung):
 
 
 # --------------------------------------------------------------------------- mass
-@pytest.mark.parametrize("name", ["pinion_overhung", "shaft_hollow"])
 @pytest.mark.parametrize("element", ["tet10", "hex20", "hex27"])
-def test_mass_centre_and_inertia(name, element):
-    scene = sg.load(GEOMETRY / f"{name}.toml")
+def test_mass_centre_and_inertia(element):
+    scene = sg.load(GEOMETRY / "shaft_hollow.toml")
     m = sg.build(scene, "solid", element=element, **SMALL[element]).mass_matrix()
     expected = mass_matrix(scene)
     size = np.sqrt(np.diag(expected))
@@ -165,11 +164,3 @@ def test_tetrahedra_are_near_the_reference(overhung):
     f = sg.modes(body, overhung, n=3).named("bending 1")
     assert f.multiplicity == 2
     assert 0 < f.frequency_hz / FIRST_BENDING - 1 < 3e-3
-
-
-def test_tetrahedra_are_above_the_reference(overhung):
-    body = sg.build(overhung, "solid", element="tet10", size=0.03, graded_size=0.012)
-    k = sg.condense(body, overhung, "pinion").stiffness
-    # graded to 12 mm only: 1.1 % above; gmsh's mesh, and with it this figure, may change a little
-    # with its version
-    assert 0 < k[2, 2] / K_ZZ - 1 < 2e-2

@@ -78,8 +78,13 @@ def small(reduced, body, supports, n, slack=1e-6):
     )
 
 
+KINDS = ("plain", "coupled", "uneven", "free", "pin", "uneven_pin", "soft", "stiff", "mixed")
+
+
 @pytest.mark.parametrize(
-    "kind", ["plain", "coupled", "uneven", "free", "pin", "uneven_pin", "soft", "stiff", "mixed"]
+    "body, kind",
+    [*(("timoshenko", k) for k in KINDS), *(("harmonic", k) for k in ("coupled", "pin", "mixed"))],
+    indirect=["body"],
 )
 def test_modes_of_any_bearings_agree_with_those_of_the_body(body, kind):
     reduced = reduce(body, 10, level=1)

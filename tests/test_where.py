@@ -67,7 +67,7 @@ def whole(found):
 
 @pytest.mark.parametrize(
     "name, quantity, count",
-    [("pinion_overhung", "axial 1", 2), ("shaft_stepped", "C_zz", 2), ("shaft_stepped", "K_yy", 1)],
+    [("pinion_overhung", "axial 1", 2), ("shaft_stepped", "C_zz", 2)],
 )
 def test_cells_cut_at_a_place_take_its_share_of_the_bar_away(scenes, name, quantity, count):
     scene = scenes[name]
@@ -90,7 +90,7 @@ def test_a_stiffness_has_its_error_where_its_own_forces_strain_the_shaft():
     assert gone == pytest.approx(shares(found)["seat end of port"], rel=0.1)
 
 
-@pytest.mark.parametrize("quantity", ["C_zz", "C_z,thx", "bending 1", "torsion 1"])
+@pytest.mark.parametrize("quantity", ["C_z,thx", "bending 1"])
 def test_the_error_is_at_the_only_shoulder_and_moves_with_it(quantity):
     for at in (150.0, 220.0):
         found = where(shaft((at, 60), (400 - at, 40)), quantity)
@@ -114,7 +114,7 @@ def test_a_shaft_without_shoulders_has_its_error_at_seats_or_elsewhere():
     assert 1 - shares(found)[ELSEWHERE] > 0.5
 
 
-@pytest.mark.parametrize("quantity", ["C_zz", "C_z,thx", "bending 1"])
+@pytest.mark.parametrize("quantity", ["C_zz", "bending 1"])
 def test_a_symmetric_shaft_has_symmetric_shares(quantity):
     scene = shaft((130.0, 40), (140.0, 60), (130.0, 40), port=(190.0, 210.0))
     found = where(scene, quantity)

@@ -164,11 +164,11 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
     --------
     >>> import solidgear as sg
     >>> from solidgear.body import as_supports
-    >>> scene = sg.load("geometry/shaft_stepped.toml")
-    >>> body = sg.build(scene, "harmonic", order=4)
-    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 6))
-    >>> list(bars)[:2], bars["bending 1"] < 1e-3
-    (['axial 1', 'bending 1'], True)
+    >>> scene = sg.load("geometry/cylinder_free.toml")
+    >>> body = sg.build(scene, "harmonic", order=4, layers=0)
+    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 4))
+    >>> bars["bending 1"] < 1e-3
+    True
     """
     names = [m.name for m in found.modes if m.frequency_hz > 0]
     if not names:

@@ -50,7 +50,7 @@ class HarmonicMesh:
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """(3 k, n) displacements of some points of the surface by the unknowns of a block."""
-        from solidgear.models.harmonic.drawing import rows
+        from solidgear.models.harmonic.drawing import rows  # start-up: of responses alone
 
         return rows(self, name, chosen)
 

@@ -59,6 +59,7 @@ class SolidMesh:
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """(3 k, n) displacements of some points of the surface by those of the nodes."""
+        # start-up: of responses at points alone
         from solidgear.models.solid.drawing import on_nodes
 
         own = on_nodes(self)[chosen].toarray()

@@ -15,7 +15,6 @@ from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
-from solidgear.quantity import COMPLIANCE
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.shaft import without_axis
@@ -51,8 +50,6 @@ class Computed:
         Of its builder.
     limit : float
         Hz, up to which there are all modes.
-    static : float or None
-        Largest bar of compliances at the port; None where nothing holds the scene, or tells it.
     """
 
     scene: Scene
@@ -63,7 +60,6 @@ class Computed:
     rung: str
     options: dict[str, Any]
     limit: float
-    static: float | None = None
 
     @property
     def mesh(self) -> str:
@@ -133,11 +129,7 @@ def computed_up_to(
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
         listed, bars = _barred(scene, body, limit, settled)
-    told = {q: bar for q, bar in settled.bars.items() if q.kind == COMPLIANCE} if settled else {}
-    static = max(told.values(), default=None) if settled else before.static if before else None
-    return Computed(
-        scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit, static
-    )
+    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit)
 
 
 @pinned

@@ -73,8 +73,8 @@ class Overlay:
             else "What is stiffer is left out, which moves minima more than peaks."
         )
         band = (
-            "The band is that of the bars of frequencies and of static compliance; shapes and damping "
-            "have none."
+            "The band is that of the bars of frequencies, and of static compliance what twice their "
+            "largest makes of it, which is an estimate; shapes and damping have none."
             if self.band is not None
             else "The computed response has no bar."
         )
@@ -154,9 +154,8 @@ def overlay(found: Correlation) -> Overlay | None:
         rest = stiffer.rest[own.first, own.second]
         out += rest[:, None]
         # a frequency is the root of a stiffness
-        static = computed.static or 2 * max(bars, default=np.inf)
-        whole = np.diag(stiffer.static)
-        sure = static * np.sqrt(whole[own.first] * whole[own.second])
+        whole = 2 * max(bars, default=np.inf) * np.diag(stiffer.static)
+        sure = np.sqrt(whole[own.first] * whole[own.second])
         alike = np.equal(*np.array(own.every)[[own.first, own.second], 0])
         band += np.where(alike, np.abs(rest), sure)[:, None]
     kind, unit_ = KINDS[derivatives]

@@ -203,7 +203,7 @@ def deflect_train(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
-    >>> found = deflect_train(shop, OperatingPoint(torque=200.0), ("rigid", "timoshenko"))
+    >>> found = deflect_train(shop, OperatingPoint(torque=200.0), ("euler", "timoshenko"))
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
     """

@@ -52,9 +52,10 @@ def mesh_bars(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> coarse = {"harmonic": {"order": 2, "layers": 1}}
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"), kept=8, settings=coarse)
     >>> both = {"pinion": "harmonic", "gear": "timoshenko"}
-    >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-3)
+    >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-2)
     True
     """
     sides = [side for side in SIDES if rungs[side] == JUDGE]

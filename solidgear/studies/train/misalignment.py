@@ -94,7 +94,7 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
-    >>> [m.name for m in misalignment(shop, shop.system("euler", "rigid"))]
+    >>> [m.name for m in misalignment(shop, shop.system("euler", "euler"))]
     ['E', 'P', 'G', 'shaft angle']
     """
     ports = [system.port(f"{s}.{workshop.scenes[s].port.name}") for s in SIDES]
