@@ -69,7 +69,6 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
         Options of check that speak of one shaft, and whether they were given.
     """
     from solidgear.cli.train_options import Reduced, refuse_given
-    from solidgear.scene.train import SIDES
     from solidgear.studies.train.check import check_train as run
 
     instead = "run check on the file of the shaft for other models and meshes"
@@ -79,7 +78,7 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        for side in SIDES:
+        for side in shop.train.shafts:
             print(f"== {side}")
             print_check(found[side])
         print("== train")
@@ -95,5 +94,5 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
                 for name, told in found["verdicts"].items()
             }
         )
-    if found["faults"] or any(found[side]["faults"] for side in SIDES):
+    if found["faults"] or any(found[side]["faults"] for side in shop.train.shafts):
         raise typer.Exit(1)

@@ -79,10 +79,10 @@ def nonlinear(
     from solidgear.studies.train.nonlinear_told import BacklashTold
     from solidgear.studies.train.slips import slips
 
-    shop = reduced.workshop(train, models.of_shafts)
+    shop = models.workshop(reduced, train)
     first = models.pinion, models.gear
     usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
-    others = usual if against is None else [mix(text) for text in against]
+    others = usual if against is None else [_pair(shop, text) for text in against]
     shop = _with_teeth(shop, backlash, error)
     teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"))
     for option, count in (("--in-time", in_time), ("--forces", forces)):
@@ -113,6 +113,12 @@ def nonlinear(
         say(over_force(told, shown), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
+
+
+def _pair(shop: Workshop, text: str) -> tuple[str, str]:
+    """Models of both shafts, from a text such as ``euler+euler``."""
+    pinion, gear = shop.mix(mix(text)).values()
+    return pinion, gear
 
 
 def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Workshop:

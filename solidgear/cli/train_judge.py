@@ -56,7 +56,7 @@ def _judged(
     out: Path | None,
     reduced: Reduced,
     run: Shown,
-    more: Sequence[tuple[str, str]] = (),
+    more: Sequence[tuple[str, ...]] = (),
     *,
     renders: bool,
 ) -> None:
@@ -90,6 +90,7 @@ def _judged(
 
 def _verdict_table(found):
     from solidgear.report.table import Column, Table, text
+    from solidgear.report.train_tables import mix_words
 
     def end(hz: float | None) -> str:
         return f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
@@ -101,10 +102,7 @@ def _verdict_table(found):
         return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
 
     columns = [
-        text(
-            "pinion + gear",
-            lambda m: f"{m.pinion} + {m.gear}" if m.pinion != m.gear else f"both {m.gear}",
-        ),
+        text(" + ".join(found.mixes[0].models), lambda m: mix_words(m.mix)),
         Column(f"modes\n{100 * found.tolerance:g} %", lambda m: end(m.modes_to_hz)),
         Column(f"force\n{found.decibels:g} dB", lambda m: end(m.force_to_hz)),
         Column(f"force\n{100 * found.tolerance:g} %", lambda m: end(m.close_to_hz)),

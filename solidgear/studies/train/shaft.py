@@ -12,6 +12,7 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -51,6 +52,11 @@ def checked_rung(name: str) -> tuple[str, str]:
     if kind in LADDER.bodies:
         return kind, ""
     return kind, body or JUDGE
+
+
+def told_mix(models: Mapping[str, str]) -> str:
+    """Models by shaft in words."""
+    return ", ".join(f"{side} {rung}" for side, rung in models.items())
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,6 @@ import numpy as np
 
 from solidgear.machine.threads import pinned
 from solidgear.scene.differences import Difference
-from solidgear.scene.train import SIDES
 from solidgear.studies.change import Change
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
@@ -233,7 +232,7 @@ def two_trains(
 
 def _mirrored(one: Workshop, other: Workshop) -> bool:
     """True where the shafts of two trains are not in the same axes."""
-    members = [[shop.train.member(side) for side in SIDES] for shop in (one, other)]
+    members = [[*shop.train.only().members.values()] for shop in (one, other)]
     return any(a.apex != b.apex or a.hand != b.hand for a, b in zip(*members))
 
 
@@ -247,11 +246,11 @@ def _one_train(
     progress: Callable[[str], None],
 ) -> tuple[OneTrain, np.ndarray]:
     """One of the trains, and what its modes move at some ports."""
-    response = replace(respond(shop, *rungs, highest), name=f"{letter}: {name}")
+    response = replace(respond(shop, *rungs, highest_hz=highest), name=f"{letter}: {name}")
     system = shop.system(*rungs)
     found, seen = seen_modes(shop, system, highest * BEYOND, ends)
     progress(f"{letter}: how sure its frequencies are")
-    modes = told_modes(shop, system, found, dict(zip(SIDES, rungs)))
+    modes = told_modes(shop, system, found, shop.mix(rungs))
     loaded = None
     at_rest = all(rung.partition("/")[0] not in LUMPED for rung in rungs)
     if shop.train.point is not None and at_rest:
