@@ -91,7 +91,7 @@ class _Tables(Model):
         return Train(shafts=shafts, meshes=meshes, rotors={**both, **rotors}, **rest)
 
 
-class _Short(_Tables):
+class ShortFile(_Tables):
     """File of a train of two shafts."""
 
     pinion: Member
@@ -109,7 +109,7 @@ class _Short(_Tables):
         return self.train(shafts, (mesh,), given)
 
 
-class _Long(_Tables):
+class LongFile(_Tables):
     """File of a train of any number of shafts."""
 
     shaft: dict[str, Shaft]
@@ -134,16 +134,16 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
             )
         data: dict[str, Any] = {"name": name_of(where), **raw}
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
-        problems, kind = Gathered(), _Long if "shaft" in raw else _Short
-        if kind is _Long:
+        problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
+        if kind is LongFile:
             data["shaft"] = _shafts(problems, raw["shaft"], read_scene)
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
-        _read_meshes(data, kind is _Long, folder)
+        _read_meshes(data, kind is LongFile, folder)
         for rotor in SHORT:
             problems.read(partial(_whole_rotor, raw, rotor))
-        if kind is _Long:
+        if kind is LongFile:
             problems.tell()
         told = {one.path for one in problems}
         try:
