@@ -46,11 +46,12 @@ def layout_problems(train: Train) -> Iterator[SceneError]:
             yield SceneError(reason, path=("shaft", side))
     first = next(iter(train.shafts), "")
     reached = {side for side, _ in _outward(train, first)} if train.shafts else set()
-    for side in train.shafts:
-        if side in met and side not in reached:
-            reason = f"no mesh leads from the {first} to it; a train hangs together by its teeth"
-            yield SceneError(reason, path=("shaft", side))
-    yield from _loops(train)
+    apart = [side for side in train.shafts if side in met and side not in reached]
+    for side in apart:
+        reason = f"no mesh leads from the {first} to it; a train hangs together by its teeth"
+        yield SceneError(reason, path=("shaft", side))
+    if not apart and met == {*train.shafts}:
+        yield from _loops(train)
 
 
 def _meshes(train: Train) -> Iterator[SceneError]:

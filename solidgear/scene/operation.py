@@ -150,8 +150,9 @@ def operation_problems(
     """
     for k, point in enumerate(points):
         if point.of not in turns:
-            reason = f"is no shaft that the torque passes{nearest(point.of, turns)}; write one of "
-            yield SceneError(reason + listed(turns), path=("operation", k, "of"))
+            reason = f"is no shaft that the torque passes; write one of {listed(turns)}"
+            hint = nearest(point.of, turns)
+            yield SceneError(reason + hint, path=("operation", k, "of"))
             continue
         yield from _against_teeth(point, turns, ends, k)
         for i, force in enumerate(point.force):

@@ -66,7 +66,7 @@ def mesh_forces(
             for side, other in (pair.shafts, pair.shafts[::-1]):
                 if side in reached and other not in reached:
                     near, far = (force_on(pair, s, found[pair.name])[4] for s in (side, other))
-                    out[pair.name] = reached[side] / abs(near)
+                    out[pair.name] = float(reached[side] / abs(near))
                     reached[other] = out[pair.name] * abs(far)
     return out
 

@@ -12,8 +12,10 @@ from time import perf_counter
 
 import numpy as np
 
+from solidgear.errors import SolidgearError, listed
 from solidgear.machine.threads import pinned
 from solidgear.scene.differences import Difference
+from solidgear.scene.train import SIDES
 from solidgear.studies.change import Change
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
@@ -201,6 +203,12 @@ def two_trains(
     """
     start = perf_counter()
     first, other = workshops
+    for name, shop in zip(names, workshops):
+        if tuple(shop.scenes) != SIDES:
+            raise SolidgearError(
+                f"{name} has the shafts {listed(shop.scenes)}: two trains are compared where both "
+                "have a pinion and a gear"
+            )
     highest = highest_hz or min(shop.train.ask.max_frequency for shop in workshops)
     ends = shared_ports(first, other)
     trains, seen = [], []
