@@ -81,8 +81,8 @@ class TrainComparison:
         return {"pictures": drawn, "left_out": reasons}
 
     def turned(self) -> list[Turned]:
-        """The judge's modes and those of both shafts as the best beams, to be turned side by side."""
-        both = (JUDGE, JUDGE), (MIXED[-2], MIXED[-2])
+        """The judge's modes and those of all shafts as the best beams, to be turned side by side."""
+        both = (JUDGE,), (MIXED[-2],)
         return turned_beside(self.workshop, *both, self.verdict.highest_hz)
 
     @property
