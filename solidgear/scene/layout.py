@@ -23,6 +23,18 @@ RESERVED = (
 ).split()
 
 
+class PerTurn(float):
+    """Teeth that pass in one turn of a shaft, and which."""
+
+    of: str
+
+    def __new__(cls, value: float, of: str = "pinion") -> PerTurn:
+        """A number that knows its shaft."""
+        out = super().__new__(cls, value)
+        out.of = of
+        return out
+
+
 def layout_problems(train: Train) -> Iterator[SceneError]:
     """Problems of names, of meshes between shafts that are not there, and of shafts left out.
 

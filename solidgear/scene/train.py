@@ -7,20 +7,19 @@ side, z up (:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumpe
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
-from math import isclose, pi
 from typing import Any
 
 import numpy as np
 from pydantic import model_validator
 
-from solidgear.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft
-from solidgear.scene.layout import RATIO_TYPED, ends_of, layout_problems, path_between, turns_of
+from solidgear.scene.layout import PerTurn, ends_of, layout_problems, path_between, turns_of
 from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import OperatingPoint, Operation, operation_problems
+from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
@@ -28,18 +27,6 @@ from solidgear.scene.typed import Model
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
-
-
-class PerTurn(float):
-    """Teeth that pass in one turn of a shaft, and which."""
-
-    of: str
-
-    def __new__(cls, value: float, of: str = "pinion") -> PerTurn:
-        """A number that knows its shaft."""
-        out = super().__new__(cls, value)
-        out.of = of
-        return out
 
 
 class Train(Model):
@@ -92,7 +79,7 @@ class Train(Model):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
         problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
-        problems += [*self._springs(), *self._operation()]
+        problems += [*spring_problems(self), *running_problems(self)]
         if problems:
             raise SceneError.of(problems)
         return self
@@ -125,75 +112,6 @@ class Train(Model):
             self.only()
             changes["meshes"] = (changes.pop("mesh"),)
         return super().with_changes(**{"shafts": shafts, "rotors": rotors, **changes})
-
-    def _springs(self) -> Iterator[SceneError]:
-        for name, rotor in self.rotors.items():
-            spring, scene = rotor.spring, self.shafts[rotor.shaft].scene
-            ports = [s.name for s in scene.stations]
-            key, word = ("at", spring.at) if spring.at is not None else ("from", spring.from_)
-            known = ports if key == "at" else ["start", "end", *ports]
-            if word not in known:
-                yield SceneError(
-                    f"unknown port of the {rotor.shaft}'s shaft{nearest(word, known)}; "
-                    f"known here: {listed(known)}",
-                    path=(name, "spring", key),
-                )
-            elif key == "from" and word in ports and word in ("start", "end"):
-                yield SceneError(
-                    f"is the {word} of the {rotor.shaft}'s shaft, and a station is called so as "
-                    "well; give the station another name",
-                    path=(name, "spring", key),
-                )
-            elif key == "from":
-                yield from self._on_the_shaft(name, rotor.shaft)
-
-    def _on_the_shaft(self, rotor: str, side: str) -> Iterator[SceneError]:
-        try:
-            self.shaft(side)
-        except SceneError as error:
-            reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
-            yield SceneError(reason, path=(rotor, "spring", "position"))
-
-    def _operation(self) -> Iterator[SceneError]:
-        if not self.operation:
-            return
-        if len(self.meshes) >= len(self.shafts):
-            reason = "how meshes in a loop share a torque is not told by their teeth; leave it out"
-            yield SceneError(reason, path=("operation",))
-            return
-        ports = {side: [s.name for s in own.scene.stations] for side, own in self.shafts.items()}
-        turns = {side: self.turns[side] for pair in self.power for side in pair.shafts}
-        ends = self.rotors["engine"].shaft, self.rotors["load"].shaft
-        if not turns:
-            reason = f"engine and load both turn with the {ends[0]}: no mesh carries their torque"
-            yield SceneError(reason, path=("load", "shaft"))
-            return
-        yield from operation_problems(self.operation, turns, ends, ports)
-        for side, own in self.shafts.items():
-            scene = own.scene
-            held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
-            if held:
-                yield SceneError(
-                    f"a torque has to turn the {side}'s shaft, and {listed(held)} of its scene "
-                    "holds its rotation: leave kthy out, or hold it in another way than clamped",
-                    path=("operation",),
-                )
-            yield from self._speeds(side, scene)
-
-    def _speeds(self, side: str, scene: Scene) -> Iterator[SceneError]:
-        """Speeds that bearings of a shaft name and that it does not have."""
-        for bearing in scene.bearings:
-            own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
-            for k, point in enumerate(self.operation):
-                speed = point.speed_of(side, self.turns) if point.of in self.turns else None
-                if own and speed is not None and not isclose(own, speed, rel_tol=RATIO_TYPED):
-                    yield SceneError(
-                        f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
-                        f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "
-                        "rpm; correct one, or leave the bearing's speed out",
-                        path=("operation", k, "speed"),
-                    )
-                    break
 
     @property
     def called(self) -> str:

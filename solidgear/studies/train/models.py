@@ -10,24 +10,20 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solidgear.body import Body, as_supports
+from solidgear.body import Body
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
-from solidgear.frames import shift
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
-from solidgear.reduction.condensed import condensed_shaft
 from solidgear.reduction.craig_bampton import craig_bampton
-from solidgear.reduction.effective_mass import synthesise
 from solidgear.reduction.rubin import rubin
-from solidgear.reduction.superelement import Superelement
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import TEETH, local_teeth
-from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -284,39 +280,14 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
-            part = self._lumped(side, kind, under)
+            if len(self.train.shafts[side].gears) > 1:
+                raise SolidgearError(
+                    f"a {kind} shaft is one point, and the {side} carries several gears; use one "
+                    f"of {', '.join(LADDER.bodies)}, {RIGID}"
+                )
+            part = lumped(under, kind, self.scenes[side])
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
-
-    def _lumped(self, side: str, kind: str, under: ShaftModel) -> Part:
-        scene, shaft = self.scenes[side], under.part
-        if len(self.train.shafts[side].gears) > 1:
-            raise SolidgearError(
-                f"a {kind} shaft is one point, and the {side} carries several gears; use one of "
-                f"{', '.join(LADDER.bodies)}, {RIGID}"
-            )
-        supports, port = as_supports(scene), scene.port.name
-        assert isinstance(shaft, Superelement)
-        whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
-        if kind == "lumped":
-            return whole
-        rigid = _mass_about(under.body, scene.port.y)
-        if kind == "lumped-old":
-            return whole.with_mass(np.diag(np.diag(rigid)))
-        mass = np.diag(np.diag(rigid))
-        if kind == "lumped-bending":
-            for plane in ([0, 5], [2, 3]):
-                mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
-            return whole.with_mass(mass)
-        _, models = synthesise(under.body, supports, port)
-        matched = models["mode-matched"]
-        if matched.mass is None or not matched.feasible:
-            raise SolidgearError(
-                f"the {side} has no mode-matched masses: {matched.verdict}; use lumped"
-            )
-        for plane in ([0, 5], [2, 3]):
-            mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
-        return whole.with_mass(mass)
 
     def system(self, *models: str, bearings: bool = True) -> System:
         """The train with its shafts by models.
@@ -412,9 +383,3 @@ class Workshop:
         mix = self.mix(models)
         local = self._local_seconds if JUDGE in mix.values() else 0.0
         return sum(self.shaft(*one).seconds for one in mix.items()) + local
-
-
-def _mass_about(body: Body, y: float) -> np.ndarray:
-    """(6, 6) rigid mass about a point of the axis."""
-    back = shift([0.0, -y, 0.0])
-    return back.T @ body.mass_matrix() @ back
