@@ -66,12 +66,15 @@ def write_train(
         If the folder cannot be written.
     """
     verdict, train = results["verdict"], results["train"]
+    driven = train["title"]
+    if len(train["meshes"]) > 1:
+        driven += f", driven by the {train['meshes'][0]['name']}"
     teeth, chosen = orders.teeth, units_named(units)
     charts: dict[str, Make] = {
         "response": partial(
-            response_chart, responses, train["title"], teeth, verdict["decibels"], marks, chosen
+            response_chart, responses, driven, teeth, verdict["decibels"], marks, chosen
         ),
-        "orders": partial(order_chart, orders, train["title"], teeth, chosen),
+        "orders": partial(order_chart, orders, driven, teeth, chosen),
     }
     with begun(out) as folder:
         files = ["report.html", "response.csv", "orders.csv"]

@@ -57,7 +57,7 @@ def _materials(scene: Mapping[str, Any], units: Units) -> str:
 
 
 def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> list[list[str]]:
-    """Rows of one mesh, named where there are several."""
+    """Rows of one mesh, below its name where there are several."""
     name, (pinion, gear) = mesh["name"], mesh["teeth"]
     known = f"{name}.stiffness", f"{name}.transmission_error"
     line = next((k for k in status if k.startswith(f"{name}.") and k not in known), "")
@@ -70,8 +70,7 @@ def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> l
         ["lever arms", _levers(mesh, units), ""],
         ["transmission error", _error(mesh["transmission_error"], units), known[1]],
     ]
-    of = "" if name == "mesh" else f"{name}: "
-    return [[of + first, *rest] for first, *rest in rows]
+    return rows if name == "mesh" else [[name, " and ".join(mesh["between"]), ""], *rows]
 
 
 def mark(status: str) -> Cell:

@@ -164,7 +164,7 @@ def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
     vectors = met.pinion, met.gear
     return {
         "name": pair.name,
-        "shafts": list(pair.shafts),
+        "between": [f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports)],
         "per_turn": workshop.train.per_turn(pair),
         "teeth": [own.teeth for own in pair.members.values()],
         "shaft_angle": pair.mesh.shaft_angle,

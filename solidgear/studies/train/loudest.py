@@ -37,6 +37,8 @@ class Loudest:
         Where that speed stands.
     asked_hz : float
         Highest frequency of the range.
+    what : str
+        In words, which of several meshes has it.
     """
 
     peak: Peak | None
@@ -46,6 +48,7 @@ class Loudest:
     rpm: float | None
     said_by: str
     asked_hz: float
+    what: str = "mesh force"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold."""
@@ -57,13 +60,13 @@ class Loudest:
         upto = f" up to {self.asked_hz:g} Hz"
         if limit:
             upto = f" up to {self.rpm:.0f} rpm of the {self.teeth.of} ({self.said_by})"
-        lines = [f"There is no peak of the dynamic mesh force{upto}."]
+        lines = [f"There is no peak of the dynamic {self.what}{upto}."]
         if self.peak is not None:
             sure = "its model has no bar"
             if self.bar is not None:
                 sure = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
             lines = [
-                f"Largest dynamic mesh force{upto}: {self._told(self.peak)} ({sure} in frequency; "
+                f"Largest dynamic {self.what}{upto}: {self._told(self.peak)} ({sure} in frequency; "
                 "the height hangs on the losses and has no bar)."
             ]
         if not limit:
@@ -116,7 +119,8 @@ def loudest(
         Whose error drives it; the first by default.
     """
     rpm, said_by = max(_speeds(train, scenes), default=(None, "")) if meshes else (None, "")
-    teeth = train.per_turn(train.named_mesh(mesh))
+    pair = train.named_mesh(mesh)
+    teeth = train.per_turn(pair)
     limit = inf if rpm is None else rpm * teeth / 60
     by_force = sorted(response.peaks, key=lambda one: -one.force)
     peak = next((one for one in by_force if one.frequency_hz <= limit), None)
@@ -130,6 +134,7 @@ def loudest(
         rpm,
         said_by,
         float(response.frequency_hz[-1]),
+        f"force of the {pair.name}" if pair.label else "mesh force",
     )
 
 
