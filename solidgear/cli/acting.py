@@ -94,7 +94,12 @@ class Acting(Group):
             own = OperatingPoint(**{key: value for key, value in given.items() if value})
         except SceneError as error:
             raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
-        train = load_train(file, own)
+        try:
+            train = load_train(file, own)
+        except SceneError as error:
+            if error.path[:1] != ("operation",) or error.path[-1] != "of":
+                raise
+            raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
         return train, train.told(own)
 
 

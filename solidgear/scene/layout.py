@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 RATIO_TYPED = 1e-3
 #: names that mean something else in a file, in a result or in an order
 RESERVED = (
-    "caution cautions facts faults files ground load losses mesh meshes model models modes name "
-    "notes operation peaks point points response rotor shaft shafts speed title train verdict "
-    "verdicts"
+    "caution cautions cause contact coordinates damping error facts faults files free ground kept "
+    "load local losses mesh meshes mesh_force mesh_forces misalignment displacement mode model "
+    "models modes name notes operation peaks point points ratio reduction response rigid rotor "
+    "rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
+    "unpublished verdict verdicts"
 ).split()
 
 
