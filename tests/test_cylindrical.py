@@ -9,7 +9,7 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.scene.cylindrical import working
-from solidgear.studies.train.contact import contact
+from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.operation import at_point
@@ -61,7 +61,7 @@ def in_own_words(train, **mesh):
 
 @pytest.mark.parametrize("mesh", [{}, {"centre_distance": 115.5e-3}])
 def test_module_and_helix_give_the_contact_of_radius_and_spiral(gearbox, mesh):
-    here, there = contact(in_own_words(gearbox, **mesh)), contact(gearbox)
+    here, there = contacts(in_own_words(gearbox, **mesh))["mesh"], contacts(gearbox)["mesh"]
     for side in ("pinion", "gear"):
         one, two = getattr(here, side), getattr(there, side)
         assert one.normal == pytest.approx(two.normal, abs=1e-12)
@@ -73,7 +73,7 @@ def test_straight_teeth_need_neither_hand_nor_helix(gearbox):
     spur = gearbox.with_changes(
         pinion=pinion, gear=gearbox.gear.with_changes(**PLAIN, module=None, hand=None)
     )
-    normal = contact(spur).pinion.normal
+    normal = contacts(spur)["mesh"].pinion.normal
     assert normal[1] == pytest.approx(0.0, abs=1e-15)
     assert abs(normal[0] / normal[2]) == pytest.approx(tan(radians(20)), rel=1e-12)
 
@@ -81,7 +81,9 @@ def test_straight_teeth_need_neither_hand_nor_helix(gearbox):
 def test_a_hand_without_a_helix_is_an_omission(gearbox):
     pinion = gearbox.pinion.with_changes(**PLAIN, module=3e-3)
     with pytest.raises(SceneError, match="is missing") as error:
-        contact(gearbox.with_changes(pinion=pinion, gear=gearbox.gear.with_changes(**PLAIN)))
+        contacts(gearbox.with_changes(pinion=pinion, gear=gearbox.gear.with_changes(**PLAIN)))[
+            "mesh"
+        ]
     assert error.value.problems[0].path == ("pinion", "helix_angle")
 
 
@@ -105,7 +107,7 @@ def test_words_that_contradict_are_refused(gearbox, pinion, mesh, words):
 
 def test_axes_too_near_for_the_teeth_are_refused_with_the_least_distance(gearbox):
     with pytest.raises(SceneError, match=r"below 10\d\.\d+ mm, the sum of the base radii"):
-        contact(in_own_words(gearbox, centre_distance=100e-3))
+        contacts(in_own_words(gearbox, centre_distance=100e-3))["mesh"]
 
 
 def test_names_belong_to_their_shaft(gearbox):
@@ -119,7 +121,7 @@ def test_names_belong_to_their_shaft(gearbox):
         load=gearbox.load.with_changes(spring=spring),
     )
     both = [
-        train_modes(Workshop(settled(train)), "timoshenko", "timoshenko", 2000.0)
+        train_modes(Workshop(settled(train)), "timoshenko", "timoshenko", max_frequency=2000.0)
         for train in (gearbox, alike)
     ]
     one, two = ([(m.frequency_hz, m.name) for m in found.modes] for found in both)

@@ -224,11 +224,11 @@ SIDES = ("pinion", "gear")
 
 
 def test_modes_say_what_is_driven(train, usual):
-    found = train_modes(usual, "harmonic", "harmonic", 4000.0)
+    found = train_modes(usual, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(found.undriven) == ["gear"] and list(found.undriven["gear"]) == [2, 3]
     assert any("not driven by this mesh model: gear n=2 187" in line for line in found.notes())
     local = Workshop(waved(train, (2,)), settings=LIGHT)
-    now = train_modes(local, "harmonic", "harmonic", 4000.0)
+    now = train_modes(local, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(now.undriven["gear"]) == [3]
     own = [mode for mode in now.modes if "gear ovalising n=2" in mode.name]
     # the pair, of which the line of action moves one

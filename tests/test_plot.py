@@ -139,7 +139,7 @@ def shop():
 
 @pytest.fixture(scope="module")
 def found(shop):
-    return respond(shop, *SIDE, 900.0)
+    return respond(shop, *SIDE, highest_hz=900.0)
 
 
 def test_a_response_that_is_drawn_from_further_up_says_so(found):
@@ -182,7 +182,9 @@ def test_a_response_is_read_in_the_units_chosen(found, units, newton, micrometre
 
 
 def test_a_receptance_is_read_with_its_phase(shop):
-    one = receptance(shop, *SIDE, ("pinion.pinion", "z"), ("gear.gear", "thx"), 900.0)
+    one = receptance(
+        shop, *SIDE, from_=("pinion.pinion", "z"), to=("gear.gear", "thx"), highest_hz=900.0
+    )
     make = partial(receptance_chart, [one], "", 14, SYSTEMS["us"])
     facts = [fact for _, fact in facts_of(page_svg("receptance", make).decode())]
     size, mode = max((size, mode) for _, size, mode in one.peaks)

@@ -8,6 +8,7 @@ import pytest
 import typer.main
 
 import solidgear as sg
+from solidgear.scene.toml_file import describes_train
 from validation.manual import CASES
 from validation.mutations import MUTATIONS
 
@@ -76,7 +77,7 @@ def test_counts_in_prose_are_those_of_the_source(page):
     """A number that somebody typed is one of yesterday."""
     text = (ROOT / page).read_text(encoding="utf-8")
     scenes = [tomllib.loads(p.read_text()) for p in (ROOT / "geometry").glob("*.toml")]
-    trains = sum("pinion" in scene for scene in scenes)
+    trains = sum(map(describes_train, scenes))
     counts = {
         r"(\d+) wrong expressions": len(MUTATIONS),
         r"(\d+) problems": len(CASES),

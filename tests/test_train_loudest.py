@@ -17,8 +17,8 @@ GEARBOX = sg.load_train("geometry/gearbox_train.toml")
 
 def top_of(train, highest_hz=None):
     shop = Workshop(train)
-    modes = train_modes(shop, *BEAMS, highest_hz).modes
-    return loudest(respond(shop, *BEAMS, highest_hz), modes, train, shop.scenes)
+    modes = train_modes(shop, *BEAMS, max_frequency=highest_hz).modes
+    return loudest(respond(shop, *BEAMS, highest_hz=highest_hz), modes, train, shop.scenes)
 
 
 @pytest.fixture(scope="module")

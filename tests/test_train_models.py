@@ -45,7 +45,7 @@ def assembled(shop, rungs, losses=None):
     def motion(port):
         return rows[6 * names.index(port) :][:6].copy()
 
-    for side, rotor, at in (("pinion", train.engine, size - 2), ("gear", train.load, size - 1)):
+    for side, name, at in (("pinion", "engine", size - 2), ("gear", "load", size - 1)):
         scene = shop.scenes[side]
         seats = np.vstack([motion(f"{side}.{b.name}") for b in scene.bearings])
         held = sla.block_diag(*(b.stiffness for b in scene.bearings))
@@ -54,9 +54,9 @@ def assembled(shop, rungs, losses=None):
             axial = held[:, 1::6].sum(axis=1)
             held = held - np.outer(axial, axial) / (scene.housing_axial + axial[1::6].sum())
         k = k + (1 + lost["bearings"]) * (seats.T @ held @ seats)
-        twist = motion(f"{side}.{train.spring_port(side)}")[4]
+        twist = motion(f"{side}.{train.spring_port(name)}")[4]
         twist[at] -= 1.0
-        k = k + (1 + lost["springs"]) * rotor.spring.stiffness * np.outer(twist, twist)
+        k = k + (1 + lost["springs"]) * train.rotors[name].spring.stiffness * np.outer(twist, twist)
     met = shop.contact
     row = met.pinion.vector @ motion("pinion.pinion") - met.gear.vector @ motion("gear.gear")
     return k + (1 + lost["mesh"]) * met.stiffness * np.outer(row, row), m, motion, row
@@ -201,7 +201,7 @@ def test_names_are_one_a_mode_and_say_what_moves():
 def test_a_solid_has_modes_that_the_mesh_does_not_drive():
     coarse = {"solid": {"around": 8, "refinement": 0.3}, **COARSE}
     shop = Workshop(TRAIN_DATA, kept=16, settings=coarse)
-    found = train_modes(shop, "euler", "solid", 3000.0)
+    found = train_modes(shop, "euler", "solid", max_frequency=3000.0)
     named = [mode.name for mode in found.modes if "ovalising" in mode.name]
     assert named == ["gear ovalising n=2 1", "gear ovalising n=2 2"]  # near 1.9 kHz
     assert any("not driven by this mesh model" in line for line in found.remarks())
@@ -216,7 +216,9 @@ def test_a_shaft_that_nothing_holds_along_its_axis_is_told():
         bearings.append(bearing.with_changes(matrix=tuple(map(tuple, k))))
     loose = scene.with_changes(bearings=tuple(bearings), housing_axial=None)
     train = TRAIN_DATA.with_changes(gear=TRAIN_DATA.gear.with_changes(scene=loose))
-    found = train_modes(Workshop(train, settings=COARSE), "timoshenko", "timoshenko", 500.0)
+    found = train_modes(
+        Workshop(train, settings=COARSE), "timoshenko", "timoshenko", max_frequency=500.0
+    )
     assert found.rigid == 2
     assert "gear's shaft do not hold it in y" in found.remarks()[0]
 
@@ -224,7 +226,7 @@ def test_a_shaft_that_nothing_holds_along_its_axis_is_told():
 def test_a_frequency_beyond_the_reduction_is_refused():
     shop = Workshop(TRAIN_DATA, kept=4, settings=COARSE)
     with pytest.raises(sg.SolidgearError, match="beyond what the reduction resolves"):
-        train_modes(shop, "timoshenko", "timoshenko", 20_000.0)
+        train_modes(shop, "timoshenko", "timoshenko", max_frequency=20_000.0)
 
 
 def test_a_frequency_beyond_the_mesh_is_refused():
@@ -232,8 +234,8 @@ def test_a_frequency_beyond_the_mesh_is_refused():
     coarse = {"harmonic": {"order": 2, "layers": 0, "edge_layers": 0}}
     shop = Workshop(TRAIN_DATA, kept=80, settings=coarse)
     with pytest.raises(sg.SolidgearError, match="beyond what the mesh of the gear resolves"):
-        train_modes(shop, "timoshenko", "harmonic", 20_000.0)
-    assert train_modes(shop, "timoshenko", "harmonic", 2_000.0).modes
+        train_modes(shop, "timoshenko", "harmonic", max_frequency=20_000.0)
+    assert train_modes(shop, "timoshenko", "harmonic", max_frequency=2_000.0).modes
 
 
 def test_cells_of_one_order_follow_waves_of_one_length():

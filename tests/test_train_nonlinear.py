@@ -110,7 +110,7 @@ def test_sweeps_in_time_agree_with_the_branch(solids):
 
 @pytest.mark.parametrize("highest", [np.inf, 4000.0])
 def test_without_backlash_the_answer_is_the_linear_one(shop, teeth, highest):
-    drive = Drive(shop, *BEAMS, "viscous", 800.0)
+    drive = Drive(shop, *BEAMS, damping="viscous", matched_hz=800.0)
     system = parting(drive.system, replace(teeth, half_gap=0.0))
     own = remainder(
         system,

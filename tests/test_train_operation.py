@@ -234,7 +234,7 @@ def test_modes_are_those_of_the_point():
             Workshop(at_point(train.with_changes(operation=({"torque": torque},)))),
             "timoshenko",
             "timoshenko",
-            2000.0,
+            max_frequency=2000.0,
         )
         for torque in (10.0, 115.0)
     }

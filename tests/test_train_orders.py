@@ -25,7 +25,7 @@ def shop():
 
 @pytest.fixture(scope="module")
 def found(shop):
-    return order_map(shop, *MIX, 3000.0)
+    return order_map(shop, *MIX, highest_hz=3000.0)
 
 
 def test_an_order_meets_a_mode_where_teeth_and_speed_say(found):
@@ -37,7 +37,11 @@ def test_an_order_meets_a_mode_where_teeth_and_speed_say(found):
 
 
 def test_every_mode_is_met_by_every_order_that_reaches_it(shop, found):
-    hz = [m.frequency_hz for m in train_modes(shop, *MIX, 3000.0).modes if m.frequency_hz > 0]
+    hz = [
+        m.frequency_hz
+        for m in train_modes(shop, *MIX, max_frequency=3000.0).modes
+        if m.frequency_hz > 0
+    ]
     for order in (1, 2, 3):
         met = [c.frequency_hz for c in found.crossings if c.line == f"mesh {order}"]
         assert met == hz  # order n runs out of the chart at the top, never at its end
@@ -66,10 +70,10 @@ def test_the_line_carries_the_response(found, shop):
 
 
 def test_orders_of_the_mesh_can_be_asked_for(shop):
-    five = order_map(shop, *MIX, 1000.0, mesh_orders=5)
+    five = order_map(shop, *MIX, highest_hz=1000.0, mesh_orders=5)
     assert [line.name for line in five.lines if line.name.startswith("mesh")][-1] == "mesh 5"
     with pytest.raises(sg.SolidgearError, match="ask for 1 to 20"):
-        order_map(shop, *MIX, 1000.0, mesh_orders=0)
+        order_map(shop, *MIX, highest_hz=1000.0, mesh_orders=0)
 
 
 def test_names_are_moved_apart_and_stay_in_order():

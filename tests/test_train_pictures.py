@@ -90,7 +90,7 @@ def test_the_surface_moves_as_the_ports_do(shop):
 
 def test_a_model_without_a_shape_says_so(shop, tmp_path):
     with pytest.raises(sg.SolidgearError, match="lumped of the gear has no shape to draw"):
-        draw_modes(shop, "timoshenko", "lumped", tmp_path / "out", [2])
+        draw_modes(shop, "timoshenko", "lumped", folder=tmp_path / "out", numbers=[2])
     assert not (tmp_path / "out").exists()
 
 
@@ -98,7 +98,7 @@ def test_a_model_without_a_shape_says_so(shop, tmp_path):
 def test_modes_are_drawn_with_four_phases(shop, tmp_path):
     from matplotlib.image import imread
 
-    done = draw_modes(shop, "timoshenko", "timoshenko", tmp_path, [4])
+    done = draw_modes(shop, "timoshenko", "timoshenko", folder=tmp_path, numbers=[4])
     ((told, one),) = done.items()
     if one.no_renderer:
         pytest.skip(one.reason)
@@ -149,7 +149,7 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
     """Both shafts put in their places are the surface of the picture, in rest and in motion, with
     one scale for both: the largest displacement of the two is 1.
     """
-    model = turned_modes(shop, *rungs, 900.0)
+    model = turned_modes(shop, *rungs, highest_hz=900.0)
     system = shop.system(*rungs)
     found = system.modes(len(model.shapes))
     assert (
@@ -174,7 +174,7 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
 
 def test_only_a_shaft_that_turns_is_drawn_as_turning(shop):
     """Enlarged along the tangent a turning section would swell; one that bends must not be turned."""
-    model = turned_modes(shop, "timoshenko", "timoshenko", 1000.0)
+    model = turned_modes(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
     by = {s.name: (s.twists, model.along[0].shapes[k].twists) for k, s in enumerate(model.shapes)}
     # the shafts wind up against engine and load, nearly rigid themselves
     assert by["load torsion 1"] == (True, True)

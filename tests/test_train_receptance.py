@@ -39,9 +39,9 @@ def own_row(system, end):
 @pytest.mark.parametrize(("here", "there"), PAIRS)
 def test_modal_and_direct_agree(shop, here, there, damping, at):
     found = receptance(
-        shop, *MIX, here, there, damping=damping, matched_hz=at, frequency_hz=HZ
+        shop, *MIX, from_=here, to=there, damping=damping, matched_hz=at, frequency_hz=HZ
     ).value
-    drive = Drive(shop, *MIX, damping, at)
+    drive = Drive(shop, *MIX, damping=damping, matched_hz=at)
     load, row = (own_row(drive.system, end) for end in (here, there))
     modal = drive.steady.motion(HZ, load, row[None])[:, 0]
     # engine to load is 1e-14 of the terms of its modal sum at 4 kHz: judged where digits are left
@@ -55,7 +55,7 @@ def test_the_reduced_receptance_is_that_of_the_full_matrices(here, there):
     # bearings that lose more than the rest: sums over complex modes leave two digits at 4 kHz
     losses = TRAIN.losses.with_changes(bearings=0.1)
     shop = Workshop(TRAIN.with_changes(losses=losses), settings=COARSE)
-    found = receptance(shop, *MIX, here, there, frequency_hz=HZ).value
+    found = receptance(shop, *MIX, from_=here, to=there, frequency_hz=HZ).value
     k, m, motion, _ = assembled(shop, dict(zip(("pinion", "gear"), MIX)), losses)
     force = motion(here[0])[DOF_NAMES.index(here[1])]
     row = motion(there[0])[DOF_NAMES.index(there[1])]
@@ -69,8 +69,8 @@ def test_the_reduced_receptance_is_that_of_the_full_matrices(here, there):
 @pytest.mark.parametrize("damping", ["hysteretic", "modal"])
 @pytest.mark.parametrize(("here", "there"), PAIRS)
 def test_ends_may_change_places(shop, here, there, damping):
-    forth = receptance(shop, *MIX, here, there, damping=damping, frequency_hz=HZ).value
-    back = receptance(shop, *MIX, there, here, damping=damping, frequency_hz=HZ).value
+    forth = receptance(shop, *MIX, from_=here, to=there, damping=damping, frequency_hz=HZ).value
+    back = receptance(shop, *MIX, from_=there, to=here, damping=damping, frequency_hz=HZ).value
     # modal losses are told in modes alone, whose sums cancel from the engine to the load
     slack = 1e-10 * np.abs(forth).max() if damping == "modal" else 0.0
     assert np.allclose(forth, back, rtol=1e-10, atol=slack)
@@ -85,7 +85,7 @@ def test_a_clamped_shaft_is_one_whose_seat_does_not_move(end, damping, at):
     wall = sg.Bearing(name=wall.name, y=wall.y, seat_width=wall.seat_width, hold="clamped")
     scene = scene.with_changes(bearings=(*scene.bearings[:-1], wall))
     train = TRAIN.with_changes(pinion=TRAIN.pinion.with_changes(scene=scene))
-    drive = Drive(Workshop(train, settings=COARSE), *MIX, damping, at)
+    drive = Drive(Workshop(train, settings=COARSE), *MIX, damping=damping, matched_hz=at)
     system = drive.system
     load, row = own_row(system, ("gear.gear", "z")), own_row(system, end)
     found = drive.steady.solved(HZ, load, row[None])[:, 0]
@@ -107,7 +107,7 @@ def test_a_clamped_shaft_is_one_whose_seat_does_not_move(end, damping, at):
 
 def test_no_peak_is_missed(shop):
     here, there = PAIRS[0]
-    found = receptance(shop, *MIX, here, there)
+    found = receptance(shop, *MIX, from_=here, to=there)
     tops = found.frequency_hz[peaks(np.abs(found.value))]
     fine = np.linspace(4, 4000, 80_001)
     drive = Drive(shop, *MIX)

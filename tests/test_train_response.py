@@ -49,7 +49,7 @@ def test_the_reduced_response_is_that_of_the_full_matrices(shop, drive):
 
 @pytest.mark.parametrize(("damping", "at"), [("hysteretic", 0.0), ("viscous", 700.0)])
 def test_power_that_goes_in_is_lost_in_parts_and_links(shop, damping, at):
-    drive = Drive(shop, *MIX, damping, at)
+    drive = Drive(shop, *MIX, damping=damping, matched_hz=at)
     g, where = drive.system.strains
     hz = np.array([16.3, 55.0, 400.0, 661.0, 879.0, 3100.0])
     error = drive.amplitude(hz)
@@ -67,7 +67,7 @@ def test_power_that_goes_in_is_lost_in_parts_and_links(shop, damping, at):
 
 def test_viscous_losses_are_hysteretic_where_they_are_matched(shop, drive):
     hz = np.array([661.0])
-    viscous = Drive(shop, *MIX, "viscous", 661.0)
+    viscous = Drive(shop, *MIX, damping="viscous", matched_hz=661.0)
     assert abs(viscous.mesh(hz)[1] / drive.mesh(hz)[1] - 1)[0] < 1e-9
     assert abs(viscous.mesh(hz / 2)[1] / drive.mesh(hz / 2)[1] - 1)[0] > 1e-4
 
@@ -121,7 +121,7 @@ def test_a_table_and_harmonics_of_the_transmission_error(shop):
     slope = Drive(with_error(table), *MIX).mesh(hz)[1]
     assert np.allclose(slope / usual, [1, 1.5, 2, 2])
     orders = ErrorTable(orders=("2 um", "1 um"))
-    found = respond(with_error(orders), *MIX, 4000.0, frequency_hz=hz)
+    found = respond(with_error(orders), *MIX, highest_hz=4000.0, frequency_hz=hz)
     second = found.columns["mesh force, order 2 [N]"]
     assert second[0] == pytest.approx(usual[2] / 2)  # 100 Hz, second order: 200 Hz, half as large
     assert np.isnan(second[3])  # 5 kHz is beyond what was asked

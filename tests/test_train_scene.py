@@ -8,7 +8,7 @@ import pytest
 import solidgear as sg
 from solidgear.frames import cross_matrix
 from solidgear.scene.train_file import load_train
-from solidgear.studies.train.contact import contact
+from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import wrench_lines
 from solidgear.system.contact_cells import contact_wrench
@@ -33,7 +33,7 @@ def written(folder, *changes, text=OVERHUNG):
 @pytest.mark.parametrize("name", ["overhung", "straddle", "thesis"])
 def test_shipped_trains_load_and_mesh_in_the_ratio_of_their_teeth(name):
     train = load_train(GEOMETRY / f"axle_{name}.toml")
-    found = contact(train)
+    found = contacts(train)["mesh"]
     assert abs(found.gear.lever / found.pinion.lever) == pytest.approx(45 / 14, rel=1e-12)
     # one physical point and line, seen from both lumped points
     back = to_gear_frame(found.gear.point, -train.mesh.shaft_angle) + found.origin
@@ -49,7 +49,7 @@ PARALLEL = (
 
 def test_parallel_shafts_have_cylindrical_gears(tmp_path):
     train = load_train(written(tmp_path, *PARALLEL))
-    found, teeth = contact(train), train.pinion
+    found, teeth = contacts(train)["mesh"], train.pinion
     # axes apart by both radii, levers by the transverse component of the line of action
     radius = teeth.pitch_radius
     assert np.allclose(found.origin, [-radius * (1 + train.ratio), 0, 0], rtol=1e-12, atol=1e-15)
@@ -57,7 +57,7 @@ def test_parallel_shafts_have_cylindrical_gears(tmp_path):
     assert abs(found.pinion.lever) == pytest.approx(radius * across, rel=1e-12)
     assert abs(found.gear.lever / found.pinion.lever) == pytest.approx(train.ratio, rel=1e-12)
     assert not any("pitch angle" in line for line in found.cautions)
-    bevel = contact(load_train(written(tmp_path, PARALLEL[1])))
+    bevel = contacts(load_train(written(tmp_path, PARALLEL[1])))["mesh"]
     assert "45 teeth (0 rad)" in bevel.cautions[0]
 
 
@@ -99,7 +99,7 @@ def parallel(tmp_path, pinion="", gear="", mesh=""):
         ("[pinion]\n", f"[pinion]\n{pinion}\n"),
         ("[mesh]\n", f"[mesh]\n{mesh}\n"),
     )
-    return contact(load_train(written(tmp_path, *PARALLEL, *changes)))
+    return contacts(load_train(written(tmp_path, *PARALLEL, *changes)))["mesh"]
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_numbers_of_the_gear_agree_with_the_pinion_or_it_is_told(
 def test_numbers_of_the_gear_refuse_nothing_where_the_line_is_given(tmp_path):
     given = GIVEN.format(NORMAL, -54.99494)
     changes = (LINE, given), ("[gear]\n", '[gear]\npitch_radius = "100 mm"\n')
-    found = contact(load_train(written(tmp_path, *changes)))
+    found = contacts(load_train(written(tmp_path, *changes)))["mesh"]
     assert any("pitch_radius of the gear: is 1.493 times" in line for line in found.cautions)
 
 
@@ -137,7 +137,7 @@ def test_the_right_flank_is_right_of_a_tooth_with_its_tip_up_seen_from_the_apex(
     for word, sign in (("right", -1), ("left", 1)):
         change = old, f'loaded_side = "{word}"'
         changes = *PARALLEL, change, ('loaded_side = "convex"', "# ")
-        push = contact(load_train(written(tmp_path, *changes))).pinion.normal
+        push = contacts(load_train(written(tmp_path, *changes)))["mesh"].pinion.normal
         assert np.sign(push @ right) == sign, word  # a force on a flank points into the tooth
 
 
@@ -149,7 +149,7 @@ def test_words_of_bevel_flanks_mean_the_flanks_of_helical_ones(tmp_path):
             bare = 'loaded_side = "convex"', "# "
             changes = bare, ('loaded_side = "concave"', f'loaded_side = "{side}"')
             train = load_train(written(tmp_path, *PARALLEL, *changes))
-            found.append(contact(train).pinion.vector)
+            found.append(contacts(train)["mesh"].pinion.vector)
             assert train.pinion.flank == word
         assert np.array_equal(*found)
 
@@ -163,7 +163,7 @@ def test_spur_gears_need_no_hand_where_the_flank_is_named(tmp_path):
         ('loaded_side = "convex"', "# "),
         ('spiral_angle = "0.478 rad"', "spiral_angle = 0"),
     ]
-    push = contact(load_train(written(tmp_path, *changes))).pinion.normal
+    push = contacts(load_train(written(tmp_path, *changes)))["mesh"].pinion.normal
     assert push[1] == 0 and push[2] == pytest.approx(np.cos(np.radians(25)))
 
 
@@ -212,7 +212,7 @@ def test_bad_input_is_told_in_one_sentence(case, tmp_path):
     else:
         changes = [(old, new)]
     with pytest.raises(sg.SceneError) as caught:
-        contact(load_train(written(tmp_path, *changes)))
+        contacts(load_train(written(tmp_path, *changes)))["mesh"]
     text = str(caught.value)
     assert words in text
     assert "\n" not in text
@@ -220,14 +220,17 @@ def test_bad_input_is_told_in_one_sentence(case, tmp_path):
 
 def test_a_given_line_and_point_are_those_of_the_geometry(tmp_path):
     path = written(tmp_path, (LINE, GIVEN.format(NORMAL, -54.99494)))
-    found, usual = contact(load_train(path)), contact(load_train(GEOMETRY / "axle_overhung.toml"))
+    found, usual = (
+        contacts(load_train(path))["mesh"],
+        contacts(load_train(GEOMETRY / "axle_overhung.toml"))["mesh"],
+    )
     assert np.allclose(found.gear.vector, usual.gear.vector, atol=1e-7)
 
 
 def test_an_apex_at_the_other_end_turns_the_mesh_with_the_shaft(tmp_path):
-    usual = contact(load_train(written(tmp_path)))
+    usual = contacts(load_train(written(tmp_path)))["mesh"]
     text = OVERHUNG.replace('apex = "start"', 'apex = "end"')
-    turned = contact(load_train(written(tmp_path, text=text)))
+    turned = contacts(load_train(written(tmp_path, text=text)))["mesh"]
     half = np.array([-1, -1, 1])
     assert np.array_equal(turned.pinion.normal, half * usual.pinion.normal)
     assert turned.pinion.lever == pytest.approx(-usual.pinion.lever)
@@ -290,7 +293,7 @@ def test_a_mesh_from_contact_cells(tmp_path):
     old = 'stiffness = "2.5e8 N/m" '
     new = 'loaded_error = "25 um"\nunloaded_error = "14 um" '
     cells = 'contact_cells = "cells.csv"'
-    found = contact(load_train(written(tmp_path, (LINE, cells), (old, new))))
+    found = contacts(load_train(written(tmp_path, (LINE, cells), (old, new))))["mesh"]
     wrench = contact_wrench(CELLS, ANGLES, FORCES)
     assert found.stiffness == pytest.approx(np.linalg.norm(wrench.force) / 11e-6)
     assert np.allclose(found.pinion.point, wrench.point, atol=1e-12)
@@ -376,22 +379,22 @@ def test_an_apex_that_contradicts_its_scene_is_told(tmp_path):
         (((start, end),), True),
         (((start, end), *PARALLEL), False),
     ):
-        cautions = contact(load_train(written(tmp_path, *changes))).cautions
+        cautions = contacts(load_train(written(tmp_path, *changes)))["mesh"].cautions
         found = [line for line in cautions if "contradicts its scene" in line]
         assert bool(found) == told, changes
     pinion = 'apex = "end" of the pinion contradicts its scene'
-    line = contact(load_train(written(tmp_path, (start, end)))).cautions[1]
+    line = contacts(load_train(written(tmp_path, (start, end))))["mesh"].cautions[1]
     assert line.startswith(pinion) and 'unless apex = "start"' in line
 
 
 def test_all_that_a_line_of_action_lacks_is_told_at_once(tmp_path):
     lacking = (('hand = "left"', "# "), ('loaded_side = "concave"', "# "))
     with pytest.raises(sg.SceneError) as error:
-        contact(load_train(written(tmp_path, *lacking)))
+        contacts(load_train(written(tmp_path, *lacking)))["mesh"]
     assert len(error.value.problems) == 2
     straight = (*lacking, ('spiral_angle = "0.478 rad"', "spiral_angle = 0"))
     with pytest.raises(sg.SceneError, match="both together say which flank is loaded"):
-        contact(load_train(written(tmp_path, *straight)))
+        contacts(load_train(written(tmp_path, *straight)))["mesh"]
 
 
 def test_wheels_of_one_hand_are_called_what_they_are(tmp_path):

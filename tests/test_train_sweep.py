@@ -125,7 +125,7 @@ def test_every_operating_point_has_a_row_that_is_the_train_at_that_point(tmp_pat
     assert [(row["point"], row["torque"]) for row in rows] == [("full", 115.0), ("coast", -30.0)]
     train = at_point(sg.load_train(GEARBOX), "coast")
     shop = Workshop(train)
-    modes = train_modes(shop, *BEAMS.values(), 1500.0).modes
+    modes = train_modes(shop, *BEAMS.values(), max_frequency=1500.0).modes
     own = [mode.frequency_hz for mode in modes if mode.frequency_hz > 0]
     np.testing.assert_allclose(
         [rows[1][f"f{k}_hz"] for k in range(1, len(own) + 1)], own, rtol=1e-8

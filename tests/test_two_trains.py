@@ -202,9 +202,9 @@ def test_strain_energies_add_up_to_one_and_are_those_of_each_spring():
         seats = np.vstack([system.motion(f"{side}.{name}") for name in supports.ports]) @ elastic
         energy = np.einsum("ik,ij,jk->k", seats, np.array(supports.stiffness), seats)
         assert own[f"{side} bearings"] == pytest.approx(energy / squared, abs=1e-9)
-        at = f"{side}.{shop.train.spring_port(side)}"
+        at = f"{side}.{shop.train.spring_port(rotor)}"
         twist = (system.motion(at)[4] - system.motion(rotor)[4]) @ elastic
-        stiffness = shop.train.rotor(side)[1].spring.stiffness
+        stiffness = shop.train.rotors[rotor].spring.stiffness
         assert own[f"{rotor} spring"] == pytest.approx(stiffness * twist**2 / squared, abs=1e-9)
     vectors = [(f"{side}.{shop.scenes[side].port.name}", side) for side in ("pinion", "gear")]
     stretch = [getattr(shop.contact, s).vector @ system.motion(port) for port, s in vectors]

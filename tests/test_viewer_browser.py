@@ -117,7 +117,7 @@ def models():
 def train():
     """A pinion and its ring gear in their places."""
     shop = Workshop(sg.load_train(OVERHUNG), settings=COARSE)
-    return turned_modes(shop, "timoshenko", "euler", 900.0)
+    return turned_modes(shop, "timoshenko", "euler", highest_hz=900.0)
 
 
 @pytest.fixture(scope="module")

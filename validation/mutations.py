@@ -803,10 +803,10 @@ MUTATIONS = (
     ),
     Mutation(
         "operating point: the gear is pushed the way the pinion is",
-        "solidgear/studies/train/operation.py",
-        "Operating._loads",
-        "-shop.contact.gear.lever",
-        "shop.contact.gear.lever",
+        "solidgear/studies/train/layout.py",
+        "force_on",
+        "-met.gear.vector",
+        "met.gear.vector",
         "tests/test_train_operation.py::test_every_shaft_is_in_balance",
     ),
     Mutation(
@@ -992,9 +992,26 @@ MUTATIONS = (
         "orders of the gear at the speed of the pinion",
         "solidgear/studies/train/orders.py",
         "order_map",
-        '("gear", 1 / workshop.train.ratio)',
-        '("gear", 1.0)',
+        "train.turns.items()",
+        "dict.fromkeys(train.turns, 1.0).items()",
         "tests/test_train_orders.py::test_an_order_meets_a_mode_where_teeth_and_speed_say",
+    ),
+    Mutation(
+        "a mesh about the corner turns the first of its shafts alone",
+        "solidgear/studies/train/contact.py",
+        "axes_of",
+        'parallel or side == "pinion"',
+        'side == "pinion"',
+        "tests/test_train_many.py::test_rigid_shafts_move_like_matrices_written_by_hand",
+    ),
+    Mutation(
+        "torque passes a shaft as if both of its gears had one radius",
+        "solidgear/studies/train/layout.py",
+        "mesh_forces",
+        "out[pair.name] * abs(far)",
+        "reached[side]",
+        "tests/test_train_many.py"
+        "::test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth",
     ),
     Mutation(
         "no grid points at the poles",

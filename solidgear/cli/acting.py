@@ -34,13 +34,18 @@ class Acting(Group):
         str | None,
         typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
     ] = None
-    of: Annotated[str, typer.Option("--of", help="Shaft of --torque: pinion or gear.")] = "pinion"
+    of: Annotated[
+        str | None,
+        typer.Option("--of", help="Shaft of --torque: pinion or gear; the engine's shaft."),
+    ] = None
     point: Annotated[
         str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
     ] = None
     weight: Annotated[
         str | None,
-        typer.Option(help="With --torque: direction of weight in the pinion's scene, such as -z."),
+        typer.Option(
+            help="With --torque: direction of weight in the first shaft's scene, such as -z."
+        ),
     ] = None
     load: Annotated[
         str | None,
@@ -80,12 +85,18 @@ class Acting(Group):
             return train, named_point(train, self.point) if named else train.operation[0]
         if self.point is not None:
             raise SolidgearError("give either --torque or --point, not both")
-        given: dict[str, Any] = {"torque": self.torque, "of": self.of}
+        given: dict[str, Any] = {"torque": self.torque, "of": self.of, "weight": self.weight}
         try:
-            own = OperatingPoint(**given | ({"weight": self.weight} if self.weight else {}))
+            own = OperatingPoint(**{key: value for key, value in given.items() if value})
         except SceneError as error:
             raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
-        return load_train(file, own), own
+        try:
+            train = load_train(file, own)
+        except SceneError as error:
+            if error.path[:1] != ("operation",) or error.path[-1] != "of":
+                raise
+            raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
+        return train, train.told(own)
 
 
 def refuse(options: dict[str, str | None], what: str, file: Path, instead: str) -> None:

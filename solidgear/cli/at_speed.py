@@ -35,7 +35,10 @@ class Speed(Group):
             "those near natural frequencies. By default that of the operating point.",
         ),
     ] = None
-    of: Annotated[str, typer.Option("--of", help="Whose speed it is: pinion or gear.")] = "pinion"
+    of: Annotated[
+        str | None,
+        typer.Option("--of", help="Whose speed it is: pinion or gear; the engine's shaft."),
+    ] = None
     measured: Annotated[
         Path | None,
         typer.Option(
@@ -81,7 +84,7 @@ class Asked:
         self,
         train: Train,
         speed: str | None,
-        of: str,
+        of: str | None,
         measured: Path | None,
         fit: float | None,
         within: float | None,
@@ -89,18 +92,18 @@ class Asked:
         self.train, self.fit, self.within = train, fit, NEAR if within is None else within
         self.turns, self.told = 0.0, ""
         if speed is not None:
+            of = of or train.reference
             self.turns, self.told = _turns(train, speed, of), f"{speed} of the {of}"
-            if of != "pinion":
-                self.told += f", {60 * self.turns:.6g} rpm of the pinion"
+            if of != train.reference:
+                self.told += f", {60 * self.turns:.6g} rpm of the {train.reference}"
         elif train.point is not None and train.point.speed:
-            own = train.point.speed_of("pinion", train.ratio) or 0.0
+            own = train.point.speed_of(train.reference, train.turns) or 0.0
             self.turns, self.told = own / (2 * pi), train.point.label
         else:
-            given_of = None if of == "pinion" else of
             for option, given in (
                 ("--measured", measured),
                 ("--within", within),
-                ("--of", given_of),
+                ("--of", of),
             ):
                 if given is not None:
                     raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')

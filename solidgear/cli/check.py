@@ -18,7 +18,6 @@ from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.toml_file import is_train
-from solidgear.scene.train import SIDES
 from solidgear.studies.check import VERDICTS, check_scene
 from solidgear.studies.loading import load
 
@@ -117,7 +116,7 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        for side in SIDES:
+        for side in shop.train.shafts:
             print(f"== {side}")
             print_check(found[side])
         print("== train")
@@ -133,5 +132,5 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
                 for name, told in found["verdicts"].items()
             }
         )
-    if found["faults"] or any(found[side]["faults"] for side in SIDES):
+    if found["faults"] or any(found[side]["faults"] for side in shop.train.shafts):
         raise typer.Exit(1)

@@ -69,7 +69,10 @@ def _train(
     found = of_train.deflect_train(Workshop(train), at, models or of_train.MODELS, progress, every)
     shown, judge = units_named(units), found.judge
     over = tables.over_points(found.points, shown)
-    force = shown.text(judge.mesh_force, "N", 5)
+    force = ", ".join(
+        shown.text(size, "N", 5) + name.removeprefix("mesh")
+        for name, size in judge.mesh_forces.items()
+    )
     lead = f"At {at.label}: {force} along the line of action."
     lines: list[Any] = [
         f"{found.title} at {at.label}",
@@ -85,7 +88,7 @@ def _train(
     if out:
         files = write_deflection(
             out,
-            {one.pinion: one.shafts for one in found.found},
+            {one.model: one.shafts for one in found.found},
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",

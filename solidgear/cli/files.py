@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -182,7 +183,16 @@ def needed(path: Path) -> list[Path]:
     >>> [file.name for file in needed(shipped()["axle_overhung"])]
     ['axle_overhung.toml', 'pinion_overhung.toml', 'gear_shaft.toml']
     """
-    tables = tomllib.loads(path.read_text("utf-8")).values()
-    told = [t[key] for t in tables if isinstance(t, dict) for key in REFERRING if key in t]
-    beside = [path.parent / name for name in told if isinstance(name, str)]
+    beside = [path.parent / name for name in _referred(tomllib.loads(path.read_text("utf-8")))]
     return [path, *(file for file in beside if file.is_file())]
+
+
+def _referred(entry: Any) -> Iterator[str]:
+    """Names of files in a table and in those that it holds."""
+    if isinstance(entry, list):
+        for one in entry:
+            yield from _referred(one)
+    elif isinstance(entry, dict):
+        yield from (entry[key] for key in REFERRING if isinstance(entry.get(key), str))
+        for one in entry.values():
+            yield from _referred(one)

@@ -91,10 +91,10 @@ def nonlinear(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = reduced.workshop(train, models.of_shafts)
+    shop = models.workshop(reduced, train)
     first = models.pinion, models.gear
     usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
-    others = usual if against is None else [mix(text) for text in against]
+    others = usual if against is None else [_pair(shop, text) for text in against]
     shop = _with_teeth(shop, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
         raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
@@ -130,6 +130,12 @@ def nonlinear(
         say(over_force(told, shown), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
+
+
+def _pair(shop: Workshop, text: str) -> tuple[str, str]:
+    """Models of both shafts, from a text such as ``euler+euler``."""
+    pinion, gear = shop.mix(mix(text)).values()
+    return pinion, gear
 
 
 def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Workshop:

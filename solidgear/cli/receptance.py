@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -34,28 +34,25 @@ def receptance(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = reduced.workshop(train, driven.of_shafts)
+    shop = driven.workshop(reduced, train)
     ends = end_of("--from", from_), end_of("--to", to)
     unpublished, said = shop.train.unpublished(), slips(shop)
     cautions = [*said, *shop.cautions]
     title = f"{shop.train.called}: {to} for a unit force on {from_}"
     with held(out):
-        found = [
-            between(shop, *pair, *ends, reduced.max_frequency, *driven.losses)
-            for pair in driven.mixes
-        ]
+        how: dict[str, Any] = {"highest_hz": reduced.max_frequency, **driven.losses}
+        mixes = driven.mixes(shop.train)
+        found = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": cautions}
-        files = write_receptance(
-            out, found, title, shop.train.pinion.teeth, notes, described(shop), run.units
-        )
+        teeth = shop.train.per_turn(shop.train.named_mesh(driven.mesh))
+        files = write_receptance(out, found, title, teeth, notes, described(shop), run.units)
     if run.as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return
     say(
-        f"{title}; pinion {driven.pinion}, gear {driven.gear}, {driven.damping} losses",
+        f"{title}; {found[0].label}, {driven.damping} losses",
         *map(caution, said),
     )
-    tops, teeth = found[0].peaks, shop.train.pinion.teeth
-    print_peaks(tops, "receptance", found[0].unit, teeth, run.units)
+    print_peaks(found[0].peaks, "receptance", found[0].unit, teeth, run.units)
     say(*unpublished_lines(unpublished), *map(caution, shop.cautions))
     say(f"Written: {', '.join(map(str, files))}")

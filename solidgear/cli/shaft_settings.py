@@ -1,7 +1,8 @@
-"""Builder options of the two shafts of a train."""
+"""Builder options of the shafts of a train."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import typer
@@ -21,14 +22,14 @@ ShaftSettings = Annotated[
 
 
 def of_shafts(
-    pairs: list[str] | None, pinion: str, gear: str
+    pairs: list[str] | None, models: Mapping[str, str]
 ) -> dict[str | tuple[str, str], dict[str, Any]]:
-    """Builder options of both shafts, by (side, model), from ``SIDE.key=value`` texts.
+    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts.
 
     Parameters
     ----------
-    pinion, gear : str
-        Models; of a lumped or rigid one the options are those of the body it comes from.
+    models : mapping of str to str
+        By shaft; of a lumped or rigid one the options are those of the body it comes from.
 
     Raises
     ------
@@ -36,8 +37,8 @@ def of_shafts(
         For a model, an option or a value that there is not.
     """
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
-    given = options_by_name(pairs, ("pinion", "gear"), "side", "pinion.order=3")
+    given = options_by_name(pairs, models, "side", "pinion.order=3")
     for side, options in given.items():
-        kind, base = checked_rung({"pinion": pinion, "gear": gear}[side])
+        kind, base = checked_rung(models[side])
         out[side, base or kind] = LADDER[base or kind].checked(options)
     return out

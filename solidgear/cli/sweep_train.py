@@ -72,7 +72,7 @@ def sweep_train(
             rows.design(vary),
             pinion=pair.pinion,
             gear=pair.gear,
-            settings=of_shafts(settings, pair.pinion, pair.gear),
+            settings=of_shafts(settings, {"pinion": pair.pinion, "gear": pair.gear}),
             ask=told.ask or ASKED,
             every_point=told.every_point,
             charted=told.chart is not None,

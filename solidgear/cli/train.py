@@ -1,4 +1,4 @@
-"""Commands on a train, two shafts that mesh: system-modes, response."""
+"""Commands on a train, shafts that mesh: system-modes, response."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ from solidgear.studies.train.modes import train_modes, unpublished_lines
 from solidgear.studies.train.orders import order_map
 from solidgear.studies.train.pictures import draw_modes, still_of, turned_modes
 from solidgear.studies.train.respond import respond
+from solidgear.studies.train.shaft import told_mix
 from solidgear.studies.train.slips import slips
 
 
@@ -37,7 +38,7 @@ def system_modes(
     models: Mix,
     pictures: Annotated[
         Path | None,
-        typer.Option("--pictures", help="Folder for a picture a mode, both shafts in place."),
+        typer.Option("--pictures", help="Folder for a picture a mode, all shafts in place."),
     ] = None,
     mode: Annotated[
         list[int] | None,
@@ -45,23 +46,23 @@ def system_modes(
     ] = None,
     turn: Annotated[
         Path | None,
-        typer.Option(help="HTML file: all modes of both shafts in 3D, to be turned and animated."),
+        typer.Option(help="HTML file: all modes of all shafts in 3D, to be turned and animated."),
     ] = None,
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = reduced.workshop(train, models.of_shafts)
+    shop = models.workshop(reduced, train)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     said = slips(shop)
-    pair = models.pinion, models.gear
-    found = train_modes(shop, *pair, reduced.max_frequency)
+    mix = tuple(models.by_shaft(shop.train).values())
+    found = train_modes(shop, *mix, max_frequency=reduced.max_frequency)
     if run.units != UNITS and turn is None:
         raise SolidgearError(
             f"--units {run.units}: the table has Hz and rpm alone; add --turn model.html, whose page "
             "shows the train in these units"
         )
-    drawn = _drawn(shop, *pair, pictures, mode, found) if pictures else []
+    drawn = _drawn(shop, pictures, mode, found) if pictures else []
     if turn is not None:
         drawn += _turned(shop, found, turn, reduced.max_frequency, run.units, said)
     if run.as_json:
@@ -72,10 +73,11 @@ def system_modes(
     say(modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
 
 
-def _drawn(shop, pinion: str, gear: str, folder: Path, numbers: list[int] | None, found):
+def _drawn(shop, folder: Path, numbers: list[int] | None, found):
     """Pictures of modes, and what is to be said of them."""
     listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
-    done = draw_modes(shop, pinion, gear, folder, numbers or listed).values()
+    mix = found.models.values()
+    done = draw_modes(shop, *mix, folder=folder, numbers=numbers or listed).values()
     written = [str(one.path) for one in done if one.ok]
     lines = [f"Written: {', '.join(written)}"] if written else []
     return lines + sorted({one.reason for one in done if not one.ok})
@@ -85,15 +87,16 @@ def _turned(
     shop, found, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
 ) -> list[str]:
     """Write the page in which modes can be turned; what is to be said of it."""
-    models = turned_modes(shop, found.pinion, found.gear, max_frequency)
+    mix = found.models.values()
+    models = turned_modes(shop, *mix, highest_hz=max_frequency)
     names = [mode.name for mode in found.modes]
     elastic = [shape.name for shape in models.shapes]
     first = next((name for name in elastic if "bending" in name), elastic[0])
-    still, said = still_of(shop, found.pinion, found.gear, names.index(first) + 1)
+    still, said = still_of(shop, *mix, number=names.index(first) + 1)
     write_sheet(
         path,
         found.train,
-        f"Natural frequencies and mode shapes: pinion {found.pinion}, gear {found.gear}.",
+        f"Natural frequencies and mode shapes: {told_mix(found.models)}.",
         [
             train_tables.modes(found.as_dict(), "Natural frequencies"),
             train_tables.facts(described(shop), units_named(units)),
@@ -128,30 +131,34 @@ def response(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = reduced.workshop(train, driven.of_shafts)
+    shop = driven.workshop(reduced, train)
     asked = at.asked(shop.train)
-    highest, losses = reduced.max_frequency, driven.losses
+    mixes, driver = driven.mixes(shop.train), shop.train.named_mesh(driven.mesh)
+    how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
     with held(out):
-        found = [respond(shop, *pair, highest, *losses, forces) for pair in driven.mixes]
+        found = [respond(shop, *mix, forces=forces, **how) for mix in mixes]
         unpublished = shop.train.unpublished()
         said = slips(shop)
         cautions = [*said, *found[0].cautions]
         notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
-        title = shop.train.called
-        teeth, band = shop.train.pinion.teeth, shop.train.ask.decibels
+        title, band = shop.train.called, shop.train.ask.decibels
+        if driver.label and not forces:
+            title += f", driven by the {driver.name}"
+        teeth = shop.train.per_turn(driver)
         # a force on a port has no order of the mesh
-        lines = None if forces else order_map(shop, *driven.mixes[0], highest, *losses, orders)
-        modes = lines.modes if lines else train_modes(shop, *driven.mixes[0], highest).modes
+        lines = None if forces else order_map(shop, *mixes[0], mesh_orders=orders, **how)
+        limit = reduced.max_frequency
+        modes = lines.modes if lines else train_modes(shop, *mixes[0], max_frequency=limit).modes
         there, told = asked.found(modes), described(shop)
-        top = loudest(found[0], modes, shop.train, shop.scenes, not forces)
+        top = loudest(found[0], modes, shop.train, shop.scenes, not forces, driver.name)
         notes |= {"loudest": top.as_dict()}
         files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
     if run.as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     say(
-        f"{title}: pinion {driven.pinion}, gear {driven.gear}, {driven.damping} losses",
+        f"{title}: {told_mix(found[0].models)}, {driven.damping} losses",
         soft_wrap=False,
     )
     say(*top.sentences(), *map(caution, said))
@@ -194,7 +201,7 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
     return port, dof
 
 
-def print_peaks(found, what: str, si: str, teeth: int, units: str) -> None:
+def print_peaks(found, what: str, si: str, teeth: float, units: str) -> None:
     """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
     told = peaks(found, what, si, teeth, units_named(units))
     say(told if told else f"{told.title}: none in this range.", soft_wrap=False)

@@ -16,6 +16,7 @@ from solidgear.cli.train_options import Reduced, TrainFile, mix, refuse_given
 from solidgear.report.folder import held
 from solidgear.report.table import Column, Table, text
 from solidgear.report.train_page import write_train
+from solidgear.report.train_tables import mix_words
 from solidgear.report.viewer import viewer_fragment
 from solidgear.studies.train.comparison import compare_train as compared
 from solidgear.studies.train.modes import unpublished_lines
@@ -61,7 +62,7 @@ def _judged(
     out: Path | None,
     reduced: Reduced,
     run: Shown,
-    more: Sequence[tuple[str, str]] = (),
+    more: Sequence[tuple[str, ...]] = (),
     *,
     renders: bool,
 ) -> None:
@@ -98,10 +99,7 @@ def _verdict_table(found):
         return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
 
     columns = [
-        text(
-            "pinion + gear",
-            lambda m: f"{m.pinion} + {m.gear}" if m.pinion != m.gear else f"both {m.gear}",
-        ),
+        text(" + ".join(found.mixes[0].models), lambda m: mix_words(m.mix)),
         Column(f"modes\n{100 * found.tolerance:g} %", lambda m: end(m.modes_to_hz)),
         Column(f"force\n{found.decibels:g} dB", lambda m: end(m.force_to_hz)),
         Column(f"force\n{100 * found.tolerance:g} %", lambda m: end(m.close_to_hz)),

@@ -12,9 +12,11 @@ import typer
 from solidgear.cli.app import Group
 from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
 from solidgear.cli.shared import MODEL
-from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.errors import SceneError, SolidgearError, listed, show
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.toml_file import parse
+from solidgear.scene.train import Train
+from solidgear.scene.train_file import as_written
 from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.studies.loading import load_train
 from solidgear.studies.train.models import Workshop
@@ -95,7 +97,8 @@ class Reduced(Group):
         try:
             return Workshop(loaded, self.reduction, self.kept, settings or {})
         except SceneError as error:  # what the mesh of a sound file cannot be
-            raise error.located(parse(str(path)), where=str(path)) from None
+            raw = parse(str(path))
+            raise as_written(error, raw).located(raw, where=str(path)) from None
 
 
 @dataclass(frozen=True)
@@ -112,14 +115,41 @@ class Pair(Group):
 
 @dataclass(frozen=True)
 class Mix(Pair):
-    """The same with their builder options."""
+    """The same with their builder options, and models of shafts by other names."""
 
     settings: ShaftSettings = None
+    shafts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--shaft", help="Model of a shaft of another name, such as input=euler; repeatable."
+        ),
+    ] = None
 
-    @property
-    def of_shafts(self) -> dict[str | tuple[str, str], dict[str, Any]]:
-        """Builder options by side and model."""
-        return of_shafts(self.settings, self.pinion, self.gear)
+    def workshop(self, reduced: Reduced, path: Path) -> Workshop:
+        """Workshop of a train with these builder options."""
+        shop = reduced.workshop(path)
+        shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
+        return shop
+
+    def by_shaft(self, train: Train) -> dict[str, str]:
+        """Models of the shafts of a train.
+
+        Raises
+        ------
+        SolidgearError
+            For a shaft that it does not have.
+        """
+        given = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
+        for text in self.shafts or []:
+            side, equals, model = text.partition("=")
+            if not equals:
+                raise SolidgearError(f"--shaft {show(text, 40)}: write SHAFT=MODEL, input=euler")
+            given[side] = model
+        for side in given:
+            if side not in train.shafts:
+                known = listed(train.shafts)
+                raise SolidgearError(f"{train.name} has no shaft {show(side, 40)}; it has {known}")
+        return {side: given.get(side, MODEL) for side in train.shafts}
 
 
 @dataclass(frozen=True)
@@ -143,15 +173,21 @@ class Driven(Mix):
         float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
     ] = None
 
-    @property
-    def mixes(self) -> list[tuple[str, str]]:
-        """Models of pinion and gear, the first those that are told."""
-        return [(self.pinion, self.gear), *map(mix, self.against or [])]
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Whose transmission error drives the train, of several; the first."
+        ),
+    ] = None
+
+    def mixes(self, train: Train) -> list[tuple[str, ...]]:
+        """Models of all shafts, the first those that are told."""
+        return [tuple(self.by_shaft(train).values()), *map(mix, self.against or [])]
 
     @property
-    def losses(self) -> tuple[str, float]:
+    def losses(self) -> dict[str, Any]:
         """Their kind, and the Hz at which viscous ones match."""
-        return self.damping, self.matched_at or 0.0
+        return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
 
 
 def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
@@ -188,8 +224,8 @@ def _harmonics(text: str) -> tuple[int, ...]:
     return found
 
 
-def mix(text: str) -> tuple[str, str]:
-    pinion, plus, gear = text.partition("+")
-    if not plus:
+def mix(text: str) -> tuple[str, ...]:
+    """Models of all shafts in the sequence of the file."""
+    if "+" not in text:
         raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
-    return pinion.strip(), gear.strip()
+    return tuple(word.strip() for word in text.split("+"))

@@ -23,7 +23,7 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     """Misalignment by every model, with its bar and what bearings leave open."""
     judge = found.judge
     columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
-    columns += [Column(one.pinion, partial(_of, one, units)) for one in found.found]
+    columns += [Column(one.model, partial(_of, one, units)) for one in found.found]
     columns.append(Column("error bar", _bar))
     if any(m.open is not None for m in judge.misalignment):
         columns.append(Column("left open", lambda m: _range(m, units)))
@@ -49,14 +49,17 @@ def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table
         return []
     first = points[0]
     at = text("at", lambda one: one.point.label)
-    force = quantity("mesh force", "N", units, lambda one: one.mesh_force, 4)
+    forces = [
+        quantity("mesh force" + name.removeprefix("mesh"), "N", units, partial(_force, name), 4)
+        for name in first.mesh_forces
+    ]
     lie = [
         quantity(m.name, m.unit, units, partial(_lies, k), 3)
         for k, m in enumerate(first.misalignment)
     ]
     widest = [_widest(points, k) for k in range(len(first.misalignment))]
     told = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
-    note = f"By {first.pinion}; error bars {', '.join(told)} at most." if told else ""
+    note = f"By {first.model}; error bars {', '.join(told)} at most." if told else ""
     ends = [
         (s, f"{shaft.name}.{b.name}")
         for s, shaft in enumerate(first.shafts)
@@ -64,9 +67,13 @@ def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table
     ]
     carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
     return [
-        Table("Misalignment over the operating points", [at, force, *lie], points, note),
+        Table("Misalignment over the operating points", [at, *forces, *lie], points, note),
         Table("Radial bearing loads over the operating points", [at, *carried], points),
     ]
+
+
+def _force(name: str, one: Any) -> float:
+    return one.mesh_forces[name]
 
 
 def _lies(k: int, one: Any) -> float:

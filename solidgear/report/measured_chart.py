@@ -147,7 +147,7 @@ def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units
         Axis("frequency in Hz", ends),
         Axis(f"mesh force in {unit}", (low, high), log=True),
         240.0,
-        title=f"Computed: mesh force, pinion {response.pinion}, gear {response.gear}; "
+        title=f"Computed: mesh force, {', '.join(f'{side} {rung}' for side, rung in response.models.items())}; "
         "dashed orders of the mesh, grey natural frequencies",
     )
     _modes(panel, found, ends, name=True)

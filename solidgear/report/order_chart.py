@@ -19,24 +19,24 @@ PLACES, PIECES = 60, 120
 NAMES, NARROW_NAMES = 190.0, 135.0
 #: of natural frequencies
 MODE = "#9aa4ad"
-PLAIN = {"mesh": "#666666", "pinion": "#b3305c", "gear": "#5a3e8c"}
+PLAIN, SHAFTS = "#666666", ("#b3305c", "#5a3e8c", "#2b7a5d", "#8a5a00")
 
 
 def order_chart(
-    found: Any, title: str, teeth: int, units: Units = ENGINEERING, width: float = WIDE
+    found: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
     """Order lines and natural frequencies.
 
     Parameters
     ----------
-    teeth : int
-        Of the pinion, for the upper axis.
+    teeth : float
+        In one turn of the shaft that speeds are told of, for the upper axis.
     width : float
         px.
     """
     high, narrow = found.highest_rpm, width <= NARROW
     panel = Panel(
-        Axis("pinion speed in rpm", (0.0, high)),
+        Axis(f"{found.teeth.of} speed in rpm", (0.0, high)),
         Axis("frequency in Hz", (0.0, found.highest_hz)),
         400 if narrow else 520,
         right=NARROW_NAMES if narrow else NAMES,
@@ -122,7 +122,9 @@ def _crossings(panel: Panel, found: Any, units: Units) -> None:
                 "x": c.rpm,
                 "y": c.frequency_hz,
                 "readout": readout(
-                    c.line, ("meets", c.mode, ""), *_facts(c.rpm, c.frequency_hz, c.force, units)
+                    c.line,
+                    ("meets", c.mode, ""),
+                    *_facts(found, c.rpm, c.frequency_hz, c.force, units),
                 ),
             }
             for c in found.crossings
@@ -132,11 +134,13 @@ def _crossings(panel: Panel, found: Any, units: Units) -> None:
         panel.draw(ring | {"size": 18 if seen else 0}, rows)
 
 
-def _facts(rpm: float, hz: float, force: float | None, units: Units) -> list[tuple[str, str, str]]:
+def _facts(
+    found: Any, rpm: float, hz: float, force: float | None, units: Units
+) -> list[tuple[str, str, str]]:
     """The words on a place of an order; no force where there is none."""
     size = "" if force is None else plain(units.value(float(force), "N"), 4)
     return [
-        ("pinion speed", f"{rpm:.0f}", "rpm"),
+        (f"{found.teeth.of} speed", f"{rpm:.0f}", "rpm"),
         ("frequency", hertz(float(hz)), "Hz"),
         ("mesh force", size, units.unit("N")),
     ]
@@ -144,13 +148,16 @@ def _facts(rpm: float, hz: float, force: float | None, units: Units) -> list[tup
 
 def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> None:
     """An order, where it has a force as wide and as dark as that is, and its name."""
-    kind = line.name.split()[0]
+    kind, number = line.name.split()[0], int(line.name.split()[-1])
+    shafts = [*dict.fromkeys(own.name.split()[0] for own in found.lines)]
+    shafts = [name for name in shafts if name != "mesh"]
+    own_colour = PLAIN if kind == "mesh" else SHAFTS[shafts.index(kind) % len(SHAFTS)]
     end = min(found.highest_rpm, 60 * found.highest_hz / line.per_turn)
     if line.force is None:
         dash = [6, 4] if kind == "mesh" else [2, 3]
         ends = [{"x": rpm, "y": rpm * line.per_turn / 60} for rpm in (0.0, end)]
         panel.draw(
-            {"type": "line", "color": PLAIN[kind], "strokeDash": dash, "strokeWidth": 1}, ends
+            {"type": "line", "color": own_colour, "strokeDash": dash, "strokeWidth": 1}, ends
         )
         speeds, forces = np.linspace(0, end, PLACES), [None] * PLACES
     else:
@@ -160,13 +167,14 @@ def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> 
     kept = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
     for k in kept:
         rpm = float(speeds[k])
-        words = readout(line.name, *_facts(rpm, rpm * line.per_turn / 60, forces[k], units))
+        told = _facts(found, rpm, rpm * line.per_turn / 60, forces[k], units)
+        words = readout(line.name, *told)
         rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "readout": words})
-    panel.read(rows, PLAIN[kind])
+    panel.read(rows, own_colour)
     # names are staggered: lines of one kind run close together
     steps = -0.06 if kind == "mesh" else 0.13
-    share = (0.93 if kind == "mesh" else 0.67) + steps * (int(line.name.split()[1]) % 3)
-    colour = INK if kind == "mesh" else PLAIN[kind]
+    share = (0.93 if kind == "mesh" else 0.67) + steps * (number % 3)
+    colour = INK if kind == "mesh" else own_colour
     name = {"type": "text", "align": "right", "color": colour, "dx": -4, "dy": -6}
     place = {"x": share * end, "y": share * end * line.per_turn / 60}
     panel.draw(name, [{**place, "text": line.name}])

@@ -46,7 +46,7 @@ def coincidences(found: Any) -> Table:
         text("mode", lambda one: one.mode),
         Column("Hz of it", lambda one: one.mode_hz, hertz),
         Column("off, %", lambda one: f"{100 * one.off:+.1f}"),
-        Column("meet at pinion rpm", lambda one: one.rpm, whole),
+        Column(f"meet at {found.of} rpm", lambda one: one.rpm, whole),
     ]
     title = f"Orders within {100 * found.within:g} % of a natural frequency"
     return Table(title, columns, found.coincidences, style="ruled")

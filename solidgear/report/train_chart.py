@@ -11,6 +11,7 @@ import numpy as np
 
 from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, readout
 from solidgear.report.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
+from solidgear.report.train_tables import turned
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
 
@@ -33,7 +34,7 @@ PANELS = (
 def response_chart(
     responses: Sequence[Any],
     title: str,
-    teeth: int | None,
+    teeth: float | None,
     band: float | None,
     marks: Mapping[str, float],
     units: Units = ENGINEERING,
@@ -98,7 +99,7 @@ def response_chart(
 def columns_chart(
     responses: Sequence[Any],
     columns: Sequence[tuple[str, str]],
-    teeth: int | None,
+    teeth: float | None,
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart | None:
@@ -159,7 +160,7 @@ def _cut(response: Any, first: float) -> str:
 def receptance_chart(
     found: Sequence[Any],
     title: str,
-    teeth: int,
+    teeth: float,
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
@@ -169,8 +170,8 @@ def receptance_chart(
     ----------
     found : sequence of TrainReceptance
         Of the same two ends.
-    teeth : int
-        Of the pinion, for the upper axis in rpm.
+    teeth : float
+        In one turn of the shaft that speeds are told of, for the upper axis in rpm.
     width : float
         px.
     """
@@ -233,11 +234,11 @@ def _hertz(title: str, ends: tuple[float, float]) -> Axis:
     return Axis(title, ends, log=True)
 
 
-def _speed(teeth: int, ends: tuple[float, float]) -> Axis:
-    """The upper axis: round speeds of the pinion, at the frequencies where its teeth mesh."""
+def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
+    """The upper axis: round speeds of that shaft, at the frequencies where its teeth mesh."""
     rounds = log_ticks(60 * ends[0] / teeth, 60 * ends[1] / teeth)
     ticks = {rpm * teeth / 60: f"{rpm:g}" for rpm in rounds}
-    words = "pinion speed in rpm at which the teeth mesh at it"
+    words = f"{turned(teeth)} speed in rpm at which the teeth mesh at it"
     return Axis(words, ends, log=True, ticks=ticks, grid=False)
 
 
@@ -254,14 +255,14 @@ def _with_room(ends: tuple[float, float], height: float) -> tuple[float, float]:
     return low, high * (high / low) ** (ROOM / (height - ROOM))
 
 
-def _words(name: str, hz: float, teeth: int | None, *facts: tuple[str, str, str]) -> str:
+def _words(name: str, hz: float, teeth: float | None, *facts: tuple[str, str, str]) -> str:
     """The words on a place of a model over frequency."""
-    speed = ("pinion speed", f"{60 * hz / teeth:.0f}" if teeth else "", "rpm")
+    speed = (f"{turned(teeth)} speed", f"{60 * hz / teeth:.0f}" if teeth else "", "rpm")
     return readout(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
 
 
 def _curves(
-    panel: Panel, curves: Sequence[_Curve], teeth: int | None, width: float, jump: float = np.inf
+    panel: Panel, curves: Sequence[_Curve], teeth: float | None, width: float, jump: float = np.inf
 ) -> None:
     """Curves, the first in front, and what is to be read along them; broken where one jumps."""
     first, last = panel.x.ends
@@ -304,7 +305,7 @@ def _peaks(
     panel: Panel,
     models: Sequence[Any],
     tops: Sequence[list],
-    teeth: int | None,
+    teeth: float | None,
     what: tuple[str, str],
     width: float,
 ) -> None:

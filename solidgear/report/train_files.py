@@ -25,7 +25,7 @@ def write_response(
     folder: Path,
     responses: Sequence[Any],
     title: str,
-    teeth: int,
+    teeth: float,
     band: float,
     notes: Mapping[str, Any],
     orders: Any,
@@ -41,7 +41,7 @@ def write_response(
 
     Charts and page are in `units`, all else in SI.
     """
-    first, shown = responses[0], units_named(units)
+    first, shown, of = responses[0], units_named(units), train_tables.turned(teeth)
     tables = {"response": over_frequency(first, teeth)}
     charts: dict[str, Make] = {
         "response": partial(response_chart, responses, title, teeth, band, {}, shown)
@@ -49,9 +49,9 @@ def write_response(
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
     told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, first.label)]
     if orders is not None:
-        tables["orders"] = crossings(orders)
+        tables["orders"] = crossings(orders, of)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)
-        told.append(train_tables.crossings([vars(c) for c in orders.crossings], shown))
+        told.append(train_tables.crossings([vars(c) for c in orders.crossings], shown, of))
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
@@ -63,9 +63,7 @@ def write_response(
             charts = {"measured": make, **charts}
             found = [speed_tables.measured(speed), *found]
         told = [*found, *told]
-    peaks = [
-        {"pinion": r.pinion, "gear": r.gear, "peaks": [vars(p) for p in r.peaks]} for r in responses
-    ]
+    peaks = [{**r.models, "peaks": [vars(p) for p in r.peaks]} for r in responses]
     return write_files(
         folder,
         "response",
@@ -85,7 +83,7 @@ def write_receptance(
     folder: Path,
     found: Sequence[Any],
     title: str,
-    teeth: int,
+    teeth: float,
     notes: Mapping[str, Any],
     train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
@@ -97,8 +95,8 @@ def write_receptance(
     ----------
     found : sequence of TrainReceptance
         Of the same two ends.
-    teeth : int
-        Of the pinion.
+    teeth : float
+        Of the mesh in one turn of the shaft that speeds are told of.
     train : mapping
         What is known of the train, as plain data.
     units : str or Units
@@ -137,10 +135,10 @@ def write_receptance(
 def _plain(one: Any) -> dict[str, Any]:
     keys = ("frequency_hz", "amplitude", "mode")
     peaks = [dict(zip(keys, peak)) for peak in one.peaks]
-    return {"pinion": one.pinion, "gear": one.gear, "damping": one.damping, "peaks": peaks}
+    return {**one.models, "damping": one.damping, "peaks": peaks}
 
 
-def over_frequency(response: Any, teeth: int) -> Table:
+def over_frequency(response: Any, teeth: float) -> Table:
     """Amplitude and phase of every column over frequency; the unit stands in brackets."""
     columns = {}
     for name, value in response.columns.items():
@@ -150,21 +148,22 @@ def over_frequency(response: Any, teeth: int) -> Table:
     return _numbers(response.frequency_hz, teeth, columns)
 
 
-def crossings(orders: Any) -> Table:
+def crossings(orders: Any, of: str = "pinion") -> Table:
     """Table of crossings of order lines and natural frequencies, in SI."""
     columns = [
         Column("order", lambda c: c.line),
         Column("mode", lambda c: c.mode),
         Column("frequency [Hz]", lambda c: c.frequency_hz, figures),
-        Column("pinion speed [rpm]", lambda c: c.rpm, figures),
+        Column(f"{of} speed [rpm]", lambda c: c.rpm, figures),
         Column("mesh force [N]", lambda c: c.force, figures),
     ]
     return Table("", columns, orders.crossings)
 
 
-def _numbers(hz: np.ndarray, teeth: int, columns: Mapping[str, np.ndarray]) -> Table:
+def _numbers(hz: np.ndarray, teeth: float, columns: Mapping[str, np.ndarray]) -> Table:
     """Columns over frequency and speed."""
-    there = {"frequency [Hz]": hz, "pinion speed [rpm]": 60 * hz / teeth, **columns}
+    speed = f"{train_tables.turned(teeth)} speed [rpm]"
+    there = {"frequency [Hz]": hz, speed: 60 * hz / teeth, **columns}
     rows = np.column_stack(list(there.values())).tolist()
     return Table("", [Column(head, write=figures) for head in there], rows)
 

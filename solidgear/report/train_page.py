@@ -24,8 +24,6 @@ from solidgear.report.train_files import crossings, over_frequency
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import capital, seconds
 
-SIDES = ("pinion", "gear")
-
 
 def write_train(
     results: Mapping[str, Any],
@@ -68,12 +66,15 @@ def write_train(
         If the folder cannot be written.
     """
     verdict, train = results["verdict"], results["train"]
-    teeth, chosen = train["pinion"]["teeth"], units_named(units)
+    driven = train["title"]
+    if len(train["meshes"]) > 1:
+        driven += f", driven by the {train['meshes'][0]['name']}"
+    teeth, chosen = orders.teeth, units_named(units)
     charts: dict[str, Make] = {
         "response": partial(
-            response_chart, responses, train["title"], teeth, verdict["decibels"], marks, chosen
+            response_chart, responses, driven, teeth, verdict["decibels"], marks, chosen
         ),
-        "orders": partial(order_chart, orders, train["title"], teeth, chosen),
+        "orders": partial(order_chart, orders, driven, teeth, chosen),
     }
     with begun(out) as folder:
         files = ["report.html", "response.csv", "orders.csv"]
@@ -81,13 +82,13 @@ def write_train(
         # Numbers first: whatever happens to pictures, they are there.
         write_json(folder / "results.json", {**results, "files": files})
         over_frequency(responses[0], teeth).write(folder / "response.csv")
-        crossings(orders).write(folder / "orders.csv")
+        crossings(orders, train_tables.turned(teeth)).write(folder / "orders.csv")
         for name, make in charts.items():
             write_charts(folder / name, make)
         results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
         files += results["pictures"].values()
         write_json(folder / "results.json", {**results, "files": files})
-        page = _page(results, charts, folder, chosen, viewer)
+        page = _page(results, charts, folder, chosen, viewer, teeth)
         with whole(folder / "report.html") as half:
             half.write_text(page, encoding="utf-8")
         return folder / "report.html"
@@ -99,15 +100,23 @@ def _page(
     folder: Path,
     units: Units,
     viewer: str,
+    teeth: float,
 ) -> str:
     from markupsafe import Markup
 
     train, verdict = results["train"], results["verdict"]
     svg = {name: page_svg(name, make) for name, make in charts.items()}
-    svg |= {side: sketch_svg(side, train[side]["scene"]) for side in SIDES}
-    pictures = results["pictures"]
+    svg |= {side: sketch_svg(side, train[side]["scene"]) for side in train["shafts"]}
+    pictures, every = results["pictures"], train_tables.every(train["shafts"])
+    two = len(train["shafts"]) == 2
+    chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train["shafts"])
     return template("train.html").render(
         train=train,
+        count="two shafts" if two else f"{len(train['shafts'])} shafts",
+        mixed="every mix of models" if two else "mixes of models",
+        chain=chain if two else "Engine, shafts, teeth and load",
+        every=every,
+        turned=train_tables.turned(teeth),
         verdict=verdict,
         loudest=results["loudest"]["sentences"],
         warnings=[*verdict["cautions"], *results["left_out"]],
@@ -119,13 +128,15 @@ def _page(
             [(p["frequency_hz"], p["force"], p["mode"]) for p in results["peaks"]],
             "mesh force",
             "N",
-            train["pinion"]["teeth"],
+            teeth,
             units,
-            "both shafts solid",
+            f"{every} shafts solid",
         ),
-        modes=train_tables.modes(results["modes"]),
-        crossings=train_tables.crossings(results["crossings"], units),
-        bearings={side: input_tables.bearings(train[side]["scene"], units) for side in SIDES},
+        modes=train_tables.modes(results["modes"], f"Natural frequencies, {every} shafts solid"),
+        crossings=train_tables.crossings(results["crossings"], units, train_tables.turned(teeth)),
+        bearings={
+            side: input_tables.bearings(train[side]["scene"], units) for side in train["shafts"]
+        },
         renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
         viewer=Markup(viewer),
         environment=pairs_of(results["environment"], "Environment of the run"),

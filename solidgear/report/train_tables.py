@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from math import degrees
 from typing import Any
 
@@ -10,7 +10,6 @@ from solidgear.report.table import NUMBER, Cell, Column, Table, quantity, text, 
 from solidgear.report.units import ENGINEERING, GROUP, Units
 from solidgear.report.words import DASH, grouped, hertz, percent, seconds, whole
 
-SIDES = ("pinion", "gear")
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
 
@@ -18,29 +17,18 @@ ROUNDING = 1e-12
 def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
     """The train in a few lines, each value with where it comes from."""
     status = train["statuses"]
-    pinion, gear = (train[side] for side in SIDES)
-    line = next((k for k in status if k.startswith("mesh.") and k not in _MESH), "")
-    rows = [
-        ["teeth", f"{pinion['teeth']} and {gear['teeth']}, ratio {train['ratio']:.4f}", ""],
-        ["shaft angle", f"{degrees(train['shaft_angle']):g}°", ""],
-        ["mesh stiffness", units.text(train["mesh_stiffness"], "N/m", 4), "mesh.stiffness"],
-        ["line of action on the pinion", _vector(pinion["line_of_action"], 4), line],
-        ["mesh point from the lumped points", _points(train, units), ""],
-        ["lever arms", _levers(train, units), ""],
-        [
-            "transmission error",
-            _error(train["transmission_error"], units),
-            "mesh.transmission_error",
-        ],
-    ]
-    for name in ("engine", "load"):
+    rows = [row for mesh in train["meshes"] for row in _mesh(mesh, status, units)]
+    for name in train["rotors"]:
         own = train[name]
         rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])
         spring = f"{units.text(own['spring'], 'N m/rad', 4)} at {own['at']}"
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
-    rows += [[f"{side}'s material", _materials(train[side]["scene"], units), ""] for side in SIDES]
+    rows += [
+        [f"{side}'s material", _materials(train[side]["scene"], units), ""]
+        for side in train["shafts"]
+    ]
     columns = [
         text("item", lambda row: row[0]),
         text("value", lambda row: row[1]),
@@ -68,7 +56,21 @@ def _materials(scene: Mapping[str, Any], units: Units) -> str:
     return "; ".join([first, *(f"{', '.join(own[words])}: {words}" for words in others)])
 
 
-_MESH = ("mesh.stiffness", "mesh.transmission_error")
+def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> list[list[str]]:
+    """Rows of one mesh, below its name where there are several."""
+    name, (pinion, gear) = mesh["name"], mesh["teeth"]
+    known = f"{name}.stiffness", f"{name}.transmission_error"
+    line = next((k for k in status if k.startswith(f"{name}.") and k not in known), "")
+    rows = [
+        ["teeth", f"{pinion} and {gear}, ratio {gear / pinion:.4f}", ""],
+        ["shaft angle", f"{degrees(mesh['shaft_angle']):g}°", ""],
+        ["mesh stiffness", units.text(mesh["stiffness"], "N/m", 4), known[0]],
+        ["line of action on the pinion", _vector(mesh["line_of_action"][0], 4), line],
+        ["mesh point from the lumped points", _points(mesh, units), ""],
+        ["lever arms", _levers(mesh, units), ""],
+        ["transmission error", _error(mesh["transmission_error"], units), known[1]],
+    ]
+    return rows if name == "mesh" else [[name, " and ".join(mesh["between"]), ""], *rows]
 
 
 def mark(status: str) -> Cell:
@@ -80,15 +82,15 @@ def _vector(values, digits: int) -> str:
     return f"({', '.join(f'{v:.{digits}f}' for v in values)})"
 
 
-def _points(train: Mapping[str, Any], units: Units) -> str:
+def _points(mesh: Mapping[str, Any], units: Units) -> str:
     unit = units.unit("m")
     digits = 2 if unit == "mm" else 4
-    points = (_vector([units.value(v, "m") for v in train[s]["point"]], digits) for s in SIDES)
+    points = (_vector([units.value(v, "m") for v in one], digits) for one in mesh["point"])
     return " and ".join(f"{text} {unit}" for text in points)
 
 
-def _levers(train: Mapping[str, Any], units: Units) -> str:
-    arms = (units.given(abs(train[s]["lever"]), "m") for s in SIDES)
+def _levers(mesh: Mapping[str, Any], units: Units) -> str:
+    arms = (units.given(abs(lever), "m") for lever in mesh["lever"])
     return " and ".join(f"{arm} {units.unit('m')}" for arm in arms)
 
 
@@ -111,7 +113,7 @@ def verdict(found: Mapping[str, Any]) -> Table:
 
     tolerance = f"{100 * found['tolerance']:g} %"
     columns = [
-        Column("pinion + gear", lambda mix: _mix(mix, found["cheapest"])),
+        Column(" + ".join(found["cheapest"]), lambda mix: _mix(mix, found["cheapest"])),
         Column(f"modes within {tolerance}, Hz", end("modes_to_hz")),
         Column(f"mesh force within {found['decibels']:g} dB, Hz", end("force_to_hz")),
         Column(f"mesh force within {tolerance}, Hz", end("close_to_hz")),
@@ -121,7 +123,7 @@ def verdict(found: Mapping[str, Any]) -> Table:
         Column("build and reduce, s", lambda mix: mix["seconds"], seconds),
     ]
     return Table(
-        "Up to where every mix of models holds against both shafts solid, cheapest first",
+        f"Up to where every mix of models holds against {every(found['cheapest'])} shafts solid, cheapest first",
         columns,
         found["mixes"],
         "The cause is the shaft whose model, put back to the solid alone, carries the mix "
@@ -130,11 +132,20 @@ def verdict(found: Mapping[str, Any]) -> Table:
     )
 
 
+def every(shafts: Collection[str]) -> str:
+    """All shafts, in a word before the noun."""
+    return "both" if len(shafts) == 2 else f"all {len(shafts)}"
+
+
+def mix_words(mix: Sequence[str]) -> str:
+    """Models of the shafts in turn, in short."""
+    return f"{'both' if len(mix) == 2 else 'all'} {mix[0]}" if len({*mix}) == 1 else " + ".join(mix)
+
+
 def _mix(mix: Mapping[str, Any], cheapest: Mapping[str, str]) -> str:
-    same = mix["pinion"] == mix["gear"]
-    name = f"both {mix['gear']}" if same else f"{mix['pinion']} + {mix['gear']}"
-    best = {"pinion": mix["pinion"], "gear": mix["gear"]} == cheapest
-    return f"{name}, cheapest" if best else name
+    own = {side: mix[side] for side in cheapest}
+    name = mix_words([*own.values()])
+    return f"{name}, cheapest" if own == cheapest else name
 
 
 def _off(mix: Mapping[str, Any]) -> str | None:
@@ -150,7 +161,7 @@ def modes(
     numbered: bool = False,
 ) -> Table:
     """Natural frequencies of a train, for a page or, numbered, for a terminal."""
-    rows = found["modes"]
+    rows, of = found["modes"], found["speeds"]
     missing = "" if numbered else None
 
     def bound(mode: Mapping[str, Any]) -> str:
@@ -162,14 +173,14 @@ def modes(
     columns = [
         word("mode", lambda m: m["name"]),
         Column("Hz", lambda m: m["frequency_hz"], lambda hz: f"{hz:.2f}"),
-        Column("pinion rpm", lambda m: m["rpm"], whole),
+        Column(f"{of} rpm", lambda m: m["rpm"], whole),
         text("most strain energy", lambda m: m["strained"] or missing),
         Column("bound", bound),
         Column("mesh", mesh, lambda share: f"{share:.0e}"),
     ]
     if not numbered:
         note = (
-            "Pinion rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
+            f"{of.capitalize()} rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
             "reduction leaves at most. Mesh: what meshes of harmonic solids leave at most."
         )
         return Table(title, columns, rows, note)
@@ -183,7 +194,7 @@ def peaks(
     found: Sequence[tuple[float, float, str]],
     what: str,
     si: str,
-    teeth: int,
+    teeth: float,
     units: Units = ENGINEERING,
     of: str = "",
 ) -> Table:
@@ -197,8 +208,8 @@ def peaks(
         What has them, such as ``mesh force``.
     si : str
         Unit of their sizes.
-    teeth : int
-        Of the pinion.
+    teeth : float
+        Of the mesh in one turn of the shaft that speeds are told of.
     units : Units, optional
         To show them in.
     of : str, optional
@@ -208,19 +219,26 @@ def peaks(
     columns = [
         text("mode that makes it", lambda peak: peak[2]),
         Column("Hz", lambda peak: peak[0], hertz),
-        Column("pinion rpm", lambda peak: 60 * peak[0] / teeth, whole),
+        Column(f"{turned(teeth)} rpm", lambda peak: 60 * peak[0] / teeth, whole),
         quantity(what, si, units, lambda peak: peak[1], 4),
     ]
     return Table(f"Peaks of the {what}{', ' + of if of else ''}", columns, found, style="ruled")
 
 
-def crossings(found: list[Mapping[str, Any]], units: Units = ENGINEERING) -> Table:
+def turned(teeth: Any) -> str:
+    """Shaft that speeds are told of: the pinion unless the number of teeth knows another."""
+    return str(getattr(teeth, "of", "pinion"))
+
+
+def crossings(
+    found: list[Mapping[str, Any]], units: Units = ENGINEERING, of: str = "pinion"
+) -> Table:
     """Table of crossings of order lines and natural frequencies."""
     columns = [
         text("order", lambda c: c["line"]),
         text("mode", lambda c: c["mode"]),
         Column("Hz", lambda c: c["frequency_hz"], hertz),
-        Column("pinion rpm", lambda c: c["rpm"], whole),
+        Column(f"{of} rpm", lambda c: c["rpm"], whole),
         quantity("mesh force", "N", units, lambda c: c["force"], 4),
     ]
     note = "A dash: the transmission error has no such order."

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SceneError
 
 if TYPE_CHECKING:
-    from solidgear.scene.train_tables import Member, Mesh
+    from solidgear.scene.gears import Member
+    from solidgear.scene.train_tables import Mesh
 
 #: words of cylindrical gears, by the table that has them
 WORDS = {

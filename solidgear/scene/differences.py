@@ -184,8 +184,9 @@ class _Files(_Tables):
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
         yield from super()._entries(path, key, a, b)
-        if path in [f"{side}.scene" for side in SIDES]:
-            side = path.removesuffix("scene")
+        first, _, rest = path.rpartition(".")
+        if rest == "scene" and (first in SIDES or first.startswith("shaft.")):
+            side = f"{first}."
             yield from _Files(*self._beside(a, b), self.prefix + side).found()
 
     def _beside(self, a: str, b: str) -> tuple[str, str]:

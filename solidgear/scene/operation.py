@@ -8,13 +8,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.errors import SceneError
+from solidgear.errors import SceneError, listed, nearest
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Speed, Torque
 
-Side = Literal["pinion", "gear"]
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
 #: m/s^2, standard gravity (ISO 80000-3)
 GRAVITY = 9.80665
@@ -44,13 +43,15 @@ class OperatingPoint(Model):
     torque : float
         N m, of the shaft `of`; positive where the flank that the file names carries it (drive),
         negative where the other one does (coast).
-    of : {'pinion', 'gear'}
+    of : str
+        By default, in a train, the shaft that the engine turns with.
     speed : float or None
         rad/s, of the shaft `of`.
     output_torque, output_speed : float or None
-        Of the other shaft, to be held against the teeth.
+        Of the shaft that the load turns with, or of the engine's where `of` is the load's, to be
+        held against the teeth.
     weight : str or None
-        Direction in which weight acts, in the axes of the pinion's scene, such as ``-z``.
+        Direction in which weight acts, in the axes of the first shaft's scene, such as ``-z``.
     share, hours : float or None
         Of a duty table: share of the time, or hours; of every point or of none.
 
@@ -68,7 +69,7 @@ class OperatingPoint(Model):
 
     name: str = ""
     torque: Torque
-    of: Side = "pinion"
+    of: str = "pinion"
     speed: Speed | None = None
     output_torque: Torque | None = None
     output_speed: Speed | None = None
@@ -98,24 +99,22 @@ class OperatingPoint(Model):
 
     @property
     def gravity(self) -> tuple[float, float, float]:
-        """Acceleration of weight in the axes of the pinion's scene, m/s^2; zeros without weight."""
+        """Acceleration of weight in the axes of the first shaft's scene, m/s^2; zeros without weight."""
         out = [0.0, 0.0, 0.0]
         if self.weight is not None:
             size = -GRAVITY if self.weight.startswith("-") else GRAVITY
             out[DOF_NAMES.index(self.weight[-1])] = size
         return (out[0], out[1], out[2])
 
-    def torque_of(self, side: str, ratio: float) -> float:
-        """Torque of a shaft without losses, N m, by the teeth of the gear over the pinion's."""
-        if side == self.of:
-            return self.torque
-        return self.torque * ratio if side == "gear" else self.torque / ratio
+    def torque_of(self, side: str, turns: Mapping[str, float]) -> float:
+        """Torque of a shaft without losses, N m, by the turns of all shafts in the same time."""
+        return self.torque if side == self.of else self.torque * turns[self.of] / turns[side]
 
-    def speed_of(self, side: str, ratio: float) -> float | None:
+    def speed_of(self, side: str, turns: Mapping[str, float]) -> float | None:
         """Speed of a shaft, rad/s; None where the point has none."""
         if self.speed is None or side == self.of:
             return self.speed
-        return self.speed / ratio if side == "gear" else self.speed * ratio
+        return self.speed * turns[side] / turns[self.of]
 
 
 def _as_points(value: Any) -> Any:
@@ -129,14 +128,19 @@ Operation = Annotated[
 
 
 def operation_problems(
-    points: Sequence[OperatingPoint], ratio: float, ports: Mapping[str, Sequence[str]]
+    points: Sequence[OperatingPoint],
+    turns: Mapping[str, float],
+    ends: tuple[str, str],
+    ports: Mapping[str, Sequence[str]],
 ) -> Iterator[SceneError]:
     """Problems of operating points among themselves, against the teeth, and of forces nowhere.
 
     Parameters
     ----------
-    ratio : float
-        Teeth of the gear over the pinion's.
+    turns : mapping of str to float
+        Of the shafts that the torque passes, in the same time.
+    ends : (str, str)
+        Shafts where it comes in and goes out.
     ports : mapping of str to sequence of str
         Ports of each shaft.
 
@@ -145,7 +149,12 @@ def operation_problems(
     SceneError
     """
     for k, point in enumerate(points):
-        yield from _against_teeth(point, ratio, k)
+        if point.of not in turns:
+            reason = f"is no shaft that the torque passes; write one of {listed(turns)}"
+            hint = nearest(point.of, turns)
+            yield SceneError(reason + hint, path=("operation", k, "of"))
+            continue
+        yield from _against_teeth(point, turns, ends, k)
         for i, force in enumerate(point.force):
             side, _, port = force.at.partition(".")
             if port not in ports.get(side, ()):
@@ -155,11 +164,13 @@ def operation_problems(
     yield from _duty(points)
 
 
-def _against_teeth(point: OperatingPoint, ratio: float, k: int) -> Iterator[SceneError]:
-    """Torque and speed of the other shaft that are not those of the teeth."""
-    other = "gear" if point.of == "pinion" else "pinion"
-    torque, speed = point.torque_of(other, ratio), point.speed_of(other, ratio)
-    given = point.output_torque
+def _against_teeth(
+    point: OperatingPoint, turns: Mapping[str, float], ends: tuple[str, str], k: int
+) -> Iterator[SceneError]:
+    """Torque and speed of the other end that are not those of the teeth."""
+    other = ends[0] if point.of == ends[1] else ends[1]
+    torque, speed = point.torque_of(other, turns), point.speed_of(other, turns)
+    given, ratio = point.output_torque, turns[ends[0]] / turns[ends[1]]
     if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
         yield SceneError(
             f"{point.torque:.6g} N m on the {point.of} are balanced by {abs(torque):.6g} N m on "

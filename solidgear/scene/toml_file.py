@@ -52,8 +52,8 @@ def parse(where: str) -> dict[str, Any]:
 
 
 def describes_train(raw: Mapping[str, Any]) -> bool:
-    """True for tables of a train of two shafts, and not of one shaft."""
-    return "segment" not in raw and {"pinion", "gear"} <= set(raw)
+    """True for tables of a train of shafts, and not of one shaft."""
+    return "segment" not in raw and ("shaft" in raw or {"pinion", "gear"} <= set(raw))
 
 
 def is_train(path: str | os.PathLike) -> bool:

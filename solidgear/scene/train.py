@@ -1,40 +1,45 @@
-"""Two shafts that mesh, with what drives them and what they drive: data only.
+"""Shafts that mesh, with what drives them and what they drive: data only.
 
-The two shafts are scenes of their own.  Vectors of the mesh are told in the *pinion's frame*: y
-along its shaft from the pitch apex towards its back, the mesh on its -x side, z up
-(:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumped point.
+The shafts are scenes of their own.  Vectors of a mesh are told in the frame of its *pinion*, the
+first of its two gears: y along its shaft from the pitch apex towards its back, the mesh on its -x
+side, z up (:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumped point.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import isclose, pi
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from pydantic import model_validator
 
-from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.cylindrical import cylindrical_problems, rolling
+from solidgear.errors import SceneError, SolidgearError, listed
+from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft
+from solidgear.scene.layout import PerTurn, ends_of, layout_problems, path_between, turns_of
+from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import OperatingPoint, Operation, operation_problems
+from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
-from solidgear.scene.train_tables import FLANKS, Losses, Member, Mesh, Rotor, TrainAsk
+from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
 
-SIDES = ("pinion", "gear")
-#: a ratio that is typed with four digits may differ from that of the teeth by this
-RATIO_TYPED = 1e-3
+#: names of the shafts, and of what turns with them, in a file of the short form
+SHORT = {"engine": "pinion", "load": "gear"}
+SIDES = tuple(SHORT.values())
 
 
 class Train(Model):
-    """Engine, pinion shaft, mesh, gear shaft, load; read one with `solidgear.load_train`.
+    """Shafts, the meshes between them, engine and load; read one with `solidgear.load_train`.
 
     Attributes
     ----------
     title, name, source : str
-    pinion, gear : Member
-    mesh : Mesh
-    engine, load : Rotor
+    shafts : dict of str to Shaft
+        By name; scenes are laid out, and weight acts, in the axes of the first.
+    meshes : tuple of Mesh
+    rotors : dict of str to Rotor
+        ``engine`` and ``load``, between which torque passes, and others.
     losses : Losses
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
@@ -43,7 +48,8 @@ class Train(Model):
     Raises
     ------
     SceneError
-        Every problem of its parts, hands that cannot mesh, a ratio
+        Every problem of its parts, meshes that leave a shaft out or a loop of them whose teeth
+        contradict each other, hands that cannot mesh, a ratio
         that is not that of the teeth, springs on ports that are not there, operating points that
         the teeth contradict, and shafts that a torque cannot turn.
 
@@ -60,143 +66,52 @@ class Train(Model):
     title: str = ""
     name: str = "train"
     source: str = ""
-    pinion: Member
-    gear: Member
-    mesh: Mesh
-    engine: Rotor
-    load: Rotor
+    shafts: dict[str, Shaft]
+    meshes: tuple[Mesh, ...]
+    rotors: dict[str, Rotor]
     losses: Losses = Losses()
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Train:
-        problems = [*self._teeth(), *self._springs(), *self._operation()]
+        if problems := list(layout_problems(self)):
+            raise SceneError.of(problems)
+        object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
+        problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
+        problems += [*spring_problems(self), *running_problems(self)]
         if problems:
             raise SceneError.of(problems)
         return self
 
-    def _teeth(self) -> Iterator[SceneError]:
-        hands = (self.pinion.hand, self.gear.hand)
-        curved = any(m.spiral_angle or m.helix_angle for m in (self.pinion, self.gear))
-        if curved and None not in hands and hands[0] == hands[1]:
-            pair = (
-                "spiral bevel pair" if self.mesh.shaft_angle else "helical pair on parallel shafts"
-            )
-            yield SceneError(
-                f"both wheels are {hands[0]}-handed and cannot mesh; a {pair} has one of each",
-                path=("gear", "hand"),
-            )
-        yield from self._flanks()
-        yield from cylindrical_problems(self.pinion, self.gear, self.mesh)
-        ratio = self.gear.teeth / self.pinion.teeth
-        given = self.mesh.ratio
-        if given is not None and not isclose(given, ratio, rel_tol=RATIO_TYPED):
-            yield SceneError(
-                f"{self.gear.teeth} over {self.pinion.teeth} teeth are a ratio of {ratio:.4f}; "
-                "correct it or leave it out",
-                path=("mesh", "ratio"),
-            )
+    def with_changes(self, **changes: Any) -> Train:
+        """A validated copy with some fields replaced, or shafts and rotors by their names, a shaft of
+        one gear also by a `Member`, and the only mesh as ``mesh``.
 
-        yield from self._cycles()
+        Parameters
+        ----------
+        **changes
+            Fields by name.
 
-    def _cycles(self) -> Iterator[SceneError]:
-        """Tables over a mesh cycle cover one tooth pitch of the pinion and begin at one angle."""
-        pitch = 2 * pi / self.pinion.teeth
-        tables = {key: getattr(self.mesh, key) for key in ("stiffness_cycle", "line_cycle")}
-        given = {key: table for key, table in tables.items() if table is not None}
-        for key, table in given.items():
-            if not isclose(table.pitch, pitch, rel_tol=RATIO_TYPED):
-                yield SceneError(
-                    f"covers {table.pitch:.5g} rad of the pinion, and one of its "
-                    f"{self.pinion.teeth} teeth takes {pitch:.5g} rad; correct the angles, or the "
-                    "number of teeth",
-                    path=("mesh", key, "angle"),
-                )
-        first = [table.angle[0] for table in given.values()]
-        if len(first) > 1 and not isclose(*first, abs_tol=RATIO_TYPED * pitch):
-            yield SceneError(
-                f"begins at {first[1]:.5g} rad, and stiffness_cycle at {first[0]:.5g} rad; both tell "
-                "one cycle and begin at one angle",
-                path=("mesh", "line_cycle", "angle"),
-            )
+        Returns
+        -------
+        Train
 
-    def _flanks(self) -> Iterator[SceneError]:
-        """Left and right flanks are those of cylindrical gears, and touch their own kind."""
-        named = [side for side in SIDES if self.member(side).loaded_side in FLANKS]
-        if named and self.mesh.shaft_angle:
-            yield SceneError(
-                "left and right flanks are words of parallel shafts (ISO 21771); of a bevel gear "
-                "write concave or convex",
-                path=(named[0], "loaded_side"),
-            )
-        elif named and None not in (self.pinion.flank, self.gear.flank):
-            if self.pinion.flank != self.gear.flank:
-                yield SceneError(
-                    f"is the {self.gear.flank} flank, and the {self.pinion.flank} one is loaded on "
-                    "the pinion: seen from one side, left flanks touch left ones; correct one of "
-                    "the two, or leave that of the gear out",
-                    path=("gear", "loaded_side"),
-                )
-
-    def _springs(self) -> Iterator[SceneError]:
-        for rotor, side in (("engine", "pinion"), ("load", "gear")):
-            spring, scene = getattr(self, rotor).spring, getattr(self, side).scene
-            ports = [s.name for s in scene.stations]
-            key, word = ("at", spring.at) if spring.at is not None else ("from", spring.from_)
-            known = ports if key == "at" else ["start", "end", *ports]
-            if word not in known:
-                yield SceneError(
-                    f"unknown port of the {side}'s shaft{nearest(word, known)}; "
-                    f"known here: {listed(known)}",
-                    path=(rotor, "spring", key),
-                )
-            elif key == "from" and word in ports and word in ("start", "end"):
-                yield SceneError(
-                    f"is the {word} of the {side}'s shaft, and a station is called so as well; "
-                    "give the station another name",
-                    path=(rotor, "spring", key),
-                )
-            elif key == "from":
-                yield from self._on_the_shaft(rotor, side)
-
-    def _on_the_shaft(self, rotor: str, side: str) -> Iterator[SceneError]:
-        try:
-            self.shaft(side)
-        except SceneError as error:
-            reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
-            yield SceneError(reason, path=(rotor, "spring", "position"))
-
-    def _operation(self) -> Iterator[SceneError]:
-        if not self.operation:
-            return
-        ports = {side: [s.name for s in self.member(side).scene.stations] for side in SIDES}
-        yield from operation_problems(self.operation, self.ratio, ports)
-        for side in SIDES:
-            scene = self.member(side).scene
-            held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
-            if held:
-                yield SceneError(
-                    f"a torque has to turn the {side}'s shaft, and {listed(held)} of its scene "
-                    "holds its rotation: leave kthy out, or hold it in another way than clamped",
-                    path=("operation",),
-                )
-            yield from self._speeds(side, scene)
-
-    def _speeds(self, side: str, scene: Scene) -> Iterator[SceneError]:
-        """Speeds that bearings of a shaft name and that it does not have."""
-        for bearing in scene.bearings:
-            own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
-            for k, point in enumerate(self.operation):
-                speed = point.speed_of(side, self.ratio)
-                if own and speed is not None and not isclose(own, speed, rel_tol=RATIO_TYPED):
-                    yield SceneError(
-                        f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
-                        f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "
-                        "rpm; correct one, or leave the bearing's speed out",
-                        path=("operation", k, "speed"),
-                    )
-                    break
+        Raises
+        ------
+        SceneError
+            As by the constructor.
+        """
+        shafts, rotors = dict(self.shafts), dict(self.rotors)
+        for name in [n for n in changes if n in shafts]:
+            new = changes.pop(name)
+            shafts[name] = new.shaft if isinstance(new, Member) else new
+        for name in [n for n in changes if n in rotors]:
+            rotors[name] = changes.pop(name)
+        if "mesh" in changes:
+            self.only()
+            changes["meshes"] = (changes.pop("mesh"),)
+        return super().with_changes(**{"shafts": shafts, "rotors": rotors, **changes})
 
     @property
     def called(self) -> str:
@@ -205,14 +120,19 @@ class Train(Model):
         return (self.title or self.name) + where
 
     @property
+    def every(self) -> str:
+        """All shafts, in a word before the noun."""
+        return "both" if len(self.shafts) == 2 else f"all {len(self.shafts)}"
+
+    @property
     def unloaded(self) -> tuple[str, ...]:
         """Bearings of catalogue data that carry nothing at the operating point, as ``side.name``."""
         if self.point is None:
             return ()
         return tuple(
             f"{side}.{b.name}"
-            for side in SIDES
-            for b in self.member(side).scene.bearings
+            for side, shaft in self.shafts.items()
+            for b in shaft.scene.bearings
             if b.catalogue is not None and b.matrix is not None and not np.any(b.matrix)
         )
 
@@ -221,56 +141,158 @@ class Train(Model):
         """Operating point at which its bearings have settled: the first; None without any."""
         return self.operation[0] if self.operation else None
 
-    @property
-    def ratio(self) -> float:
-        """Teeth of the gear over teeth of the pinion."""
-        return self.gear.teeth / self.pinion.teeth
+    def told(self, point: OperatingPoint) -> OperatingPoint:
+        """An operating point whose torque is, unless said otherwise, that of the engine's shaft."""
+        if "of" in point.model_fields_set or point.of == self.reference:
+            return point
+        return point.with_changes(of=self.reference)
 
     @property
-    def rolling(self) -> Train:
-        """The same with pitch radii and angles of parallel shafts where their wheels roll on each
-        other: what module, helix angle, profile shifts and centre distance come to.
+    def reference(self) -> str:
+        """Shaft that the engine turns with, to which speeds are told."""
+        return self.rotors["engine"].shaft
+
+    @cached_property
+    def turns(self) -> dict[str, float]:
+        """Turns of every shaft in one turn of the engine's, by the teeth."""
+        return turns_of(self)
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """Gears that mesh, mesh by mesh."""
+        short = self.short
+        out = []
+        for k, mesh in enumerate(self.meshes):
+            ends = ends_of(self, k)
+            paths = {role: self.gear_path(*end) for role, end in zip(("pinion", "gear"), ends)}
+            paths["mesh"] = ("mesh",) if short else ("mesh", k)
+            sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
+            alone = len(self.meshes) == 1
+            name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
+            pinion, gear = (self.shafts[side].member(port) for side, port in ends)
+            out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point))
+        return tuple(out)
+
+    @property
+    def short(self) -> bool:
+        """True where a file may call it by [pinion], [gear] and [mesh] alone."""
+        turned = {name: rotor.shaft for name, rotor in self.rotors.items()}
+        return turned == SHORT and tuple(self.shafts) == SIDES and len(self.meshes) == 1
+
+    def gear_path(self, side: str, port: str) -> tuple:
+        """Keys of a file under which a gear stands."""
+        inside = ("gears", port) if len(self.shafts[side].gears) > 1 else ()
+        return (side,) if self.short else ("shaft", side, *inside)
+
+    def shaft_path(self, side: str) -> tuple:
+        """Keys of a file under which a shaft stands."""
+        return (side,) if self.short else ("shaft", side)
+
+    def per_turn(self, pair: Pair) -> PerTurn:
+        """Teeth of a mesh that pass in one turn of the engine's shaft."""
+        return PerTurn(pair.pinion.teeth * self.turns[pair.shafts[0]], self.reference)
+
+    def named_mesh(self, word: str | None) -> Pair:
+        """A mesh by its name, with or without the word mesh before it; the first by default.
 
         Raises
         ------
-        SceneError
-            For a centre distance or profile shifts that no pressure angle meets.
+        SolidgearError
+            If it has no such mesh.
         """
-        return self.with_changes(**rolling(self.pinion, self.gear, self.mesh))
+        for pair in self.pairs:
+            if word in (None, pair.name, pair.label.strip()):
+                return pair
+        known = listed(pair.label.strip() or pair.name for pair in self.pairs)
+        raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
+
+    @cached_property
+    def power(self) -> tuple[Pair, ...]:
+        """Meshes that torque passes from the engine to the load, in turn."""
+        return path_between(self, self.reference, self.rotors["load"].shaft)
+
+    def only(self) -> Pair:
+        """The one pair of gears of a train that has no other.
+
+        Raises
+        ------
+        SolidgearError
+        """
+        if len(self.meshes) > 1:
+            raise SolidgearError(
+                f"{self.name} has {len(self.meshes)} meshes, and what is asked is there for a "
+                "train of one mesh only"
+            )
+        return self.pairs[0]
+
+    @property
+    def mesh(self) -> Mesh:
+        """The only mesh."""
+        return self.only().mesh
+
+    @property
+    def pinion(self) -> Member:
+        """The shaft of that name and its gear."""
+        return self.member("pinion")
+
+    @property
+    def gear(self) -> Member:
+        """The shaft of that name and its gear."""
+        return self.member("gear")
+
+    @property
+    def engine(self) -> Rotor:
+        """Rotor through which torque comes in."""
+        return self.rotors["engine"]
+
+    @property
+    def load(self) -> Rotor:
+        """Rotor through which it goes out."""
+        return self.rotors["load"]
+
+    @property
+    def ratio(self) -> float:
+        """Turns of the engine's shaft in one turn of the load's."""
+        return self.turns[self.reference] / self.turns[self.rotors["load"].shaft]
 
     def member(self, side: str) -> Member:
-        """``pinion`` or ``gear``."""
-        return {"pinion": self.pinion, "gear": self.gear}[side]
+        """A shaft by its name, and the first of its gears."""
+        if side not in self.shafts:
+            known = listed(self.shafts)
+            raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {known}")
+        return self.shafts[side].member()
 
-    def rotor(self, side: str) -> tuple[str, Rotor]:
-        """Rotor that turns with a shaft, and its name: the engine with the pinion, the load with
-        the gear.
-        """
-        return ("engine", self.engine) if side == "pinion" else ("load", self.load)
+    def rotors_of(self, side: str) -> dict[str, Rotor]:
+        """Rotors that turn with a shaft."""
+        return {name: rotor for name, rotor in self.rotors.items() if rotor.shaft == side}
 
-    def spring_port(self, side: str) -> str:
-        """Port of a shaft that its torsional spring acts on."""
-        name, rotor = self.rotor(side)
-        return rotor.spring.at or f"{name} spring"
+    def spring_port(self, name: str) -> str:
+        """Port of a shaft that the torsional spring of a rotor acts on."""
+        return self.rotors[name].spring.at or f"{name} spring"
 
     def shaft(self, side: str) -> Scene:
-        """Scene of a shaft, with the place of its torsional spring as a free station if that is
+        """Scene of a shaft, with the place of every torsional spring as a free station if that is
         none of its ports; tied as the others are, where all of them are tied alike.
         """
-        scene, spring = self.member(side).scene, self.rotor(side)[1].spring
-        if spring.position is None:
-            return scene
-        datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
+        own = self.shafts[side]
+        scene = own.scene if len(own.gears) > 1 else own.member().scene
         ties = {s.attachment for s in scene.stations}
-        station = Bearing(
-            name=self.spring_port(side),
-            y=datum[spring.from_] + spring.position,
-            seat_width=spring.seat_width or 0.0,
-            attachment=ties.pop() if len(ties) == 1 else "average",
-            stiffness=[[0.0] * 6] * 6,
-            status=spring.status,
-        )
-        return scene.with_changes(bearings=(*scene.bearings, station))
+        datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
+        stations = [
+            Bearing(
+                name=self.spring_port(name),
+                y=datum[rotor.spring.from_] + rotor.spring.position,
+                seat_width=rotor.spring.seat_width or 0.0,
+                attachment=next(iter(ties)) if len(ties) == 1 else "average",
+                stiffness=[[0.0] * 6] * 6,
+                status=rotor.spring.status,
+            )
+            for name, rotor in self.rotors_of(side).items()
+            if rotor.spring.position is not None
+        ]
+        if not stations:
+            return scene
+        return scene.with_changes(bearings=(*scene.bearings, *stations))
 
     def unpublished(self) -> dict[str, str]:
         """Every value of the file that no source gives, by its key: ``identified`` or
@@ -280,24 +302,33 @@ class Train(Model):
 
     def statuses(self) -> dict[str, str]:
         """Status of every value of the file that has one, by its key."""
-        mesh, out = self.mesh, {}
-        line = "line_of_action" if mesh.line_of_action else "contact_cells"
-        line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
-        for key, status in (
-            ("mesh.stiffness", mesh.status),
-            (f"mesh.{line}", mesh.line_of_action_status),
-            ("mesh.transmission_error", mesh.transmission_error_status),
-            ("engine.inertia", self.engine.status),
-            ("engine.spring.stiffness", self.engine.spring.status),
-            ("load.inertia", self.load.status),
-            ("load.spring.stiffness", self.load.spring.status),
-            ("losses", self.losses.status),
-        ):
-            out[key] = str(status)
-        for side in SIDES:
-            member = self.member(side)
-            if member.head is not None:
-                out[f"{side}.head"] = str(member.head.status)
-            for bearing in member.scene.bearings:
-                out[f"{side} bearing {bearing.name}"] = str(bearing.status)
-        return out
+        out: dict[str, Any] = {}
+        for pair in self.pairs:
+            mesh, name = pair.mesh, pair.name
+            line = "line_of_action" if mesh.line_of_action else "contact_cells"
+            line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
+            out[f"{name}.stiffness"] = mesh.status
+            out[f"{name}.{line}"] = mesh.line_of_action_status
+            out[f"{name}.transmission_error"] = mesh.transmission_error_status
+        for name, rotor in self.rotors.items():
+            out[f"{name}.inertia"] = rotor.status
+            out[f"{name}.spring.stiffness"] = rotor.spring.status
+        out["losses"] = self.losses.status
+        for side, shaft in self.shafts.items():
+            for end, (_, head) in self.heads(side).items():
+                out[end] = head.status
+            for bearing in shaft.scene.bearings:
+                out[f"{side} bearing {bearing.name}"] = bearing.status
+        return {key: str(status) for key, status in out.items()}
+
+    def heads(self, side: str) -> dict[str, tuple[str, HeadInertia]]:
+        """Rigid heads of a shaft with the port of each, by ``side.head``, or of several gears
+        ``side.port.head``.
+        """
+        gears = self.shafts[side].gears
+        alone = len(gears) == 1
+        return {
+            f"{side}.head" if alone else f"{side}.{port}.head": (f"{side}.{port}", gear.head)
+            for port, gear in gears.items()
+            if gear.head is not None
+        }

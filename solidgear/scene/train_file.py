@@ -1,6 +1,7 @@
 """From a TOML file of a train to a `Train`, errors named by the keys of the file.
 
-The format is documented by ``geometry/axle_overhung.toml``.
+The format is documented by ``geometry/axle_overhung.toml``, and that of more than two shafts by
+``geometry/gearbox_two_stage.toml``.
 """
 
 from __future__ import annotations
@@ -15,10 +16,13 @@ from typing import Any
 
 from solidgear.errors import SceneError, near, show
 from solidgear.scene.file import load
+from solidgear.scene.gears import Member, Shaft
 from solidgear.scene.model import Scene
+from solidgear.scene.operation import Operation
 from solidgear.scene.toml_file import name_of, parse
-from solidgear.scene.train import SIDES, Train
-from solidgear.scene.typed import Gathered
+from solidgear.scene.train import SHORT, SIDES, Train
+from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
+from solidgear.scene.typed import Gathered, Model
 
 #: reads the scene of a side from a file, told whether the shaft stands alone.
 ReadShaft = Callable[[str, Path, bool], Scene]
@@ -66,6 +70,57 @@ def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train
     return train_of(parse(where), where, shaft)
 
 
+class _Tables(Model):
+    """Tables that every train file has."""
+
+    title: str = ""
+    name: str = "train"
+    source: str = ""
+    engine: Rotor
+    load: Rotor
+    losses: Losses = Losses()
+    operation: Operation = ()
+    ask: TrainAsk = TrainAsk()
+
+    def train(self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping) -> Train:
+        """The train that they describe."""
+        rest = {
+            key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
+        }
+        both = {"engine": self.engine, "load": self.load}
+        return Train(shafts=shafts, meshes=meshes, rotors={**both, **rotors}, **rest)
+
+
+class ShortFile(_Tables):
+    """File of a train of two shafts."""
+
+    pinion: Member
+    gear: Member
+    mesh: Mesh
+
+    def whole(self) -> Train:
+        """The train."""
+        given = {
+            name: rotor if rotor.shaft else rotor.with_changes(shaft=SHORT[name])
+            for name, rotor in (("engine", self.engine), ("load", self.load))
+        }
+        shafts = {"pinion": self.pinion.shaft, "gear": self.gear.shaft}
+        mesh = self.mesh.with_changes(between=tuple(shafts))
+        return self.train(shafts, (mesh,), given)
+
+
+class LongFile(_Tables):
+    """File of a train of any number of shafts."""
+
+    shaft: dict[str, Shaft]
+    mesh: tuple[Mesh, ...]
+    rotor: dict[str, Rotor] = {}
+
+    def whole(self) -> Train:
+        """The train."""
+        return self.train(self.shaft, self.mesh, self.rotor)
+
+
 def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written) -> Train:
     """Resolve the tables of a train file; what it names lies relative to `where`, its path."""
     folder = Path(where).parent
@@ -77,19 +132,22 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
                 "geometry/axle_overhung.toml",
                 path=("segment",),
             )
-        data, alone = {**raw}, "operation" not in raw
-        problems = Gathered()
+        data: dict[str, Any] = {"name": name_of(where), **raw}
+        read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
+        problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
+        if kind is LongFile:
+            data["shaft"] = _shafts(problems, raw["shaft"], read_scene)
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
-                read = partial(_with_scene, raw[side], folder, side, alone, shaft)
-                data[side] = _read(problems, read) or raw[side]
-        if isinstance(raw.get("mesh"), Mapping) and "contact_cells" in raw["mesh"]:
-            data["mesh"] = _with_cells(raw["mesh"], folder)
-        for rotor in ("engine", "load"):
+                data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
+        _read_meshes(data, kind is LongFile, folder)
+        for rotor in SHORT:
             problems.read(partial(_whole_rotor, raw, rotor))
+        if kind is LongFile:
+            problems.tell()
         told = {one.path for one in problems}
         try:
-            train = Train(**{"name": name_of(where)} | data)
+            train = kind(**data).whole()
         except SceneError as error:
             problems += [one for one in error.problems if one.path not in told]
         problems.tell()
@@ -97,9 +155,50 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
     except SceneError as error:
         if error.where:
             raise
-        if isinstance(raw.get("operation"), Mapping):
-            error = _of_one_table(error, "operation")
-        raise error.located(raw, where=where) from None
+        raise as_written(error, raw).located(raw, where=where) from None
+
+
+def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
+    """Problems of the one entry of a list told as those of a table, where a file has a table."""
+    for key in ("operation", "mesh"):
+        if isinstance(raw.get(key), Mapping):
+            error = _of_one_table(error, key)
+    return error
+
+
+def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, Shaft]:
+    """Shafts by their names: with a table for each of several gears, or the one gear in their own."""
+    if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
+        reason = "holds a table for each shaft, such as [shaft.input]"
+        raise SceneError(reason, path=("shaft",))
+    out = {}
+    for name, table in tables.items():
+        path = ("shaft", name)
+        whole = _read(problems, partial(read_scene, table, path))
+        if whole is None:
+            continue
+        one = "gears" not in table
+        made = problems.read(
+            lambda: Member(**whole).shaft if one else Shaft(**whole),  # noqa: B023  read at once
+            path,
+        )
+        if made is not None:
+            out[name] = made
+    return out
+
+
+def _read_meshes(data: dict[str, Any], many: bool, folder: Path) -> None:
+    """Put the contact cells that meshes name into them; one mesh is a list of one."""
+    found = data.get("mesh")
+    tables = found if many and isinstance(found, list) else [found]
+    read = [
+        _with_cells(one, folder, ("mesh", k) if many else ("mesh",))
+        if isinstance(one, Mapping) and "contact_cells" in one
+        else one
+        for k, one in enumerate(tables)
+    ]
+    if "mesh" in data:
+        data["mesh"] = read if many else read[0]
 
 
 def _read(problems: Gathered, reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
@@ -122,21 +221,22 @@ def _of_one_table(error: SceneError, key: str) -> SceneError:
 
 
 def _with_scene(
-    table: Mapping[str, Any], folder: Path, side: str, alone: bool, shaft: ReadShaft
+    folder: Path, alone: bool, shaft: ReadShaft, table: Mapping[str, Any], path: tuple
 ) -> dict[str, Any]:
     name = table.get("scene")
     if not isinstance(name, str):
         reason = 'names the file of the shaft, such as "gear_shaft.toml"'
-        raise SceneError(reason, path=(side, "scene"))
-    return {**table, "scene": shaft(side, folder / name, alone)}
+        raise SceneError(reason, path=(*path, "scene"))
+    return {**table, "scene": shaft(path[-1], folder / name, alone)}
 
 
 def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
     """The spring is what is most often left out: say what it is for."""
-    table, side = raw.get(rotor), "pinion" if rotor == "engine" else "gear"
+    table = raw.get(rotor)
     if not isinstance(table, Mapping):
         reason = f"this table is missing; write [{rotor}] with its inertia, and [{rotor}.spring]"
         raise SceneError(reason, path=(rotor,))
+    side = table.get("shaft", SHORT[rotor])
     misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # told as such
     if not isinstance(table.get("spring"), Mapping) and not misspelt:
         raise SceneError(
@@ -146,12 +246,12 @@ def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
         )
 
 
-def _with_cells(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
     rest = {key: value for key, value in table.items() if key != "contact_cells"}
     name = table["contact_cells"]
     if not isinstance(name, str):
         reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
-        raise SceneError(reason, path=("mesh", "contact_cells"))
+        raise SceneError(reason, path=(*path, "contact_cells"))
     return {**rest, "contact_cells": read_cells(folder / name)}
 
 

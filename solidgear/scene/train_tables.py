@@ -1,15 +1,14 @@
-"""The tables of a train file, each checked by itself: shafts, mesh, engine and load, losses."""
+"""The tables of a train file, each checked by itself: meshes, engine and load, losses."""
 
 from __future__ import annotations
 
 from math import pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.mesh_cycle import LineCycle, StiffnessCycle, Vector
-from solidgear.scene.model import Scene
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
@@ -17,100 +16,19 @@ from solidgear.scene.units import (
     Inertia,
     Length,
     Loss,
-    Mass,
     MeshSpring,
-    PitchAngle,
     PositiveLength,
     PressureAngle,
     ShaftAngle,
     SignedAngle,
-    SpiralAngle,
     Thickness,
     Tolerance,
     TorsionSpring,
 )
 
-#: teeth that a wheel may have
-FEWEST_TEETH, MOST_TEETH = 3, 2000
-
-Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32
-#: of cylindrical gears (ISO 21771)
-FLANKS = ("left", "right")
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
-
-
-class HeadInertia(Model):
-    """A rigid mass at the lumped point of a shaft, beside the mass of its segments.
-
-    Attributes
-    ----------
-    mass : float
-        kg.
-    torsional, bending : float
-        About the shaft and across it, at the lumped point, kg m^2.
-    status : {'published', 'identified', 'assumed', 'measured'}
-    """
-
-    mass: Mass
-    torsional: Inertia
-    bending: Inertia
-    status: Status = "assumed"
-
-
-class Member(Model):
-    """One of the two shafts, and its teeth.
-
-    Attributes
-    ----------
-    hand : {'left', 'right'} or None
-    loaded_side : {'concave', 'convex', 'left', 'right'} or None
-        Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
-        of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771).
-    pitch_radius, face_width : float or None
-        At the heel and along the cone, m.
-    pitch_angle, spiral_angle : float or None
-        rad.
-    module, helix_angle : float or None
-        Of cylindrical gears instead: normal module, m, and helix angle at the reference cylinder, rad;
-        radii follow from the teeth.
-    profile_shift : float
-        Of cylindrical gears, in modules.
-    apex : {'start', 'end'}
-        Towards which end of the shaft the pitch apex lies.
-    scene_load : {'added', 'replaced'} or None
-        Of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
-        gives way to it; where neither is said it must be the mesh force.
-    """
-
-    scene: Scene
-    teeth: Teeth
-    hand: Literal["left", "right"] | None = None
-    loaded_side: Literal["concave", "convex", "left", "right"] | None = None
-    pitch_radius: PositiveLength | None = None
-    face_width: PositiveLength | None = None
-    pitch_angle: PitchAngle | None = None
-    spiral_angle: SpiralAngle | None = None
-    module: PositiveLength | None = None
-    helix_angle: SpiralAngle | None = None
-    profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
-    apex: Literal["start", "end"] = "start"
-    head: HeadInertia | None = None
-    scene_load: Literal["added", "replaced"] | None = None
-
-    @property
-    def flank(self) -> str | None:
-        """The loaded flank of a cylindrical gear, ``left`` or ``right``; None where it is not told.
-
-        A concave flank faces the way the teeth lean: right-handed teeth, seen from the apex, to the
-        right.
-        """
-        if self.loaded_side in FLANKS or self.loaded_side is None:
-            return self.loaded_side
-        if self.hand is None:
-            return None
-        return self.hand if self.loaded_side == "concave" else FLANKS[self.hand == "left"]
 
 
 class TorsionSpringTable(Model):
@@ -147,15 +65,18 @@ class TorsionSpringTable(Model):
 
 
 class Rotor(Model):
-    """The engine or the load: an inertia behind a torsional spring.
+    """The engine, the load or another inertia behind a torsional spring.
 
     Attributes
     ----------
+    shaft : str
+        That it turns with.
     inertia : float
         About the shaft, kg m^2.
     status : {'published', 'identified', 'assumed', 'measured'}
     """
 
+    shaft: str = ""
     inertia: Inertia
     spring: TorsionSpringTable
     status: Status = "assumed"
@@ -225,6 +146,13 @@ class Mesh(Model):
 
     Attributes
     ----------
+    name : str
+    between : (str, str)
+        Shafts of the two gears, the first of which is called pinion here whatever its size; of a
+        shaft with several gears with the lumped point, such as ``middle.wheel``.
+    azimuth : float
+        Of the mesh about the pinion's axis from -x, right-handed about y, and of parallel shafts
+        about the gear's as well, so that their scenes keep parallel axes, rad.
     stiffness : float or None
         N/m; with contact cells it may follow from ``loaded_error`` and ``unloaded_error``.
     status : {'published', 'identified', 'assumed', 'measured'}
@@ -260,6 +188,9 @@ class Mesh(Model):
         tooth pitch of the lumped point's seat; by default none, the mean of the seat alone.
     """
 
+    name: str = ""
+    between: tuple[str, str] = ("pinion", "gear")
+    azimuth: SignedAngle = 0.0
     stiffness: MeshSpring | None = None
     status: Status = "assumed"
     shaft_angle: ShaftAngle = pi / 2
@@ -319,7 +250,7 @@ class Losses(Model):
     Attributes
     ----------
     shafts, bearings, mesh, springs : float
-        Of the material of both shafts, all bearings, the teeth, and the torsional springs.
+        Of the material of all shafts, all bearings, the teeth, and the torsional springs.
     status : {'published', 'identified', 'assumed', 'measured'}
     """
 

@@ -191,7 +191,7 @@ def damping() -> Claim:
     drive = fourteen(CASES[0], "identified")
     shop = drive.workshop
     count = {
-        kind: len(respond(shop, "thesis", "thesis", 4000.0, kind).peaks)
+        kind: len(respond(shop, "thesis", "thesis", highest_hz=4000.0, damping=kind).peaks)
         for kind in ("literal", "hysteretic")
     }
     found = (

@@ -42,7 +42,7 @@ def over(width: float, **named: TrainResponse) -> Chart:
 
 def rotor(rung: str, highest: float = HIGHEST) -> TrainResponse:
     """The overhung rotor by one model of both shafts."""
-    return respond(Workshop(mounted(CASES[0])), rung, rung, highest)
+    return respond(Workshop(mounted(CASES[0])), rung, highest_hz=highest)
 
 
 def old_synthesis(width: float) -> Chart:
@@ -58,7 +58,8 @@ def new_synthesis(width: float) -> Chart:
 def damping(width: float) -> Chart:
     shop = fourteen(CASES[0], "identified").workshop
     loss, literal = (
-        respond(shop, "thesis", "thesis", HIGHEST, kind) for kind in ("hysteretic", "literal")
+        respond(shop, "thesis", "thesis", highest_hz=HIGHEST, damping=kind)
+        for kind in ("hysteretic", "literal")
     )
     return over(width, loss_factor_2_zeta=loss, to_the_letter=literal)
 
@@ -138,7 +139,7 @@ def amplitude(width: float) -> Chart | None:
 
 
 def mesh_stiffness(width: float) -> Chart:
-    half = respond(claims.softer(), "thesis", "thesis", HIGHEST)
+    half = respond(claims.softer(), "thesis", "thesis", highest_hz=HIGHEST)
     return over(width, mesh_stiffness=responses("identified")[0], half_of_it=half)
 
 

@@ -19,7 +19,7 @@ from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftAtRest, load_of
 from solidgear.studies.stress.notch import ENOUGH
@@ -225,7 +225,7 @@ def stress_of_train(
     asked: Asked = Asked(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
-    """Stress of both shafts of a train at an operating point.
+    """Stress of all shafts of a train at an operating point.
 
     Parameters
     ----------
@@ -249,28 +249,29 @@ def stress_of_train(
     """
     progress(model)
     shop = Workshop(_plain(train))
-    usual = Operating(shop, model, model).at(point)
+    usual = Operating(shop, model).at(point)
 
     def acting(choice: Choice) -> dict[str, Acting]:
         own = choice == AS_TOLD
-        return _on_shafts(shop, usual if own else Operating(shop, model, model, choice).at(point))
+        return _on_shafts(shop, usual if own else Operating(shop, model, choice=choice).at(point))
 
     under = {"point": point.model_dump(mode="json"), "mesh_force": usual.mesh_force}
-    shafts, told = _shafts({side: train.shaft(side) for side in SIDES}, acting, asked, progress)
-    cautions = (*usual.notes, *shop.contact.cautions, *_without_torque(train))
+    shafts, told = _shafts(
+        {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
+    )
+    cautions = (*usual.notes, *shop.odd, *_without_torque(train))
     return StressAtRest(train.title or train.name, model, under, asked, shafts, told, cautions)
 
 
 def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, Acting]:
-    """Everything that acts on both shafts of a train at rest."""
+    """Everything that acts on the shafts of a train at rest."""
     out = {}
-    for side in SIDES:
-        port, head = shop.scenes[side].port.name, shop.train.member(side).head
-        turned = state.system.port(f"{side}.{port}").axes.T
+    for side, scene in shop.scenes.items():
+        turned = state.system.port(f"{side}.{scene.port.name}").axes.T
         gravity = turned @ np.array(state.point.gravity)
         out[side] = Acting({}, gravity if state.point.weight else None)
-        if head is not None:
-            out[side].add(port, head.mass * np.r_[gravity, np.zeros(3)])
+        for end, head in shop.train.heads(side).values():
+            out[side].add(end.partition(".")[2], head.mass * np.r_[gravity, np.zeros(3)])
     for end, six in state.forces().items():
         side, _, port = end.partition(".")
         if side in out:  # an engine and a load only turn
@@ -280,22 +281,20 @@ def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, Acting]:
 
 def _without_torque(train: Train) -> Iterator[str]:
     """Sentences on shafts whose torque enters where the teeth take it out."""
-    for side in SIDES:
-        port, (rotor, _) = train.spring_port(side), train.rotor(side)
-        if port == train.member(side).scene.port.name:
+    for name, rotor in train.rotors.items():
+        side, port = rotor.shaft, train.spring_port(name)
+        if [*train.shafts[side].gears] == [port]:
             yield (
-                f"no torque runs along the {side}: {rotor}.spring is at the teeth "
+                f"no torque runs along the {side}: {name}.spring is at the teeth "
                 f'(at = "{port}"); put it where the torque enters'
             )
 
 
 def _plain(train: Train) -> Train:
     """A train of shafts without features, whose teeth act at their ports."""
-    members = {
-        side: train.member(side).with_changes(scene=train.member(side).scene.plain)
-        for side in SIDES
-    }
-    return train.with_changes(mesh=train.mesh.with_changes(local_harmonics=()), **members)
+    shafts = {side: own.with_changes(scene=own.scene.plain) for side, own in train.shafts.items()}
+    meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
+    return train.with_changes(meshes=meshes, shafts=shafts)
 
 
 def _shafts(

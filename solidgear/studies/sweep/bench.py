@@ -7,7 +7,7 @@ from collections.abc import Hashable, Mapping
 from typing import Any
 
 from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating
 from solidgear.studies.train.shaft import ShaftModel, checked_rung
@@ -41,7 +41,7 @@ class Bench:
     def workshop(self, train: Train, pinion: str, gear: str) -> Workshop:
         """Workshop of a train that has the bodies of its shafts by two models."""
         shop = Workshop(train, *self._how)
-        for side, model in zip(SIDES, (pinion, gear)):
+        for side, model in shop.mix((pinion, gear)).items():
             kind, base = checked_rung(model)
             shop.keep(self._shaft(shop, side, base or kind))
         return shop

@@ -12,7 +12,7 @@ from solidgear import __version__
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.models.limits import number
 from solidgear.scene.toml_file import parse
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.sweep.curves import Curves, chartable, curves_of
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.file_variants import OWN, plain
@@ -20,7 +20,7 @@ from solidgear.studies.sweep.rows import tell_in_log
 from solidgear.studies.sweep.running import Made, make_rows
 from solidgear.studies.sweep.train_task import ASKED, MOST_MODES, TrainTask
 from solidgear.studies.sweep.train_variants import TrainVariants, train_variants
-from solidgear.studies.train.contact import contact
+from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.misalignment import measured_names
 from solidgear.studies.train.models import KEPT
 from solidgear.studies.train.shaft import checked_rung
@@ -188,7 +188,7 @@ def sweep_train(
     found = _counted(found, made, task, usual)
     return replace(
         found,
-        cautions=contact(usual).cautions,
+        cautions=tuple(text for met in contacts(usual).values() for text in met.cautions),
         bodies=task.bench.made if jobs == 1 and dask is None else None,
         seconds=time.perf_counter() - start,
         repairs=made.repairs,
@@ -226,7 +226,7 @@ def _plan(task: TrainTask, first: int, usual: Train, design: Design) -> dict[str
     files = {name or "train": plain(t) for name, t in variants.tables(first).items()}
     # what these files name
     cells = [cell.model_dump() for cell in usual.mesh.contact_cells]
-    parts = [usual.member(side).scene.body for side in SIDES]
+    parts = [own.scene.body for own in usual.shafts.values()]
     named = {"cells": cells, "parts": [part and part.model_dump(mode="json") for part in parts]}
     settings = {" ".join(key): dict(own) for key, own in task.settings.items()}
     return {

@@ -13,7 +13,7 @@ from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.sweep.bench import Bench
 from solidgear.studies.sweep.train_variants import TrainVariants
 from solidgear.studies.train.misalignment import measured_names, misalignment
@@ -179,8 +179,8 @@ def misaligned(name: str) -> str:
 
 def _loads(train: Train) -> Iterator[str]:
     """Columns of what every bearing carries."""
-    for side in SIDES:
-        for name in _bearings(train.member(side).scene):
+    for side, own in train.shafts.items():
+        for name in _bearings(own.scene):
             yield from (f"{side}.{name}.{what}" for what in CARRIED)
 
 

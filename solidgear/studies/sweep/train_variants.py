@@ -15,13 +15,13 @@ from solidgear.scene.file import KEYS
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.paths import Keys, Tables
 from solidgear.scene.toml_file import parse
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_file import train_of
 from solidgear.studies.loading import scene_of
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry, Place
 from solidgear.studies.sweep.file_variants import OWN, POINT, FileVariants
-from solidgear.studies.train.contact import contact
+from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.operation import named_point
 
 #: table of operating points
@@ -84,7 +84,7 @@ class TrainVariants(FileVariants):
         """Read a variant; SceneError if files with these values would be refused."""
         train = self.train(index)
         self.at(index, train)
-        contact(train)
+        contacts(train)
 
     def with_entry(self, file: str, keys: Keys, value: Any) -> TrainVariants:
         """The same with an entry of a file replaced in all of them."""
@@ -131,6 +131,10 @@ def train_variants(
         For files and texts that cannot be read, and for too many variants.
     """
     own = parse(str(path))
+    if "shaft" in own:
+        raise SolidgearError(
+            f"{path}: a sweep is there for a train of two shafts, described by [pinion] and [gear]"
+        )
     files = {OWN: own} | {side: _side(path, own, side) for side in SIDES}
 
     def points(varied: tuple[Entry, ...]) -> tuple[Entry, ...]:
@@ -157,7 +161,7 @@ def _owner(path: str) -> tuple[str, str]:
     first, _, within = path.partition(".")
     if first in SIDES and within.partition(".")[0] in KEYS:
         return first, within
-    if first in KEYS and first not in Train.model_fields:
+    if first in KEYS and first not in {*Train.model_fields, *SIDES, *SHORT, "mesh"}:
         raise SolidgearError(
             f"--vary {path}: is of the scene of a shaft; say of which: "
             + " or ".join(f"{side}.{path}" for side in SIDES)

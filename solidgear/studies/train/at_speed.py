@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.spectrum import Spectrum
 from solidgear.studies.train.kinematics import SLIP, Order, angles_of, settled_angles, train_orders
 from solidgear.studies.train.models import Workshop
@@ -104,7 +104,7 @@ class AtSpeed:
     Attributes
     ----------
     rpm : float
-        Of the pinion.
+        Of the shaft `of`.
     told : str
         Origin of the speed.
     within : float
@@ -127,11 +127,12 @@ class AtSpeed:
     spectrum: Spectrum | None = None
     peaks: tuple[MeasuredPeak, ...] = ()
     covered: float | None = None
+    of: str = "pinion"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold."""
         out: dict[str, Any] = {
-            "pinion_rpm": self.rpm,
+            f"{self.of}_rpm": self.rpm,
             "speed": self.told,
             "within": self.within,
             "lines": [asdict(line) for line in self.lines],
@@ -167,21 +168,21 @@ class AtSpeed:
 
 
 def turns_of_pinion(train: Train, speed: float, of: str) -> float:
-    """Turns of the pinion in a second, from the speed of one shaft in rad/s.
+    """Turns of the engine's shaft in a second, from the speed of one shaft in rad/s.
 
     Raises
     ------
     SolidgearError
         For a speed that is not above zero, or a shaft that there is not.
     """
-    if of not in SIDES:
-        raise SolidgearError(f"speed of {of!r}: a train has a {' and a '.join(SIDES)}")
+    if of not in train.turns:
+        raise SolidgearError(f"speed of {of!r}: a train has a {' and a '.join(train.turns)}")
     if not speed > 0:
         raise SolidgearError(
             "the speed must be greater than zero: at rest there are no orders, and which way a shaft "
             "turns does not change them"
         )
-    return speed / (2 * np.pi) * (train.ratio if of == "gear" else 1.0)
+    return speed / (2 * np.pi) / train.turns[of]
 
 
 def refuse_share(name: str, share: float | None) -> None:
@@ -229,7 +230,7 @@ def at_speed(
     >>> from solidgear.studies.train.models import Workshop
     >>> from solidgear.studies.train.modes import train_modes
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> modes = train_modes(shop, "timoshenko", "timoshenko", 1000.0).modes
+    >>> modes = train_modes(shop, "timoshenko", max_frequency=1000.0).modes
     >>> found = at_speed(shop.train, modes, 3210 / 60, "3210 rpm of the pinion")
     >>> first = found.coincidences[0]
     >>> first.line, first.mode, round(100 * first.off, 1)
@@ -239,15 +240,16 @@ def at_speed(
     refuse_share("fit", fit)
     tops = spectrum.peaks() if spectrum is not None else []
     if fit is not None:
-        turns, told = _fitted(tops, train.pinion.teeth, turns, fit, told)
+        turns, told = _fitted(tops, train.per_turn(train.pairs[0]), turns, fit, told)
     lines = lines_at(train_orders(train, _angles(train)), turns)
     known = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
     met = _coincidences(lines, known, turns, within)
     if spectrum is None:
-        return AtSpeed(60 * turns, told, within, lines, known, met)
+        return AtSpeed(60 * turns, told, within, lines, known, met, of=train.reference)
     peaks = tuple(explained(lines, *top) for top in tops)
     covered = _covered(lines, spectrum)
-    return AtSpeed(60 * turns, told, within, lines, known, met, spectrum, peaks, covered)
+    found = lines, known, met, spectrum, peaks, covered
+    return AtSpeed(60 * turns, told, within, *found, of=train.reference)
 
 
 def lines_at(orders: Sequence[Order], turns: float) -> tuple[Line, ...]:
@@ -264,8 +266,8 @@ def _angles(train: Train) -> dict[str, tuple[float, ...]]:
         return angles_of(state.made, state.equilibrium.relative)
     return {
         f"{side}.{name}": angles
-        for side in SIDES
-        for name, angles in settled_angles(train.member(side).scene).items()
+        for side, own in train.shafts.items()
+        for name, angles in settled_angles(own.scene).items()
     }
 
 
@@ -285,7 +287,11 @@ def _coincidences(
 
 
 def _fitted(
-    tops: Sequence[tuple[float, float, float]], teeth: int, turns: float, share: float, told: str
+    tops: Sequence[tuple[float, float, float]],
+    teeth: PerTurn,
+    turns: float,
+    share: float,
+    told: str,
 ) -> tuple[float, str]:
     """Speed at which the largest peak near the first order of the mesh is that order."""
     wanted = teeth * turns
@@ -298,7 +304,7 @@ def _fitted(
     hz, _, resolution = max(near, key=lambda top: top[1])
     off = 100 * (hz / wanted - 1)
     return hz / teeth, (
-        f"{60 * hz / teeth:.6g} rpm of the pinion, fitted: the largest peak within "
+        f"{60 * hz / teeth:.6g} rpm of the {teeth.of}, fitted: the largest peak within "
         f"{100 * share:g} % of the mesh order, {hz:.6g} Hz, is taken for it; {off:+.2f} % from "
         f"{told}, and good to {100 * resolution / hz:.2g} %"
     )

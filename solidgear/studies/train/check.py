@@ -16,7 +16,8 @@ from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.gears import Pair
+from solidgear.scene.train import Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
 from solidgear.studies.train.local import undriven
@@ -29,7 +30,7 @@ from solidgear.studies.train.modes import (
     wrench_lines,
 )
 from solidgear.studies.train.shaft import JUDGE
-from solidgear.studies.train.slips import slip_of_mesh
+from solidgear.studies.train.slips import slips_of_meshes
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
@@ -71,26 +72,28 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     limit = max_frequency or train.ask.max_frequency
     out: dict = {}
     light = Workshop(train, workshop.reduction, workshop.kept)
-    for side in SIDES:
+    for side in train.shafts:
         scene = _asked(workshop.scenes[side], train, limit)
         probe = Probe(scene.plain, build(scene.plain, JUDGE, **HARMONIC), whole=scene)
         out[side] = check_scene(scene, probe.body, probe)
         light.take(side, JUDGE, probe.solution(JUDGE).body)
     faults: list[str] = []
-    facts = [*_facts(workshop, limit), *wrench_lines(workshop.contact)]
-    cautions = [*workshop.cautions]
-    if sentence := slip_of_mesh(workshop):  # those of the shafts are told with their guards
-        cautions.append(sentence)
-    cautions += [*_losses(train), *_error(train, limit)]
+    facts = [*_facts(workshop, limit)]
+    facts += [line for met in workshop.contacts.values() for line in wrench_lines(met)]
+    # those of the shafts are told with their guards
+    cautions = [*workshop.cautions, *slips_of_meshes(workshop), *_losses(train)]
+    for pair in train.pairs:
+        of = f"{pair.name}: " if pair.label else ""
+        cautions += [of + line for line in _error(pair, limit)]
     try:
         facts += _system(light, limit)
     except SolidgearError as error:
         faults.append(str(error))
-    for side in SIDES:
+    for side in train.shafts:
         cautions += _still(light, side, limit)
     facts += [*unpublished_lines(train.unpublished()), ALONE]
     return {"facts": facts, "cautions": cautions, "faults": faults, **out} | {
-        "verdicts": _worse(out["pinion"]["verdicts"], out["gear"]["verdicts"])
+        "verdicts": _worse({side: out[side]["verdicts"] for side in train.shafts})
     }
 
 
@@ -101,17 +104,20 @@ def _asked(scene: Scene, train: Train, limit: float) -> Scene:
 
 
 def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
-    train, met = workshop.train, workshop.contact
-    levers = [1e3 * abs(vector.lever) for vector in (met.pinion, met.gear)]
-    yield (
-        f"{train.pinion.teeth} and {train.gear.teeth} teeth, lever arms {levers[0]:.2f} and "
-        f"{levers[1]:.2f} mm, mesh {met.stiffness:.4g} N/m along "
-        f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the pinion"
-    )
-    yield (
-        f"{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / train.pinion.teeth:.0f} "
-        "rpm of the pinion"
-    )
+    train = workshop.train
+    for pair in train.pairs:
+        met, of = workshop.contacts[pair.name], f"{pair.name}: " if pair.label else ""
+        levers = [1e3 * abs(vector.lever) for vector in (met.pinion, met.gear)]
+        yield (
+            f"{of}{pair.pinion.teeth} and {pair.gear.teeth} teeth, lever arms {levers[0]:.2f} and "
+            f"{levers[1]:.2f} mm, mesh {met.stiffness:.4g} N/m along "
+            f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the pinion"
+        )
+        teeth = train.per_turn(pair)
+        yield (
+            f"{of}{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / teeth:.0f} "
+            f"rpm of the {teeth.of}"
+        )
     loss = train.losses
     yield (
         "losses are read as loss factors, twice a damping ratio: "
@@ -134,8 +140,8 @@ def _losses(train: Train) -> Iterator[str]:
         )
 
 
-def _error(train: Train, limit: float) -> Iterator[str]:
-    table = train.mesh.transmission_error
+def _error(pair: Pair, limit: float) -> Iterator[str]:
+    table = pair.mesh.transmission_error
     if table.frequency and table.frequency[-1] < limit:
         yield (
             f"the transmission error is given up to {table.frequency[-1]:g} Hz and is taken as "
@@ -147,7 +153,7 @@ def _error(train: Train, limit: float) -> Iterator[str]:
 
 def _system(shop: Workshop, limit: float) -> Iterator[str]:
     """Of both light solids coupled."""
-    system = shop.system(JUDGE, JUDGE)
+    system = shop.system(JUDGE)
     refuse_unresolved(shop, system, limit)
     omega, _ = system.elastic
     count = int((omega <= 2 * np.pi * limit).sum())
@@ -165,7 +171,7 @@ def _system(shop: Workshop, limit: float) -> Iterator[str]:
 
 def _still(shop: Workshop, side: str, limit: float) -> Iterator[str]:
     """Modes of a light solid that averaged ports cannot drive."""
-    asked = shop.train.mesh.local_harmonics
+    asked = shop.train.meshes[0].local_harmonics  # of several meshes there are none
     found = undriven(shop.shaft(side, JUDGE).body, limit, asked)
     if found:
         told = ", ".join(f"n = {n} at {hz[0]:.0f} Hz" for n, hz in found.items())
@@ -175,12 +181,15 @@ def _still(shop: Workshop, side: str, limit: float) -> Iterator[str]:
         )
 
 
-def _worse(one: dict, other: dict) -> dict:
-    """By model, the worse of two verdicts and whose it is."""
+def _worse(verdicts: dict[str, dict]) -> dict:
+    """By model, the worst of the verdicts on all shafts and whose it is."""
+    first, *others = verdicts.values()
     out = {}
-    for model in one.keys() & other.keys():
-        pair = {"pinion": one[model]["verdict"], "gear": other[model]["verdict"]}
-        worst = min(pair.values(), key=WORST.index)
-        sides = [side for side in SIDES if pair[side] == worst]
+    for model in first:
+        if any(model not in other for other in others):
+            continue
+        each = {side: own[model]["verdict"] for side, own in verdicts.items()}
+        worst = min(each.values(), key=WORST.index)
+        sides = [side for side in each if each[side] == worst]
         out[model] = {"verdict": worst, "shafts": sides if worst != WORST[-1] else []}
-    return {model: out[model] for model in one if model in out}
+    return out

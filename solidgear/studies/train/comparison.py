@@ -10,8 +10,8 @@ from typing import Any
 
 from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
-from solidgear.scene.train import SIDES
-from solidgear.studies.train.judge import DRAWN, JUDGE, MIXED, Verdict, judge_train
+from solidgear.scene.gears import Pair
+from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
 from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainModes, train_modes
@@ -52,7 +52,8 @@ class TrainComparison:
     @property
     def drawn(self) -> list[TrainResponse]:
         """Responses that the chart shows, the judge's first."""
-        return [r for r in self.verdict.responses if (r.pinion, r.gear) in DRAWN]
+        shown = drawn(len(self.modes.models))
+        return [r for r in self.verdict.responses if tuple(r.models.values()) in shown]
 
     @property
     def marks(self) -> dict[str, float]:
@@ -70,14 +71,18 @@ class TrainComparison:
 
     def pictures(self, folder: Path) -> dict[str, Any]:
         """Draw the loudest modes into a folder: files by what they show, and what was left out."""
-        done = draw_modes(self.workshop, JUDGE, JUDGE, folder, self.loudest) if self.loudest else {}
+        done = (
+            draw_modes(self.workshop, JUDGE, folder=folder, numbers=self.loudest)
+            if self.loudest
+            else {}
+        )
         drawn = {told: one.path.name for told, one in done.items() if one.ok}
         reasons = sorted({one.reason for one in done.values() if not one.ok})
         return {"pictures": drawn, "left_out": reasons}
 
     def turned(self) -> list[Turned]:
-        """The judge's modes and those of both shafts as the best beams, to be turned side by side."""
-        both = (JUDGE, JUDGE), (MIXED[-2], MIXED[-2])
+        """The judge's modes and those of all shafts as the best beams, to be turned side by side."""
+        both = (JUDGE,), (MIXED[-2],)
         return turned_beside(self.workshop, *both, self.verdict.highest_hz)
 
     @property
@@ -105,7 +110,7 @@ class TrainComparison:
 def compare_train(
     workshop: Workshop,
     highest_hz: float | None = None,
-    more: Sequence[tuple[str, str]] = (),
+    more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> TrainComparison:
     """Judge every mix of models of a train, and tell the judge's modes.
@@ -122,39 +127,50 @@ def compare_train(
     """
     start = perf_counter()
     verdict = judge_train(workshop, highest_hz, more, progress)
-    modes = train_modes(workshop, JUDGE, JUDGE, verdict.highest_hz)
+    modes = train_modes(workshop, JUDGE, max_frequency=verdict.highest_hz)
     progress("order lines")
-    orders = order_map(workshop, JUDGE, JUDGE, verdict.highest_hz)
+    orders = order_map(workshop, JUDGE, highest_hz=verdict.highest_hz)
     return TrainComparison(workshop, verdict, modes, orders, perf_counter() - start)
 
 
 def described(workshop: Workshop) -> dict[str, Any]:
-    """A train as plain data: what the file gives, and what its mesh comes to."""
-    train, met = workshop.train, workshop.contact
+    """A train as plain data: what the file gives, and what its meshes come to."""
+    train = workshop.train
     out: dict[str, Any] = {
         "title": train.called,
         "name": train.name,
         "source": train.source,
         "ratio": train.ratio,
-        "shaft_angle": train.mesh.shaft_angle,
-        "mesh_stiffness": met.stiffness,
-        "transmission_error": train.mesh.transmission_error.model_dump(mode="json"),
+        "shafts": [*train.shafts],
+        "meshes": [_mesh(workshop, pair) for pair in train.pairs],
+        "rotors": [*train.rotors],
         "losses": train.losses.model_dump(mode="json", exclude={"status"}),
         "statuses": train.statuses(),
     }
-    for side in SIDES:
-        name, rotor = train.rotor(side)
-        vector = getattr(met, side)
+    for name, rotor in train.rotors.items():
         out[name] = {
             "inertia": rotor.inertia,
             "spring": rotor.spring.stiffness,
-            "at": f"{side}.{train.spring_port(side)}",
+            "at": f"{rotor.shaft}.{train.spring_port(name)}",
         }
-        out[side] = {
-            "teeth": train.member(side).teeth,
-            "line_of_action": [float(v) for v in vector.normal],
-            "point": [float(v) for v in vector.point],
-            "lever": vector.lever,
-            "scene": train.member(side).scene.as_dict(),
-        }
+    for side, shaft in train.shafts.items():
+        out[side] = {"turns": train.turns[side], "scene": shaft.scene.as_dict()}
     return out
+
+
+def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
+    """A mesh as plain data, the pinion first where there are two of a thing."""
+    met = workshop.contacts[pair.name]
+    vectors = met.pinion, met.gear
+    return {
+        "name": pair.name,
+        "between": [f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports)],
+        "per_turn": workshop.train.per_turn(pair),
+        "teeth": [own.teeth for own in pair.members.values()],
+        "shaft_angle": pair.mesh.shaft_angle,
+        "stiffness": met.stiffness,
+        "transmission_error": pair.mesh.transmission_error.model_dump(mode="json"),
+        "line_of_action": [[float(v) for v in one.normal] for one in vectors],
+        "point": [[float(v) for v in one.point] for one in vectors],
+        "lever": [one.lever for one in vectors],
+    }

@@ -8,8 +8,8 @@ from math import cos, sin
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.train import SIDES, Train
-from solidgear.scene.train_tables import FLANKS
+from solidgear.frames import rotation
+from solidgear.scene.gears import FLANKS, Pair
 from solidgear.studies.train.own_numbers import compared
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
@@ -74,8 +74,8 @@ class Contact:
     cautions: tuple[str, ...]
 
 
-def contact(train: Train, coast: bool | None = None) -> Contact:
-    """Mesh vectors of a train.
+def contact(pair: Pair, coast: bool | None = None) -> Contact:
+    """Mesh vectors of two gears.
 
     Parameters
     ----------
@@ -91,12 +91,28 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
     Examples
     --------
     >>> import solidgear as sg
-    >>> found = contact(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = contact(sg.load_train("geometry/axle_overhung.toml").pairs[0])
     >>> round(abs(found.gear.lever / found.pinion.lever), 4), found.cautions[0][:43]
     (3.2143, 'the pitch angle of 0.391 rad is not that of')
     """
-    train = train.rolling
-    mesh, cautions = train.mesh, compared(train)
+    try:
+        return _contact(pair.rolling, coast)
+    except SceneError as error:
+        raise SceneError.of(pair.told(error.problems)) from None
+
+
+def axes_of(pair: Pair, side: str) -> np.ndarray:
+    """(3, 3) turn from the frame of ``pinion`` or ``gear`` to the axes of its scene, whose y may run
+    towards the apex (half a turn about z), and whose -x need not point to the mesh.
+    """
+    parallel = abs(sin(pair.mesh.shaft_angle)) < 1e-6
+    turned = pair.mesh.azimuth if parallel or side == "pinion" else 0.0
+    flip = np.eye(3) if pair.members[side].apex == "start" else np.diag([-1.0, -1.0, 1.0])
+    return flip @ rotation(1, turned)[:3, :3]
+
+
+def _contact(pair: Pair, coast: bool | None) -> Contact:
+    mesh, cautions = pair.mesh, compared(pair)
     wrench = None
     if mesh.contact_cells:
         wrench = contact_wrench(
@@ -106,65 +122,63 @@ def contact(train: Train, coast: bool | None = None) -> Contact:
         )
         normal, point = wrench.normal, wrench.point
     elif mesh.line_of_action is not None:
-        normal, point = _given_line(train), np.array(mesh.point)
+        normal, point = _given_line(pair), np.array(mesh.point)
     else:
-        normal, point = _of_teeth(train, mesh.pressure_angle), mesh_point(_mean_radius(train))
-    if coast if coast is not None else train.point is not None and train.point.coast:
-        normal = _other_flank(train, normal, point)
-    origin = _gear_position(train, point)
+        normal, point = _of_teeth(pair, mesh.pressure_angle), mesh_point(_mean_radius(pair))
+    if coast if coast is not None else pair.point is not None and pair.point.coast:
+        normal = _other_flank(pair, normal, point)
+    origin = _gear_position(pair, point)
     n_gear = to_gear_frame(normal, mesh.shaft_angle)
     r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
     found = MeshVector(normal, point), MeshVector(n_gear, r_gear)
-    cautions += _cones(train) + _apexes(train)
+    cautions += _cones(pair) + _apexes(pair)
     for side, vector in zip(("pinion", "gear"), found):
-        _on_the_head(train, side, vector.point)
-    cautions += _levers(train, *found)
-    cautions += [line for side in SIDES for line in _scene_load(train, side, found)]
+        _on_the_head(pair, side, vector.point)
+    cautions += _levers(pair, *found)
+    cautions += [line for side in pair.members for line in _scene_load(pair, side, found)]
     stiffness = mesh.stiffness
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
-    own = [in_scene(train.member(s).apex, v) for s, v in zip(("pinion", "gear"), found)]
+    own = [_in_scene(pair, s, v) for s, v in zip(("pinion", "gear"), found)]
     return Contact(own[0], own[1], stiffness, origin, wrench, tuple(cautions))
 
 
-def _other_flank(train: Train, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
+def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Line of action of the other flank of the same tooth, in the pinion's frame: mirrored at the
     normal of the pitch cone where they touch.
     """
-    if train.mesh.contact_cells:
+    if pair.mesh.contact_cells:
         raise SceneError(
             "are those of one flank; a torque on the other one (coast, below zero) needs a file "
             "with its own cells",
             path=("mesh", "contact_cells"),
         )
-    angle = train.pinion.pitch_angle
-    if angle is None and abs(sin(train.mesh.shaft_angle)) > 1e-6:
-        _needs(train, "pitch_angle", what="the line of action of the other flank (coast)")
+    angle = pair.pinion.pitch_angle
+    if angle is None and abs(sin(pair.mesh.shaft_angle)) > 1e-6:
+        _needs(pair, "pitch_angle", what="the line of action of the other flank (coast)")
     gamma = angle or 0.0
     outward = np.array([point[0], 0.0, point[2]]) / np.hypot(point[0], point[2])
     across = -cos(gamma) * outward + sin(gamma) * np.array([0.0, 1.0, 0.0])
     return 2 * (normal @ across) * across - normal
 
 
-def in_scene(apex: str, vector: MeshVector) -> MeshVector:
-    """In the axes of the scene, whose y may run towards the apex: half a turn about z."""
-    if apex == "start":
-        return vector
-    turn = np.array([-1.0, -1.0, 1.0])
-    return MeshVector(turn * vector.normal, turn * vector.point)
+def _in_scene(pair: Pair, side: str, vector: MeshVector) -> MeshVector:
+    """In the axes of the scene."""
+    turn = axes_of(pair, side)
+    return MeshVector(turn @ vector.normal, turn @ vector.point)
 
 
-def _needs(train: Train, *keys: str, what: str) -> None:
-    missing = [key for key in keys if getattr(train.pinion, key) is None]
-    straight = not train.pinion.spiral_angle
-    if straight and train.pinion.loaded_side in FLANKS:
+def _needs(pair: Pair, *keys: str, what: str) -> None:
+    missing = [key for key in keys if getattr(pair.pinion, key) is None]
+    straight = not pair.pinion.spiral_angle
+    if straight and pair.pinion.loaded_side in FLANKS:
         missing = [key for key in missing if key != "hand"]  # straight teeth have none
     words = dict.fromkeys(GEOMETRY, "")
     if straight and {"hand", "loaded_side"} & set(missing):
         both = ": of straight teeth both together say which flank is loaded"
         words |= {"hand": both, "loaded_side": both}
-    called = {} if train.mesh.shaft_angle else CYLINDRICAL
+    called = {} if pair.mesh.shaft_angle else CYLINDRICAL
     if missing:
         raise SceneError.of(
             SceneError(
@@ -174,19 +188,19 @@ def _needs(train: Train, *keys: str, what: str) -> None:
         )
 
 
-def _of_teeth(train: Train, pressure_angle: float | None) -> np.ndarray:
-    _needs(train, *GEOMETRY, what="a line of action from gear geometry")
-    p = train.pinion
+def _of_teeth(pair: Pair, pressure_angle: float | None) -> np.ndarray:
+    _needs(pair, *GEOMETRY, what="a line of action from gear geometry")
+    p = pair.pinion
     assert p.pitch_angle is not None and p.spiral_angle is not None
     assert p.loaded_side is not None and pressure_angle is not None
     hand = p.hand or "right"  # of straight teeth, whose flank is told by itself
     return line_of_action(p.pitch_angle, p.spiral_angle, pressure_angle, hand, p.loaded_side)
 
 
-def _mean_radius(train: Train) -> float:
+def _mean_radius(pair: Pair) -> float:
     what = "a mesh point from gear geometry"
-    _needs(train, "pitch_radius", "pitch_angle", "face_width", what=what)
-    p = train.pinion
+    _needs(pair, "pitch_radius", "pitch_angle", "face_width", what=what)
+    p = pair.pinion
     assert p.pitch_radius is not None and p.pitch_angle is not None and p.face_width is not None
     try:
         return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
@@ -194,22 +208,22 @@ def _mean_radius(train: Train) -> float:
         raise SceneError(str(error), path=("pinion", "face_width")) from None
 
 
-def _gear_position(train: Train, point: np.ndarray) -> np.ndarray:
+def _gear_position(pair: Pair, point: np.ndarray) -> np.ndarray:
     """The gear's lumped point from the pinion's; with both at the middle of the face, where the
     middles of the faces touch and radii are in the ratio of the teeth.
     """
-    if train.mesh.gear_position is not None:
-        return np.array(train.mesh.gear_position)
-    if train.mesh.line_of_action is not None or train.mesh.contact_cells:
-        _needs(train, "pitch_radius", "pitch_angle", "face_width", what=WITHOUT_POSITION)
-    radius = _mean_radius(train)
-    at_gear = mesh_point(train.ratio * radius, member="gear")
+    if pair.mesh.gear_position is not None:
+        return np.array(pair.mesh.gear_position)
+    if pair.mesh.line_of_action is not None or pair.mesh.contact_cells:
+        _needs(pair, "pitch_radius", "pitch_angle", "face_width", what=WITHOUT_POSITION)
+    radius = _mean_radius(pair)
+    at_gear = mesh_point(pair.ratio * radius, member="gear")
     # from the gear's frame back to the pinion's: the opposite turn
-    return mesh_point(radius) - to_gear_frame(at_gear, -train.mesh.shaft_angle)
+    return mesh_point(radius) - to_gear_frame(at_gear, -pair.mesh.shaft_angle)
 
 
-def _given_line(train: Train) -> np.ndarray:
-    normal = np.array(train.mesh.line_of_action)
+def _given_line(pair: Pair) -> np.ndarray:
+    normal = np.array(pair.mesh.line_of_action)
     length = float(np.linalg.norm(normal))
     path = ("mesh", "line_of_action")
     if not abs(length - 1) < UNIT:
@@ -217,9 +231,9 @@ def _given_line(train: Train) -> np.ndarray:
         raise SceneError(
             f"has length {length:.6g}; the unit vector of this direction is {unit}", path=path
         )
-    if all(getattr(train.pinion, key) is not None for key in GEOMETRY):
-        teeth = _of_teeth(train, train.mesh.pressure_angle or USUAL_PRESSURE_ANGLE)
-        turned = to_gear_frame(normal, -train.mesh.shaft_angle)
+    if all(getattr(pair.pinion, key) is not None for key in GEOMETRY):
+        teeth = _of_teeth(pair, pair.mesh.pressure_angle or USUAL_PRESSURE_ANGLE)
+        turned = to_gear_frame(normal, -pair.mesh.shaft_angle)
         if turned @ teeth > normal @ teeth + TURNED:
             raise SceneError(
                 "is given in the gear's frame: it fits the teeth only when turned back by the "
@@ -229,28 +243,28 @@ def _given_line(train: Train) -> np.ndarray:
     return normal
 
 
-def _cones(train: Train) -> list[str]:
+def _cones(pair: Pair) -> list[str]:
     """Tell whether the pitch angle is that of the teeth."""
-    angle, shaft = train.pinion.pitch_angle, train.mesh.shaft_angle
+    angle, shaft = pair.pinion.pitch_angle, pair.mesh.shaft_angle
     if angle is None:
         return []
     # Shigley's Mechanical Engineering Design, bevel gears: both cones roll on each other
-    of_teeth = float(np.arctan2(sin(shaft), train.ratio + cos(shaft)))
+    of_teeth = float(np.arctan2(sin(shaft), pair.ratio + cos(shaft)))
     if abs(angle - of_teeth) < CONE_TOLD * max(of_teeth, LEAST_CONE):
         return []
     return [
-        f"the pitch angle of {angle:.4g} rad is not that of {train.pinion.teeth} and "
-        f"{train.gear.teeth} teeth ({of_teeth:.4g} rad); radii are taken in the ratio of the teeth"
+        f"the pitch angle of {angle:.4g} rad is not that of {pair.pinion.teeth} and "
+        f"{pair.gear.teeth} teeth ({of_teeth:.4g} rad); radii are taken in the ratio of the teeth"
     ]
 
 
-def _apexes(train: Train) -> list[str]:
+def _apexes(pair: Pair) -> list[str]:
     """Tell whether the pitch apex lies where the head of the scene is narrowest."""
-    if abs(sin(train.mesh.shaft_angle)) < 1e-6:
+    if abs(sin(pair.mesh.shaft_angle)) < 1e-6:
         return []  # parallel shafts have none
     out = []
-    for side in SIDES:
-        scene, apex = train.member(side).scene, train.member(side).apex
+    for side in pair.members:
+        scene, apex = pair.members[side].scene, pair.members[side].apex
         port = scene.port
         head = max(scene.segments, key=lambda s: min(s.y1, port.hi) - max(s.y0, port.lo))
         taper = (head.outer1 - head.outer0) / head.length
@@ -265,17 +279,17 @@ def _apexes(train: Train) -> list[str]:
     return out
 
 
-def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
-    scene, apex = train.member(side).scene, train.member(side).apex
+def _on_the_head(pair: Pair, side: str, point: np.ndarray) -> None:
+    scene, apex = pair.members[side].scene, pair.members[side].apex
     port = scene.port
     most = scene.outline.largest_radius
     # a wheel that is a rigid mass is not among the segments; its pitch radius says how far it goes
-    most = max(most, train.member(side).pitch_radius or 0.0)
+    most = max(most, pair.members[side].pitch_radius or 0.0)
     radius = float(np.hypot(point[0], point[2]))
     y = port.y + (point[1] if apex == "start" else -point[1])
     slack = OUTSIDE_LENGTH * (port.hi - port.lo)
-    path = ("mesh", "point") if train.mesh.point is not None else ("mesh",)
-    member = train.member(side)
+    path = ("mesh", "point") if pair.mesh.point is not None else ("mesh",)
+    member = pair.members[side]
     if radius > most * (1 + OUTSIDE_RADIUS) and member.head and not member.pitch_radius:
         raise SceneError(
             f"is missing; the mesh point lies {1e3 * radius:.1f} mm from the axis, beyond the "
@@ -297,19 +311,19 @@ def _on_the_head(train: Train, side: str, point: np.ndarray) -> None:
         )
 
 
-def _scene_load(train: Train, side: str, found: tuple[MeshVector, MeshVector]) -> list[str]:
+def _scene_load(pair: Pair, side: str, found: tuple[MeshVector, MeshVector]) -> list[str]:
     """Tell of bearings that settled under a [load] which is no force of the teeth; a load that pulls
     the teeth apart is refused.
     """
-    member = train.member(side)
+    member = pair.members[side]
     scene = member.scene
     waiting = any(b.unsettled is not b for b in scene.bearings)
-    if train.operation or scene.load is None or not waiting or member.scene_load == "added":
+    if pair.point or scene.load is None or not waiting or member.scene_load == "added":
         return []
     force = np.array(scene.load.six[:3])
     if not force.any():
         return []
-    vector = in_scene(member.apex, found[SIDES.index(side)])
+    vector = _in_scene(pair, side, found[side == "gear"])
     teeth = vector.normal if side == "pinion" else -vector.normal
     along = float(force @ teeth / np.linalg.norm(force))
     told = (
@@ -334,8 +348,8 @@ def _scene_load(train: Train, side: str, found: tuple[MeshVector, MeshVector]) -
     ]
 
 
-def _levers(train: Train, pinion: MeshVector, gear: MeshVector) -> list[str]:
-    path = ("mesh", "point") if train.mesh.point is not None else ("mesh",)
+def _levers(pair: Pair, pinion: MeshVector, gear: MeshVector) -> list[str]:
+    path = ("mesh", "point") if pair.mesh.point is not None else ("mesh",)
     for side, vector in (("pinion", pinion), ("gear", gear)):
         if abs(vector.lever) < 1e-6 * np.linalg.norm(vector.point):
             raise SceneError(
@@ -344,17 +358,17 @@ def _levers(train: Train, pinion: MeshVector, gear: MeshVector) -> list[str]:
                 path=path,
             )
     levers = abs(gear.lever / pinion.lever)
-    off = levers / train.ratio - 1
+    off = levers / pair.ratio - 1
     if abs(off) > LEVER_REFUSED:
         raise SceneError(
             f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the pinion and "
             f"{1e3 * abs(gear.lever):.2f} mm on the gear, a ratio of {levers:.4f}; "
-            f"the teeth ask for {train.ratio:.4f}",
+            f"the teeth ask for {pair.ratio:.4f}",
             path=path,
         )
     if abs(off) > LEVER_TOLD:
         return [
-            f"the lever arms have a ratio of {levers:.4f}, the teeth of {train.ratio:.4f}: "
+            f"the lever arms have a ratio of {levers:.4f}, the teeth of {pair.ratio:.4f}: "
             f"{100 * off:+.1f} %"
         ]
     return []

@@ -12,13 +12,12 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.deviations import WITHIN, gap_verdict
 from solidgear.machine.threads import pinned
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import SIDES
 from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
-from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, told_mix
 from solidgear.studies.train.static_bars import StaticBars
 
 #: models that a deflection is solved with, the cheapest first
@@ -53,34 +52,44 @@ class TrainDeflection:
 
     Attributes
     ----------
-    pinion, gear : str
-        Models.
-    mesh_force : float
-        N, along the line of action.
+    models : dict of str to str
+        By shaft.
+    mesh_forces : dict of str to float
+        N, along the line of action, by mesh.
     displacement : dict of str to tuple of Measured
-        Of the lumped point of each side, six components; rotations about the axis are against the
-        pinion's spring port.
+        Of every lumped point, by its shaft, or of one with several gears by shaft and point, six
+        components; rotations about the axis are against the port of the engine's spring.
     seconds : float
         To settle, once bodies are there.
     """
 
     point: OperatingPoint
-    pinion: str
-    gear: str
-    mesh_force: float
+    models: dict[str, str]
+    mesh_forces: dict[str, float]
     misalignment: tuple[Measured, ...]
     displacement: dict[str, tuple[Measured, ...]]
     shafts: tuple[ShaftDeflection, ...]
     notes: tuple[str, ...]
     seconds: float
 
+    @property
+    def mesh_force(self) -> float:
+        """That of the first mesh, N."""
+        return next(iter(self.mesh_forces.values()))
+
+    @property
+    def model(self) -> str:
+        """The model of all shafts, or of each."""
+        alike = len({*self.models.values()}) == 1
+        return next(iter(self.models.values())) if alike else told_mix(self.models)
+
     def as_dict(self) -> dict:
         """Plain data in SI that JSON can hold."""
         return {
             "point": self.point.model_dump(mode="json"),
-            "pinion": self.pinion,
-            "gear": self.gear,
+            **self.models,
             "mesh_force": self.mesh_force,
+            "mesh_forces": self.mesh_forces,
             "misalignment": {m.name: _plain(m) for m in self.misalignment},
             "displacement": {
                 side: {m.name: _plain(m) for m in six} for side, six in self.displacement.items()
@@ -154,7 +163,7 @@ class Deflections:
         if self.cheapest is None:
             near = min(self.standings, key=lambda one: abs(one.gap))
             return (
-                f"No cheaper model is known to hold {asked}: use {self.judge.pinion}. The nearest, "
+                f"No cheaper model is known to hold {asked}: use {self.judge.model}. The nearest, "
                 f"{near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
             )
         one = self.cheapest
@@ -169,7 +178,7 @@ class Deflections:
             "train": self.title,
             "tolerance": self.tolerance,
             "verdict": self.verdict(),
-            "models": {one.pinion: one.as_dict() for one in self.found},
+            "models": {one.model: one.as_dict() for one in self.found},
             "standings": [vars(one) for one in self.standings],
             "cautions": list(self.cautions),
             "points": [one.as_dict() for one in self.points],
@@ -210,37 +219,35 @@ def deflect_train(
     found = []
     for model in models:
         progress(model)
-        found.append(deflection(workshop, point, model, model))
+        found.append(deflection(workshop, point, model))
     progress("what the data of bearings leave open")
     found[-1] = with_ranges(workshop, found[-1])
     standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
     points: list[TrainDeflection] = []
     if every:
         progress(f"{len(workshop.train.operation)} operating points")
-        points = deflections(workshop, workshop.train.operation, models[-1], models[-1])
+        points = deflections(workshop, workshop.train.operation, models[-1])
     title = workshop.train.title or workshop.train.name
     return Deflections(
         title,
         workshop.train.ask.tolerance,
         tuple(found),
         standings,
-        workshop.contact.cautions,
+        workshop.odd,
         tuple(points),
     )
 
 
-def deflection(
-    workshop: Workshop, point: OperatingPoint, pinion: str, gear: str
-) -> TrainDeflection:
+def deflection(workshop: Workshop, point: OperatingPoint, *models: str) -> TrainDeflection:
     """Deflection of a train at an operating point by one model of each shaft, as
     :func:`deflections`.
     """
-    return deflections(workshop, [point], pinion, gear)[0]
+    return deflections(workshop, [point], *models)[0]
 
 
 @pinned
 def deflections(
-    workshop: Workshop, points: Sequence[OperatingPoint], pinion: str, gear: str
+    workshop: Workshop, points: Sequence[OperatingPoint], *models: str
 ) -> list[TrainDeflection]:
     """Deflection of a train at several operating points by one model of each shaft.
 
@@ -248,13 +255,15 @@ def deflections(
     ----------
     points : sequence of OperatingPoint
         Each is begun at the one before.
+    *models : str
+        One for each shaft, or one for all.
 
     Raises
     ------
     SolidgearError
         As :func:`deflect_train`.
     """
-    rungs = {"pinion": pinion, "gear": gear}
+    rungs = workshop.mix(models)
     for rung in rungs.values():
         if rung.partition("/")[0] in LUMPED:
             raise SolidgearError(
@@ -263,7 +272,7 @@ def deflections(
             )
     for side, rung in rungs.items():
         workshop.shaft(side, rung)  # no settling to be timed
-    operating = Operating(workshop, pinion, gear)
+    operating = Operating(workshop, *models)
     state: OperatingState | None = None
     out = []
     for point in points:
@@ -297,12 +306,15 @@ def _told(
         for side, rung in rungs.items()
     )
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
-    moved = {side: _six(workshop, side, state, bars) for side in SIDES}
+    moved = {}
+    for side, shaft in workshop.train.shafts.items():
+        for port in shaft.gears:
+            end = f"{side}.{port}"
+            moved[side if len(shaft.gears) == 1 else end] = _six(end, state, bars)
     return TrainDeflection(
         point,
-        state.pinion,
-        state.gear,
-        state.mesh_force,
+        state.models,
+        state.mesh_forces,
         told,
         moved,
         shafts,
@@ -314,9 +326,9 @@ def _told(
 def with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     """The same with the ranges of its misalignment over estimated insides and clearance classes."""
     values = [[m.value for m in found.misalignment]]
-    _, choices = left_open(workshop.train.member(side).scene for side in SIDES)
+    _, choices = left_open(own.scene for own in workshop.train.shafts.values())
     for choice in choices:
-        state = Operating(workshop, found.pinion, found.gear, choice).at(found.point)
+        state = Operating(workshop, *found.models.values(), choice=choice).at(found.point)
         measures = misalignment(workshop.on_flank(found.point.coast), state.system)
         values.append([float(m.row @ state.coordinates) for m in measures])
     if len(values) == 1:
@@ -326,11 +338,8 @@ def with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     return replace(found, misalignment=tuple(told))
 
 
-def _six(
-    workshop: Workshop, side: str, state: OperatingState, bars: StaticBars
-) -> tuple[Measured, ...]:
-    """Motion of the lumped point of a shaft."""
-    end = f"{side}.{workshop.scenes[side].port.name}"
+def _six(end: str, state: OperatingState, bars: StaticBars) -> tuple[Measured, ...]:
+    """Motion of a lumped point."""
     names = ("x", "y", "z", "thx", "thy", "thz")
     units = ("m moved",) * 3 + ("rad moved",) * 3
     rows = state.system.motion(end)
@@ -350,4 +359,4 @@ def _standing(one: TrainDeflection, judge: TrainDeflection, tolerance: float) ->
             off = (mine.value - theirs.value) / scale if scale else 0.0
             if abs(off) >= abs(gap):
                 worst, gap, bar = mine.name, off, (theirs.bar or 0.0) / (scale or 1.0)
-    return Standing(one.pinion, gap_verdict(gap, bar, tolerance), worst, gap)
+    return Standing(one.model, gap_verdict(gap, bar, tolerance), worst, gap)

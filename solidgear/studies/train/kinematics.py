@@ -1,4 +1,5 @@
-"""Orders of a train: periods of everything that turns and meshes in one turn of the pinion.
+"""Orders of a train: periods of everything that turns and meshes in one turn of the pinion, or of the
+shaft that the engine turns with.
 
 Shafts, meshes with their sidebands, and rolling bearings each give their own, so that a train of
 other wheels adds up those it has.  Teeth set the ratios: orders of shafts and meshes are exact.
@@ -21,7 +22,7 @@ from solidgear.bearings.passing import passing, working_angle
 from solidgear.bearings.solved import solved
 from solidgear.scene import Scene
 from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.loading import shaft
 
 #: harmonics of a shaft, of a mesh, of a bearing, and sidebands on each side of a mesh
@@ -77,7 +78,7 @@ def train_orders(
     angles: Mapping[str, Sequence[float]] | None = None,
     mesh_orders: int = len(MESH_ORDERS),
 ) -> tuple[Order, ...]:
-    """Orders of both shafts, of their mesh and of their catalogue bearings.
+    """Orders of all shafts, of their meshes and of their catalogue bearings.
 
     Parameters
     ----------
@@ -102,13 +103,15 @@ def train_orders(
     >>> [(order.name, round(order.per_turn, 4)) for order in found if order.name.endswith(" 1")][:3]
     [('pinion 1', 1.0), ('gear 1', 0.3111), ('mesh 1', 14.0)]
     """
-    turns = {"pinion": 1.0, "gear": 1 / train.ratio}
-    numbers = range(1, mesh_orders + 1)
-    out = [order for side in SIDES for order in of_shaft(side, turns[side])]
-    out += of_mesh("mesh", float(train.pinion.teeth), numbers)
-    out += of_sidebands("mesh", float(train.pinion.teeth), turns, numbers)
-    for side in SIDES:
-        for bearing in train.member(side).scene.bearings:
+    turns, numbers = train.turns, range(1, mesh_orders + 1)
+    out = [order for side in train.shafts for order in of_shaft(side, turns[side])]
+    for pair in train.pairs:
+        out += of_mesh(pair.name, train.per_turn(pair), numbers)
+    for pair in train.pairs:
+        wheels = {side: turns[side] for side in pair.shafts}
+        out += of_sidebands(pair.name, train.per_turn(pair), wheels, numbers)
+    for side, own in train.shafts.items():
+        for bearing in own.scene.bearings:
             if bearing.catalogue is not None:
                 at_work = (angles or {}).get(f"{side}.{bearing.name}", ())
                 name = f"{side} bearing {bearing.name}"

@@ -10,7 +10,7 @@ from solidgear.bearings.duty import DutyLife, DutyPoint, duty_life
 from solidgear.bearings.solved import AS_TOLD
 from solidgear.errors import SolidgearError
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.bearing_life import BearingLife, left_open, life_of
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
@@ -77,7 +77,7 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
         raise SolidgearError(
             f"{train.name} has no operating point; write [operation] with a torque in its file"
         )
-    scenes = {side: train.member(side).scene for side in SIDES}
+    scenes = {side: own.scene for side, own in train.shafts.items()}
     told, choices = left_open(scenes.values())
     shop = Workshop(train)
     settled = [_settled(Operating(shop, choice=choice), train) for choice in (AS_TOLD, *choices)]
@@ -90,7 +90,7 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
             lives = []
             for k, point in enumerate(train.operation):
                 places = [(s[k].made[end], s[k].equilibrium.relative[end]) for s in settled]
-                speed = point.speed_of(side, train.ratio)
+                speed = point.speed_of(side, train.turns)
                 lives.append(life_of(bearing, scene.lubrication, told, speed, places))
             found.append(TrainBearingLife(end, train.operation, tuple(lives)))
     if not found:

@@ -27,7 +27,7 @@ from solidgear.models.harmonic.patch import Patch, PatchMotion
 from solidgear.reduction.superelement import Superelement
 from solidgear.reduction.waves import local_compliance, own_waves, with_waves
 from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.solve.modes import modes
 from solidgear.system.parts import Part, Placed
 
@@ -106,17 +106,19 @@ def local_give(workshop: Workshop, system: System) -> dict[str, float]:
     that has any.
     """
     give = {}
-    for side in SIDES:
+    pair = workshop.train.only()
+    ends = workshop.teeth(pair, system.parts)
+    for side, (_, vector) in zip(pair.shafts, ends):
         part = reduced(system.parts[side])
         if part is not None and TEETH in part.ports:
-            normal = workshop.teeth(side, part)[1].normal
+            normal = vector.normal
             give[side] = local_compliance(part, TEETH, normal)
     return give
 
 
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
     """Share of the harmonics at the mesh point, in words; empty without any."""
-    asked = workshop.train.mesh.local_harmonics
+    asked = workshop.train.meshes[0].local_harmonics  # of several meshes there are none
     if not asked:
         return ()
     give = local_give(workshop, system)

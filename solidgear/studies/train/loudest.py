@@ -8,7 +8,7 @@ from math import inf, pi
 from typing import Any
 
 from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.train.modes import TrainMode
 from solidgear.studies.train.respond import Peak, TrainResponse
 
@@ -26,25 +26,29 @@ class Loudest:
         none is; None where there is no peak.
     beyond : Peak or None
         A larger one that they do not reach.
-    teeth : int
-        Of the pinion; 0 where a force on a port drives the train, which no speed belongs to.
+    teeth : PerTurn
+        Of the mesh in one turn of the engine's shaft; 0 where a force on a port drives the train,
+        which no speed belongs to.
     bar : float or None
         Relative, of the frequency of its mode; None where a model has no bar.
     rpm : float or None
-        Highest speed of the pinion in the files.
+        Highest speed of the engine's shaft in the files.
     said_by : str
         Where that speed stands.
     asked_hz : float
         Highest frequency of the range.
+    what : str
+        In words, which of several meshes has it.
     """
 
     peak: Peak | None
     beyond: Peak | None
-    teeth: int
+    teeth: PerTurn
     bar: float | None
     rpm: float | None
     said_by: str
     asked_hz: float
+    what: str = "mesh force"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold."""
@@ -55,14 +59,14 @@ class Loudest:
         limit = None if self.rpm is None else self.rpm * self.teeth / 60
         upto = f" up to {self.asked_hz:g} Hz"
         if limit:
-            upto = f" up to {self.rpm:.0f} rpm of the pinion ({self.said_by})"
-        lines = [f"There is no peak of the dynamic mesh force{upto}."]
+            upto = f" up to {self.rpm:.0f} rpm of the {self.teeth.of} ({self.said_by})"
+        lines = [f"There is no peak of the dynamic {self.what}{upto}."]
         if self.peak is not None:
             sure = "its model has no bar"
             if self.bar is not None:
                 sure = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
             lines = [
-                f"Largest dynamic mesh force{upto}: {self._told(self.peak)} ({sure} in frequency; "
+                f"Largest dynamic {self.what}{upto}: {self._told(self.peak)} ({sure} in frequency; "
                 "the height hangs on the losses and has no bar)."
             ]
         if not limit:
@@ -82,7 +86,7 @@ class Loudest:
     def _told(self, peak: Peak) -> str:
         if self.teeth:
             rpm = 60 * peak.frequency_hz / self.teeth
-            speed = f", pinion at {rpm:.0f} rpm"
+            speed = f", {self.teeth.of} at {rpm:.0f} rpm"
         else:
             speed = ""
         return f"{_figures(peak.force)} N at {_figures(peak.frequency_hz)} Hz{speed}, {peak.mode}"
@@ -99,6 +103,7 @@ def loudest(
     train: Train,
     scenes: Mapping[str, Scene],
     meshes: bool = True,
+    mesh: str | None = None,
 ) -> Loudest:
     """The largest peak of a response.
 
@@ -107,12 +112,16 @@ def loudest(
     modes : sequence of TrainMode
         Of the same models.
     scenes : mapping of str to Scene
-        Of both shafts.
+        Of all shafts.
     meshes : bool, optional
         False where a force on a port drives the train instead of the teeth.
+    mesh : str, optional
+        Whose error drives it; the first by default.
     """
     rpm, said_by = max(_speeds(train, scenes), default=(None, "")) if meshes else (None, "")
-    limit = inf if rpm is None else rpm * train.pinion.teeth / 60
+    pair = train.named_mesh(mesh)
+    teeth = train.per_turn(pair)
+    limit = inf if rpm is None else rpm * teeth / 60
     by_force = sorted(response.peaks, key=lambda one: -one.force)
     peak = next((one for one in by_force if one.frequency_hz <= limit), None)
     beyond = next(iter(by_force), None)
@@ -120,21 +129,22 @@ def loudest(
     return Loudest(
         peak,
         None if beyond is peak else beyond,
-        train.pinion.teeth if meshes else 0,
+        teeth if meshes else PerTurn(0.0),
         None if mode is None or mode.mesh is None else mode.mesh + mode.bound,
         rpm,
         said_by,
         float(response.frequency_hz[-1]),
+        f"force of the {pair.name}" if pair.label else "mesh force",
     )
 
 
 def _speeds(train: Train, scenes: Mapping[str, Scene]) -> Iterator[tuple[float, str]]:
-    """Speeds that the files give, rpm of the pinion, and where."""
+    """Speeds that the files give, rpm of the engine's shaft, and where."""
     for point in train.operation:
-        if (speed := point.speed_of("pinion", train.ratio)) is not None:
+        if (speed := point.speed_of(train.reference, train.turns)) is not None:
             yield abs(speed) * RPM, f"operation {point.name!r}" if point.name else "the operation"
-    for side in SIDES:
-        turns, oil = train.ratio if side == "gear" else 1.0, scenes[side].lubrication
+    for side, own in train.turns.items():
+        turns, oil = 1 / own, scenes[side].lubrication
         if oil is not None and oil.speed:
             yield turns * abs(oil.speed) * RPM, f"lubrication of the {side}"
         for bearing in scenes[side].bearings:

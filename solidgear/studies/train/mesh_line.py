@@ -13,8 +13,7 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.scene.mesh_cycle import LineCycle
-from solidgear.scene.train import SIDES
-from solidgear.studies.train.contact import LEVER_REFUSED, in_scene
+from solidgear.studies.train.contact import LEVER_REFUSED, axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.system.links import RowSpring
@@ -101,14 +100,15 @@ def turning_line(workshop: Workshop, table: LineCycle) -> TurningLine:
 
 def _row(workshop: Workshop, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
     """(12,) row of the teeth on both shafts while they touch at a point."""
-    train, met = workshop.train, workshop.contact
+    pair, met = workshop.train.only(), workshop.contact
     normal = normal / np.linalg.norm(normal)
-    angle = train.mesh.shaft_angle
+    angle = pair.mesh.shaft_angle
     here = (
         MeshVector(normal, point),
         MeshVector(to_gear_frame(normal, angle), to_gear_frame(point - met.origin, angle)),
     )
-    own = [in_scene(train.member(side).apex, vector) for side, vector in zip(SIDES, here)]
+    turns = [axes_of(pair, side) for side in pair.members]
+    own = [MeshVector(turn @ one.normal, turn @ one.point) for turn, one in zip(turns, here)]
     ratio = met.gear.lever / met.pinion.lever
     levers = own[1].lever / own[0].lever if own[0].lever else np.inf
     if not abs(levers / ratio - 1) < LEVER_REFUSED or own[0].lever * met.pinion.lever < 0:

@@ -16,7 +16,6 @@ from solidgear.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.machine.threads import pinned
 from solidgear.scene.coned import coned
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.shaft import JUDGE
 from solidgear.system.system import System
@@ -39,7 +38,7 @@ def mesh_bars(
     system : System
         Of its shafts.
     rungs : mapping of str to str
-        Model of each side.
+        Model of each shaft, in the sequence of the file.
     n : int
         Elastic modes.
 
@@ -58,10 +57,10 @@ def mesh_bars(
     >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-2)
     True
     """
-    sides = [side for side in SIDES if rungs[side] == JUDGE]
+    sides = [side for side, rung in rungs.items() if rung == JUDGE]
     if not sides:
         return None
-    known = workshop.bars.get(tuple(rungs[side] for side in SIDES))
+    known = workshop.bars.get(tuple(rungs.values()))
     if known is not None and len(known) >= n:
         return known[:n]
     found = system.modes(n + ABOVE)
@@ -80,5 +79,5 @@ def mesh_bars(
     energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(two, one)])
     least = np.maximum(lower_ends(value, energy, value[-1]), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
-    workshop.bars[tuple(rungs[side] for side in SIDES)] = bars
+    workshop.bars[tuple(rungs.values())] = bars
     return bars

@@ -25,14 +25,15 @@ larger y of the pinion's scene.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sin
 
 import numpy as np
 
 from solidgear.frames import cross_matrix
 from solidgear.reduction.superelement import PortMotion
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.gears import Member, Pair
+from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
 from solidgear.system.system import System
 
@@ -71,13 +72,17 @@ def measured_names(train: Train) -> tuple[str, ...]:
     >>> measured_names(sg.load_train("geometry/gearbox_train.toml"))
     ('in plane', 'across', 'f_sh')
     """
-    if abs(sin(train.mesh.shaft_angle)) >= PARALLEL:
+    return tuple(f"{name}{pair.label}" for pair in train.pairs for name in _names(pair))
+
+
+def _names(pair: Pair) -> tuple[str, ...]:
+    if abs(sin(pair.mesh.shaft_angle)) >= PARALLEL:
         return BEVEL
-    return PARALLELS if any(_widths(train)) else PARALLELS[:-1]
+    return PARALLELS if any(_widths(pair)) else PARALLELS[:-1]
 
 
 def misalignment(workshop: Workshop, system: System) -> list[Measure]:
-    """Misalignment of the gears of a train.
+    """Misalignment of the gears of a train, mesh by mesh.
 
     Parameters
     ----------
@@ -97,16 +102,21 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
     >>> [m.name for m in misalignment(shop, shop.system("euler", "euler"))]
     ['E', 'P', 'G', 'shaft angle']
     """
-    ports = [system.port(f"{s}.{workshop.scenes[s].port.name}") for s in SIDES]
-    along = [_from_apex(workshop, side, port) for side, port in zip(SIDES, ports)]
-    if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
-        return _parallel(workshop, ports)
-    return _bevel(ports, along)
+    out = []
+    for pair in workshop.train.pairs:
+        ports = [system.port(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
+        along = [_from_apex(own, port) for own, port in zip(pair.members.values(), ports)]
+        if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
+            found = _parallel(workshop, pair, ports)
+        else:
+            found = _bevel(ports, along)
+        out += [replace(one, name=f"{one.name}{pair.label}") for one in found]
+    return out
 
 
-def _from_apex(workshop: Workshop, side: str, port: PortMotion) -> np.ndarray:
+def _from_apex(member: Member, port: PortMotion) -> np.ndarray:
     """Direction of a gear's axis away from its pitch apex, in the axes of the system."""
-    sign = 1.0 if workshop.train.member(side).apex == "start" else -1.0
+    sign = 1.0 if member.apex == "start" else -1.0
     return sign * port.axes[:, 1]
 
 
@@ -138,9 +148,9 @@ def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
     ]
 
 
-def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
-    axis = np.array([0.0, 1.0, 0.0])
-    normal = workshop.contact.pinion.normal * [1.0, 0.0, 1.0]
+def _parallel(workshop: Workshop, pair: Pair, ports: list[PortMotion]) -> list[Measure]:
+    axis = ports[0].axes[:, 1]
+    normal = ports[0].axes @ (workshop.contacts[pair.name].pinion.normal * [1.0, 0.0, 1.0])
     normal = normal / np.linalg.norm(normal)
     here, there = (_seen(port, ports[0].point) for port in ports)
     slope = -cross_matrix(axis) @ (here[3:] - there[3:])
@@ -149,7 +159,7 @@ def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
         Measure(in_plane, "rad moved", "slope of the axes in the plane of action", normal @ slope),
         Measure(across, "rad moved", "slope across it", np.cross(axis, normal) @ slope),
     ]
-    known = [width for width in _widths(workshop.train) if width is not None]
+    known = [width for width in _widths(pair) if width is not None]
     if known:
         meaning = (
             f"equivalent misalignment over {1e3 * min(known):g} mm of face, in the plane of action"
@@ -158,5 +168,5 @@ def _parallel(workshop: Workshop, ports: list[PortMotion]) -> list[Measure]:
     return out
 
 
-def _widths(train: Train) -> list[float | None]:
-    return [train.member(side).face_width for side in SIDES]
+def _widths(pair: Pair) -> list[float | None]:
+    return [own.face_width for own in pair.members.values()]

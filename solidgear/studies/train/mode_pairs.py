@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.scene.train import SIDES
 from solidgear.studies.change import BarredMode, ModePair
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
@@ -51,7 +50,7 @@ def shared_ports(one: Workshop, other: Workshop) -> tuple[list[str], list[str]]:
     """Ports of both trains that stand for each other, in the same order: the lumped points, and
     those that are called alike.
     """
-    mains = [[f"{s}.{shop.scenes[s].port.name}" for s in SIDES] for shop in (one, other)]
+    mains = [[f"{s}.{shop.scenes[s].port.name}" for s in shop.scenes] for shop in (one, other)]
     its = ports_of(other)
     alike = [end for end in ports_of(one) if end in its and end not in (*mains[0], *mains[1])]
     return [*mains[0], *alike], [*mains[1], *alike]
@@ -68,7 +67,7 @@ def told_modes(
         Model of each side.
     """
     names, moved = mode_names(shop, system, found), driven(system, found)
-    shares = strain_shares(found.energy)
+    shares = strain_shares(found.energy, [*shop.scenes])
     elastic = range(found.rigid, len(found.frequency_hz))
     bars = mesh_bars(shop, system, rungs, len(elastic))
     return tuple(

@@ -1,8 +1,8 @@
-"""Each shaft of a train by any model, and the system that any two of them make."""
+"""Each shaft of a train by any model, and the system that they make."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from time import perf_counter
@@ -10,21 +10,20 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solidgear.body import Body, as_supports
+from solidgear.body import Body
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
-from solidgear.frames import shift
 from solidgear.ladder import build
-from solidgear.reduction.condensed import condensed_shaft
+from solidgear.ladder.registry import LADDER
 from solidgear.reduction.craig_bampton import craig_bampton
-from solidgear.reduction.effective_mass import synthesise
 from solidgear.reduction.rubin import rubin
-from solidgear.reduction.superelement import Superelement
 from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
-from solidgear.studies.train.contact import Contact, contact
+from solidgear.scene.gears import Pair
+from solidgear.scene.train import Train
+from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import TEETH, local_teeth
-from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -70,12 +69,45 @@ class Workshop:
             )
         self._made: dict[tuple[str, str], ShaftModel] = {}
         self._local_seconds = 0.0
-        #: what meshes leave in the first frequencies, by the models of both shafts
+        #: what meshes leave in the first frequencies, by the models of all shafts
         self.bars: dict[tuple[str, ...], np.ndarray] = {}
-        self.scenes: dict[str, Scene] = {side: self.train.shaft(side) for side in SIDES}
-        self.contact: Contact = contact(self.train)
-        point = self.train.point
+        self._take_in(self.train)
+
+    def _take_in(self, train: Train) -> None:
+        self.train = train
+        self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
+        self.contacts: dict[str, Contact] = contacts(train)
+        self.places = places(train, self.contacts, self.scenes)
+        point = train.point
         self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
+
+    @property
+    def contact(self) -> Contact:
+        """Contact of the only mesh.
+
+        Raises
+        ------
+        SolidgearError
+            For a train of several.
+        """
+        return self.contacts[self.train.only().name]
+
+    def mix(self, models: Sequence[str]) -> dict[str, str]:
+        """Models by shaft, from one each in the sequence of the file, or one for all.
+
+        Raises
+        ------
+        SolidgearError
+            For another number of them.
+        """
+        sides = [*self.train.shafts]
+        if len(models) not in (1, len(sides)):
+            raise SolidgearError(
+                f"{len(models)} models ({listed(models)}) for the {len(sides)} shafts "
+                f"{listed(sides)}; give one for each, or one for all"
+            )
+        each = models if len(models) == len(sides) else [*models] * len(sides)
+        return dict(zip(sides, each))
 
     def shaft(self, side: str, rung: str) -> ShaftModel:
         """Model of a shaft, made when it is first asked for."""
@@ -170,7 +202,8 @@ class Workshop:
         >>> bool(soft.system("euler", "euler").modes(3).frequency_hz[3] < usual)
         True
         """
-        known = [f"{s}.{b.name}" for s in SIDES for b in self.train.member(s).scene.bearings]
+        shafts = self.train.shafts.items()
+        known = [f"{side}.{b.name}" for side, own in shafts for b in own.scene.bearings]
         for name in stiffness:
             if name not in known:
                 raise SolidgearError(
@@ -197,9 +230,7 @@ class Workshop:
         and their reductions are kept.
         """
         out = self._on_other_bearings()
-        out.train, out.contact = train, contact(train)
-        out.scenes = {side: train.shaft(side) for side in SIDES}
-        out._flanks = {train.point is not None and train.point.coast: out}
+        out._take_in(train)
         return out
 
     def _on_other_bearings(self) -> Workshop:
@@ -217,7 +248,16 @@ class Workshop:
             for end in self.train.unloaded
             if self.train.point is not None
         ]
-        return (*self.contact.cautions, *lost)
+        return (*self.odd, *lost)
+
+    @property
+    def odd(self) -> tuple[str, ...]:
+        """Data of the meshes that do not fit together but can be solved, in words."""
+        return tuple(
+            f"{name}: {text}" if len(self.contacts) > 1 else text
+            for name, met in self.contacts.items()
+            for text in met.cautions
+        )
 
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
@@ -229,7 +269,7 @@ class Workshop:
         """
         if coast not in self._flanks:
             other = copy(self)
-            other.contact, other.bars = contact(self.train, coast), {}
+            other.contacts, other.bars = contacts(self.train, coast), {}
             self._flanks[coast] = other
         return self._flanks[coast]
 
@@ -240,73 +280,49 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
-            part = self._lumped(side, kind, under)
+            if len(self.train.shafts[side].gears) > 1:
+                raise SolidgearError(
+                    f"a {kind} shaft is one point, and the {side} carries several gears; use one "
+                    f"of {', '.join(LADDER.bodies)}, {RIGID}"
+                )
+            part = lumped(under, kind, self.scenes[side])
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
 
-    def _lumped(self, side: str, kind: str, under: ShaftModel) -> Part:
-        scene, shaft = self.scenes[side], under.part
-        supports, port = as_supports(scene), scene.port.name
-        assert isinstance(shaft, Superelement)
-        whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
-        if kind == "lumped":
-            return whole
-        rigid = _mass_about(under.body, scene.port.y)
-        if kind == "lumped-old":
-            return whole.with_mass(np.diag(np.diag(rigid)))
-        mass = np.diag(np.diag(rigid))
-        if kind == "lumped-bending":
-            for plane in ([0, 5], [2, 3]):
-                mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
-            return whole.with_mass(mass)
-        _, models = synthesise(under.body, supports, port)
-        matched = models["mode-matched"]
-        if matched.mass is None or not matched.feasible:
-            raise SolidgearError(
-                f"the {side} has no mode-matched masses: {matched.verdict}; use lumped"
-            )
-        for plane in ([0, 5], [2, 3]):
-            mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
-        return whole.with_mass(mass)
-
-    def system(self, pinion: str, gear: str, bearings: bool = True) -> System:
-        """The train with its shafts by two models.
+    def system(self, *models: str, bearings: bool = True) -> System:
+        """The train with its shafts by models.
 
         Parameters
         ----------
-        pinion, gear : str
-            Models.
+        *models : str
+            One for each shaft, or one for all.
         bearings : bool
             False leaves them out: what rests on them is then free.
 
         Returns
         -------
         System
-            Parts ``engine``, ``pinion``, ``gear``, ``load``; links ``engine spring``, ``load
-            spring``, ``mesh``, and the bearings.
+            Parts ``engine``, the shafts, ``load`` and other rotors; links ``engine spring``, ``load
+            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings.
         """
-        train, met = self.train, self.contact
-        ports = {side: f"{side}.{self.scenes[side].port.name}" for side in SIDES}
-        parts: dict[str, Part] = {
-            "engine": Inertia(train.engine.inertia),
-            "pinion": self.part("pinion", pinion),
-            "gear": self.placed(self.part("gear", gear)),
-            "load": Inertia(train.load.inertia),
-        }
+        train = self.train
+        rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
+        parts: dict[str, Part] = {"engine": rotors["engine"]}
+        for side, rung in self.mix(models).items():
+            parts[side] = self.placed(side, self.part(side, rung))
+        parts |= rotors
         links: dict[str, Link] = {}
-        for side in SIDES:
+        for side in train.shafts:
             links |= self._ground(side, bearings)
-            name, rotor = train.rotor(side)
-            at = f"{side}.{train.spring_port(side)}"
-            links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
-            head = train.member(side).head
-            if head is not None:
+            for name, rotor in train.rotors_of(side).items():
+                at = f"{side}.{train.spring_port(name)}"
+                links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
+            for name, (port, head) in train.heads(side).items():
                 diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
-                links[f"{side} head"] = PortInertia(ports[side], np.diag(diagonal))
-        ends = [
-            self.teeth(side, part) for side, part in zip(SIDES, (parts["pinion"], parts["gear"]))
-        ]
-        links["mesh"] = mesh_spring(*ends[0], *ends[1], met.stiffness)
+                links[name.replace(".", " ")] = PortInertia(port, np.diag(diagonal))
+        for pair in train.pairs:
+            ends = self.teeth(pair, parts)
+            links[pair.name] = mesh_spring(*ends[0], *ends[1], self.contacts[pair.name].stiffness)
         return System(parts, links)
 
     def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
@@ -319,11 +335,12 @@ class Workshop:
 
     def part(self, side: str, rung: str) -> Part:
         """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
-        harmonics = self.train.mesh.local_harmonics
-        if not harmonics or rung != JUDGE:
+        meshes = self.train.meshes
+        if rung != JUDGE or not any(mesh.local_harmonics for mesh in meshes):
             return self.shaft(side, rung).part
-        own, point = self.shaft(side, rung), self._vector(side).point
-        key = tuple(harmonics), self.train.member(side).teeth, tuple(point.tolist())
+        pair = self.train.only()
+        own, point = self.shaft(side, rung), self._vector(pair, side).point
+        key = tuple(pair.mesh.local_harmonics), self.train.member(side).teeth, tuple(point.tolist())
         if key not in own.local:
             start = perf_counter()
             made = local_teeth(self.train, side, self.scenes[side], own.part, own.body, point)
@@ -332,43 +349,37 @@ class Workshop:
             self._local_seconds += perf_counter() - start
         return own.local[key]
 
-    def teeth(self, side: str, part: Part) -> tuple[str, MeshVector]:
-        """Port of a part that the teeth act on, and along which line from there."""
-        vector = self._vector(side)
-        if TEETH in part.ports:
-            return f"{side}.{TEETH}", MeshVector(vector.normal, np.zeros(3))
-        return f"{side}.{self.scenes[side].port.name}", vector
+    def teeth(self, pair: Pair, parts: Mapping[str, Part]) -> list[tuple[str, MeshVector]]:
+        """Ports of both parts that the teeth of a mesh act on, and along which line from there."""
+        out = []
+        for side, port in zip(pair.shafts, pair.ports):
+            vector = self._vector(pair, side)
+            if TEETH in parts[side].ports:
+                out.append((f"{side}.{TEETH}", MeshVector(vector.normal, np.zeros(3))))
+            else:
+                out.append((f"{side}.{port}", vector))
+        return out
 
-    def _vector(self, side: str) -> MeshVector:
-        return {"pinion": self.contact.pinion, "gear": self.contact.gear}[side]
+    def _vector(self, pair: Pair, side: str) -> MeshVector:
+        met = self.contacts[pair.name]
+        return met.pinion if side == pair.shafts[0] else met.gear
 
-    def placed(self, part: Part) -> Placed:
-        """The gear where the teeth meet, in the axes of the pinion's scene."""
-        flip = {"start": np.eye(3), "end": np.diag([-1.0, -1.0, 1.0])}
-        train = self.train
-        c, s = np.cos(train.mesh.shaft_angle), np.sin(train.mesh.shaft_angle)
-        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        turn = flip[train.pinion.apex] @ turn @ flip[train.gear.apex]
-        pinion = np.array([0.0, self.scenes["pinion"].port.y, 0.0]) + self.contact.pinion.point
-        gear = np.array([0.0, self.scenes["gear"].port.y, 0.0]) + self.contact.gear.point
-        return Placed(part, turn, pinion - turn @ gear)
+    def placed(self, side: str, part: Part) -> Part:
+        """A shaft where its teeth meet others, in the axes of the first shaft's scene."""
+        first = side == next(iter(self.places))
+        return part if first else Placed(part, *self.places[side])
 
     def losses(self) -> dict[str, float]:
         """Loss factors of all parts and links."""
         train, loss = self.train, self.train.losses
-        out = {side: loss.shafts for side in SIDES}
-        for side in SIDES:
+        out = {side: loss.shafts for side in train.shafts}
+        for side in train.shafts:
             out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
-            out[f"{train.rotor(side)[0]} spring"] = loss.springs
-        return out | {"mesh": loss.mesh}
+            out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
+        return out | {pair.name: loss.mesh for pair in train.pairs}
 
-    def seconds(self, pinion: str, gear: str) -> float:
-        """To build and reduce both shafts."""
-        local = self._local_seconds if JUDGE in (pinion, gear) else 0.0
-        return self.shaft("pinion", pinion).seconds + self.shaft("gear", gear).seconds + local
-
-
-def _mass_about(body: Body, y: float) -> np.ndarray:
-    """(6, 6) rigid mass about a point of the axis."""
-    back = shift([0.0, -y, 0.0])
-    return back.T @ body.mass_matrix() @ back
+    def seconds(self, *models: str) -> float:
+        """To build and reduce all shafts."""
+        mix = self.mix(models)
+        local = self._local_seconds if JUDGE in mix.values() else 0.0
+        return sum(self.shaft(*one).seconds for one in mix.items()) + local

@@ -8,13 +8,12 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.local import local_lines, undriven, waves_of
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
-from solidgear.studies.train.shaft import JUDGE
+from solidgear.studies.train.shaft import JUDGE, told_mix
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -28,7 +27,7 @@ class TrainMode:
     Attributes
     ----------
     rpm : float
-        Speed of the pinion at which its teeth mesh at this frequency.
+        Speed of the engine's shaft at which the teeth of the first mesh pass at this frequency.
     strained : str
         Part or link with most of the strain energy, and its share.
     bound : float
@@ -51,10 +50,12 @@ class TrainMode:
 
 @dataclass(frozen=True, eq=False)
 class TrainModes:
-    """Modes of a train by two models.
+    """Modes of a train by models of its shafts.
 
     Attributes
     ----------
+    models : dict of str to str
+        By shaft.
     coordinates : int
         Of the coupled system.
     kept : dict of str to int
@@ -74,11 +75,12 @@ class TrainModes:
         diameters; they take no part in the train.
     local : tuple of str
         What harmonics at a local mesh point add, in words.
+    speeds : str
+        Shaft that the speeds of modes are told of.
     """
 
     train: str
-    pinion: str
-    gear: str
+    models: dict[str, str]
     reduction: str
     coordinates: int
     kept: dict[str, int]
@@ -92,16 +94,18 @@ class TrainModes:
     cautions: tuple[str, ...]
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
     local: tuple[str, ...] = ()
+    speeds: str = "pinion"
 
     def as_dict(self) -> dict:
         """Plain data that JSON can hold."""
-        return asdict(self)
+        out = asdict(self)
+        return {"train": out.pop("train")} | out.pop("models") | out
 
     def heading(self) -> list[str]:
         """Name of what was solved."""
         kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
         return [
-            f"{self.train}: pinion {self.pinion}, gear {self.gear}",
+            f"{self.train}: {told_mix(self.models)}",
             f"Reduction {self.reduction}: {kept} unknowns; {self.coordinates} coordinates in all.",
         ]
 
@@ -187,13 +191,13 @@ def wrench_lines(met: Contact) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def train_modes(
-    workshop: Workshop, pinion: str, gear: str, max_frequency: float | None = None
-) -> TrainModes:
-    """Modes of a train with its shafts by two models.
+def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = None) -> TrainModes:
+    """Modes of a train with its shafts by models.
 
     Parameters
     ----------
+    *models : str
+        One for each shaft, or one for all.
     max_frequency : float, optional
         Hz; that of the file by default.
 
@@ -206,26 +210,26 @@ def train_modes(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = train_modes(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> found = train_modes(shop, "timoshenko", "timoshenko", max_frequency=1000.0)
     >>> [mode.name for mode in found.modes][:2], found.modes[0].frequency_hz
     (['train rotation', 'load torsion 1'], 0.0)
     """
-    limit = max_frequency or workshop.train.ask.max_frequency
-    system = workshop.system(pinion, gear)
+    train, rungs = workshop.train, workshop.mix(models)
+    limit = max_frequency or train.ask.max_frequency
+    system = workshop.system(*models)
     omega, _ = system.elastic
     found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
     refuse_unresolved(workshop, system, limit)
     names = mode_names(workshop, system, found)
     most = found.dominant()
     moved = driven(system, found)
-    rungs = {"pinion": pinion, "gear": gear}
     elastic = len(found.frequency_hz) - found.rigid
     bars = mesh_bars(workshop, system, rungs, elastic)
     sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
-        rpm = 60 * float(hz) / workshop.train.pinion.teeth
+        rpm = 60 * float(hz) / train.per_turn(train.pairs[0])
         bound = float(found.error_bound[k])
         modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
     still = {}
@@ -234,22 +238,22 @@ def train_modes(
             have = tuple(waves_of(system.parts[side]))
             still[side] = undriven(workshop.shaft(side, rung).body, limit, have)
     return TrainModes(
-        workshop.train.called,
-        pinion,
-        gear,
+        train.called,
+        rungs,
         workshop.reduction,
         system.size,
-        {side: system.parts[side].mass.shape[0] for side in SIDES},
-        {side: workshop.shaft(side, rungs[side]).unknowns for side in SIDES},
-        workshop.seconds(pinion, gear),
+        {side: system.parts[side].mass.shape[0] for side in rungs},
+        {side: workshop.shaft(side, rung).unknowns for side, rung in rungs.items()},
+        workshop.seconds(*models),
         tuple(modes),
         found.rigid,
         free_motions(workshop, system),
-        wrench_lines(workshop.contact),
-        workshop.train.unpublished(),
+        tuple(line for met in workshop.contacts.values() for line in wrench_lines(met)),
+        train.unpublished(),
         workshop.cautions,
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
+        train.reference,
     )
 
 
@@ -267,7 +271,7 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             f"out lies at {cut:.0f} Hz; keep more modes (--kept), or ask for less than "
             f"{0.9 * cut:.0f} Hz"
         )
-    for side in SIDES:
+    for side in workshop.scenes:
         at = workshop.mesh_limit(side, system.parts[side])
         if limit > at:
             raise SolidgearError(
@@ -287,7 +291,7 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 1:
         still = [part for part in system.parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
-    loose = [words for side in SIDES for words in _loose(workshop, system, side)]
+    loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
     where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
     return (f"{count} motions are free, where a train has one: {where}.",)
 

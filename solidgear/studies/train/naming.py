@@ -1,6 +1,6 @@
 """Names for the modes of a train: what moves, and how.
 
-Kinetic energy is shared among the four parts; what a shaft has goes to bending, axial motion and
+Kinetic energy is shared among the parts; what a shaft has goes to bending, axial motion and
 torsion as the energies its rigid mass would have in the motions of its lumped point.  A mode is
 called after the largest share, and counted: ``gear bending 2``.  Where no share has 40 % of the
 whole, after the two largest: ``pinion axial + gear bending 1``.
@@ -16,7 +16,6 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.frames import shift
-from solidgear.scene.train import SIDES
 from solidgear.solve.circumference import of_body
 from solidgear.solve.families import FAMILIES
 from solidgear.studies.train.local import waves_of
@@ -41,7 +40,7 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         place = system.place(part)
         each = shapes[place] * momentum[place]
         own = np.maximum(each.sum(axis=0), 0.0)
-        if part not in SIDES:
+        if part not in workshop.scenes:
             out[f"{part} torsion"] = own
             continue
         for n, places in waves_of(system.parts[part]).items():

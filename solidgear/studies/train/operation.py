@@ -13,7 +13,7 @@ tangential and the spiral part of a tooth force round and leaves the part of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -23,16 +23,16 @@ import numpy as np
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_TOLD, Choice, made_of
 from solidgear.errors import SceneError, SolidgearError, listed
-from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import SIDES, Train
+from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
+from solidgear.studies.train.layout import force_on, mesh_forces
 from solidgear.studies.train.models import Workshop
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
 from solidgear.system.port_forces import port_forces
 from solidgear.system.system import System
 
-#: model of both shafts on which bearings settle: loads hang little on how shoulders are modelled
+#: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
@@ -44,10 +44,10 @@ class OperatingState:
 
     Attributes
     ----------
-    pinion, gear : str
-        Models of both shafts.
-    mesh_force : float
-        Along the line of action, N.
+    models : dict of str to str
+        By shaft.
+    mesh_forces : dict of str to float
+        Along the line of action, N, by mesh; zero of one that the torque does not pass.
     equilibrium : SystemEquilibrium
         Of all parts; the spring port of the engine does not turn.
     system : System
@@ -61,14 +61,18 @@ class OperatingState:
     """
 
     point: OperatingPoint
-    pinion: str
-    gear: str
-    mesh_force: float
+    models: dict[str, str]
+    mesh_forces: dict[str, float]
     equilibrium: SystemEquilibrium
     system: System = field(repr=False)
     made: dict[str, Catalogued] = field(repr=False)
     outside: dict[str, np.ndarray] = field(repr=False)
     notes: tuple[str, ...] = ()
+
+    @property
+    def mesh_force(self) -> float:
+        """That of the first mesh, N."""
+        return next(iter(self.mesh_forces.values()))
 
     @property
     def coordinates(self) -> np.ndarray:
@@ -98,8 +102,8 @@ class Operating:
     ----------
     workshop : Workshop
         Its bearings of catalogue data may have no stiffness yet.
-    pinion, gear : str
-        Models of both shafts: bodies or ``rigid``.
+    *models : str
+        One for each shaft, or one for all: bodies or ``rigid``.
     choice : Choice
         Place in the ranges of catalogue data.
 
@@ -119,29 +123,28 @@ class Operating:
     100.0
     """
 
-    def __init__(
-        self, workshop: Workshop, pinion: str = SHAFT, gear: str = SHAFT, choice: Choice = AS_TOLD
-    ):
-        self.workshop, self.pinion, self.gear, self.choice = workshop, pinion, gear, choice
-        train = workshop.train
-        for side in SIDES:
-            refuse_own_loads(side, train.member(side).scene)
+    def __init__(self, workshop: Workshop, *models: str, choice: Choice = AS_TOLD):
+        self.workshop, self.models, self.choice = workshop, models or (SHAFT,), choice
+        for side in workshop.train.shafts:
+            refuse_own_loads(workshop.train, side)
 
     @cached_property
     def made(self) -> dict[str, Catalogued]:
         """Bearings of catalogue data, by ``side.name``."""
         out: dict[str, Catalogued] = {}
-        for side in SIDES:
+        train = self.workshop.train
+        for side, shaft in train.shafts.items():
             try:
-                own = made_of(self.workshop.train.member(side).scene, self.choice)
+                own = made_of(shaft.scene, self.choice)
             except SceneError as error:
-                raise error.located(None, prefix=(side, "scene")) from None
+                raise error.located(None, prefix=(*train.shaft_path(side), "scene")) from None
             out |= {f"{side}.{name}": one for name, one in own.items()}
         return out
 
     @cached_property
     def _seats(self) -> tuple[Seats, ...]:
-        return tuple(seats_of(side, self.workshop.scenes[side], self.made) for side in SIDES)
+        scenes = self.workshop.scenes.items()
+        return tuple(seats_of(side, scene, self.made) for side, scene in scenes)
 
     @cached_property
     def _flanks(self) -> dict[bool, OnBearings]:
@@ -151,7 +154,7 @@ class Operating:
         """The train with the flank that carries, without its bearings, and what it rests on."""
         shop = self.workshop.on_flank(coast)
         if coast not in self._flanks:
-            system = shop.system(self.pinion, self.gear, bearings=False)
+            system = shop.system(*self.models, bearings=False)
             self._flanks[coast] = OnBearings(system, self._seats)
         return shop, self._flanks[coast]
 
@@ -175,9 +178,10 @@ class Operating:
         SolidgearError
             If nothing holds a shaft under its loads.
         """
+        point = self.workshop.train.told(point)
         shop, held = self._on(point.coast)
-        force = mesh_force(shop, point)
-        loads, notes = self._loads(shop, point, force)
+        forces = mesh_forces(shop.train, shop.contacts, point)
+        loads, notes = self._loads(shop, point, forces)
         total = held.system.load(loads)
         if point.weight is not None:
             total = total + weight(held.system, point.gravity)
@@ -189,21 +193,19 @@ class Operating:
             raise SolidgearError(f"at {point.label}: {error}") from None
         found = _engine_still(found, held.system, shop.train)
         notes += list(_told(found, held.system, point))
-        own = self.pinion, self.gear, force, found, held.system, self.made, loads
+        models = shop.mix(self.models)
+        own = models, forces, found, held.system, self.made, loads
         return OperatingState(point, *own, tuple(notes))
 
     def _loads(
-        self, shop: Workshop, point: OperatingPoint, force: float
+        self, shop: Workshop, point: OperatingPoint, forces: dict[str, float]
     ) -> tuple[dict[str, np.ndarray], list[str]]:
-        """Loads at ports beside the mesh force, which the torques of both rotors bring about."""
-        lever = {"engine": shop.contact.pinion.lever, "load": -shop.contact.gear.lever}
-        loads = {name: np.array([0, 0, 0, 0, -force * h, 0.0]) for name, h in lever.items()}
-        notes = []
+        """Loads at ports beside the mesh forces, which the torques of engine and load bring about."""
+        loads, notes = torques(shop, forces), []
         for outside in point.force:
             loads[outside.at] = loads.get(outside.at, np.zeros(6)) + outside.six
-        for side in SIDES:
-            scene = shop.scenes[side]
-            added, said = scene_load(shop, side, force)
+        for side, scene in shop.scenes.items():
+            added, said = scene_load(shop, side, forces)
             notes += said
             if added is not None:
                 end = f"{side}.{scene.port.name}"
@@ -211,20 +213,29 @@ class Operating:
         return loads, notes
 
 
+def torques(workshop: Workshop, forces: Mapping[str, float]) -> dict[str, np.ndarray]:
+    """(6,) torques of engine and load that hold the mesh forces."""
+    train, out = workshop.train, {}
+    for name, pair in (("engine", train.power[0]), ("load", train.power[-1])):
+        push = force_on(pair, train.rotors[name].shaft, workshop.contacts[pair.name])
+        out[name] = np.array([0, 0, 0, 0, -forces[pair.name] * push[4], 0.0])
+    return out
+
+
 def mesh_force(workshop: Workshop, point: OperatingPoint) -> float:
-    """Force of the teeth along their line of action, N."""
-    vector = workshop.contact.pinion if point.of == "pinion" else workshop.contact.gear
-    return abs(point.torque / vector.lever)
+    """Force of the teeth of the only mesh along their line of action, N."""
+    forces = mesh_forces(workshop.train, workshop.contacts, point)
+    return forces[workshop.train.only().name]
 
 
-def refuse_own_loads(side: str, scene: Scene) -> None:
+def refuse_own_loads(train: Train, side: str) -> None:
     """Refuse bearings whose load is told by themselves where a torque brings it.
 
     Raises
     ------
     SceneError
     """
-    for bearing in scene.bearings:
+    for bearing in train.shafts[side].scene.bearings:
         data = bearing.catalogue
         if data is None:
             continue
@@ -234,10 +245,12 @@ def refuse_own_loads(side: str, scene: Scene) -> None:
                     f"bearing {bearing.name} has a {key} of its own, and in a train with an "
                     "[operation] the torque brings its load: leave it out"
                 )
-                raise SceneError(reason, path=(side, "scene"))
+                raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
 
 
-def scene_load(workshop: Workshop, side: str, force: float) -> tuple[np.ndarray | None, list[str]]:
+def scene_load(
+    workshop: Workshop, side: str, forces: Mapping[str, float]
+) -> tuple[np.ndarray | None, list[str]]:
     """Load (6,) that the [load] of a shaft's scene adds to the mesh force, and what is to be said.
 
     Raises
@@ -248,30 +261,33 @@ def scene_load(workshop: Workshop, side: str, force: float) -> tuple[np.ndarray 
     train, scene = workshop.train, workshop.scenes[side]
     if scene.load is None:
         return None, []
-    own, word = np.array(scene.load.six), train.member(side).scene_load
+    own, word = np.array(scene.load.six), train.shafts[side].scene_load
     if word == "added":
         return own, [f"the [load] of the {side}'s scene is added to the mesh force"]
     if word == "replaced":
         return None, []
-    wanted = [
-        _force_on(workshop.on_flank(p.coast), side, mesh_force(workshop, p))
-        for p in train.operation
-    ]
-    wanted.append(_force_on(workshop, side, force))
+    flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
+    wanted = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
+    wanted.append(_force_on(workshop, side, forces))
     if any(np.linalg.norm(own[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in wanted):
         return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
     raise SceneError(
         f"the [load] of the {side}'s scene is ({_newtons(own[:3])}) N at its lumped point, and the "
         f"mesh force is ({_newtons(wanted[0])}) N: leave [load] out of the scene, or write "
-        f'scene_load = "replaced" under [{side}], or "added" where it acts beside the teeth',
-        path=(side, "scene_load"),
+        f'scene_load = "replaced" under [{".".join(train.shaft_path(side))}], or "added" where it '
+        "acts beside the teeth",
+        path=(*train.shaft_path(side), "scene_load"),
     )
 
 
-def _force_on(workshop: Workshop, side: str, force: float) -> np.ndarray:
-    """(3,) force of the teeth on a shaft, in the axes of its scene, N."""
-    met = workshop.contact
-    return force * met.pinion.normal if side == "pinion" else -force * met.gear.normal
+def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
+    """(3,) force of all teeth on a shaft, in the axes of its scene, N."""
+    each = [
+        forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
+        for pair in workshop.train.pairs
+        if side in pair.shafts
+    ]
+    return sum(each[1:], each[0])
 
 
 def _newtons(force: np.ndarray) -> str:
@@ -279,9 +295,9 @@ def _newtons(force: np.ndarray) -> str:
 
 
 def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
-    """The same with the train turned until the pinion's spring port has no rotation."""
-    turning = _rotation(system)
-    row = system.motion(f"pinion.{train.spring_port('pinion')}")[4]
+    """The same with the train turned until the port of the engine's spring has no rotation."""
+    turning = _rotation(system, [*train.shafts])
+    row = system.motion(f"{train.reference}.{train.spring_port('engine')}")[4]
     moved = float(row @ turning)
     if moved == 0.0:
         return found
@@ -289,10 +305,10 @@ def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> Sys
     return replace(found, coordinates=found.coordinates - share * turning)
 
 
-def _rotation(system: System) -> np.ndarray:
+def _rotation(system: System, shafts: list[str]) -> np.ndarray:
     """(N,) free motion of the train that moves no seat of a bearing but about its axis."""
     free = system.free
-    ends = [f"{side}.{p}" for side in SIDES for p in system.parts[side].ports]
+    ends = [f"{side}.{p}" for side in shafts for p in system.parts[side].ports]
     still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
     _, _, vectors = np.linalg.svd(still)
     return free @ vectors[-1]
@@ -314,17 +330,16 @@ def settled(train: Train, state: OperatingState) -> Train:
     Train
         With that point alone.
     """
-    members = {}
-    for side in SIDES:
-        member = train.member(side)
+    shafts = {}
+    for side, shaft in train.shafts.items():
         bearings = [
             b if b.catalogue is None else b.with_changes(matrix=_symmetric(state, side, b.name))
-            for b in member.scene.bearings
+            for b in shaft.scene.bearings
         ]
-        scene = member.scene.with_changes(bearings=tuple(bearings))
-        members[side] = member.with_changes(scene=scene)
+        scene = shaft.scene.with_changes(bearings=tuple(bearings))
+        shafts[side] = shaft.with_changes(scene=scene)
     point = state.point.with_changes(share=None, hours=None)
-    return train.with_changes(operation=(point,), **members)
+    return train.with_changes(operation=(point,), shafts=shafts)
 
 
 def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:

@@ -1,6 +1,7 @@
-"""Order lines of a train over the speed of its pinion, and the natural frequencies they cross.
+"""Order lines of a train over the speed of its pinion, or of the shaft that the engine turns with,
+and the natural frequencies they cross.
 
-Order n of the mesh runs at ``n z_p`` times the speed of the pinion, the first order of a shaft at
+Order n of a mesh runs at ``n z_p`` times the speed of its pinion, the first order of a shaft at
 its own speed.  Speeds go up to where the first order of the mesh meets the highest frequency.
 Bearings and teeth do not change with speed here, so natural frequencies are level lines.
 """
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.scene.train import PerTurn
 from solidgear.studies.train.kinematics import MESH_ORDERS, of_mesh, of_shaft
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainMode, train_modes
@@ -68,6 +70,8 @@ class OrderMap:
 
     Attributes
     ----------
+    teeth : PerTurn
+        Of the mesh whose error drives the train.
     modes : tuple of TrainMode
         Elastic ones.
     crossings : tuple of Crossing
@@ -76,6 +80,7 @@ class OrderMap:
 
     highest_hz: float
     highest_rpm: float
+    teeth: PerTurn
     lines: tuple[OrderLine, ...]
     modes: tuple[TrainMode, ...]
     crossings: tuple[Crossing, ...]
@@ -83,26 +88,28 @@ class OrderMap:
 
 def order_map(
     workshop: Workshop,
-    pinion: str,
-    gear: str,
+    *models: str,
     highest_hz: float | None = None,
     damping: str = "hysteretic",
     matched_hz: float = 0.0,
     mesh_orders: int | None = None,
     shaft_orders: Sequence[int] = SHAFT_ORDERS,
+    mesh: str | None = None,
 ) -> OrderMap:
-    """Order lines of a train with its shafts by two models.
+    """Order lines of a train with its shafts by models.
 
     Parameters
     ----------
+    *models : str
+        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
-    damping, matched_hz
-        As :class:`solidgear.studies.train.respond.Drive`.
+    damping, matched_hz, mesh
+        As :class:`solidgear.studies.train.respond.Drive`; orders of other meshes have no force.
     mesh_orders : int, optional
         Three by default, or as many as the transmission error has.
     shaft_orders : sequence of int
-        Of both shafts.
+        Of all shafts.
 
     Raises
     ------
@@ -113,29 +120,35 @@ def order_map(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = order_map(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> found = order_map(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
     >>> first = found.crossings[0]
     >>> first.line, first.mode, round(first.rpm)  # 16.28 Hz and 14 teeth
     ('mesh 1', 'load torsion 1', 70)
     """
-    drive = Drive(workshop, pinion, gear, damping, matched_hz)
-    highest = highest_hz or workshop.train.ask.max_frequency
+    drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, mesh=mesh)
+    train, driven = workshop.train, drive.pair
+    highest = highest_hz or train.ask.max_frequency
     given = len(drive.error.orders) or 1
     count = max(*MESH_ORDERS, given) if mesh_orders is None else mesh_orders
     if not 1 <= count <= MOST_ORDERS:
         raise SolidgearError(f"{count} orders of the mesh; ask for 1 to {MOST_ORDERS}")
-    teeth, top = workshop.train.pinion.teeth, 60 * highest / workshop.train.pinion.teeth
+    teeth = train.per_turn(driven)
+    top = 60 * highest / teeth
     hz = drive.grid(highest)
     lines = []
-    for n, order in enumerate(of_mesh("mesh", float(teeth), range(1, count + 1)), start=1):
+    for n, order in enumerate(of_mesh(driven.name, teeth, range(1, count + 1)), start=1):
         own = OrderLine(order.name, order.per_turn)
         if n <= given:
             force = np.abs(drive.mesh(hz, n)[1])
             own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
         lines.append(own)
-    for side, turns in (("pinion", 1.0), ("gear", 1 / workshop.train.ratio)):
+    for pair in train.pairs:
+        if pair.name != driven.name:
+            orders = of_mesh(pair.name, train.per_turn(pair), range(1, count + 1))
+            lines += [OrderLine(o.name, o.per_turn) for o in orders]
+    for side, turns in train.turns.items():
         lines += [OrderLine(o.name, o.per_turn) for o in of_shaft(side, turns, shaft_orders)]
-    modes = train_modes(workshop, pinion, gear, highest).modes
+    modes = train_modes(workshop, *models, max_frequency=highest).modes
     elastic = tuple(m for m in modes if 0 < m.frequency_hz <= highest)
     crossings = []
     for k, line in enumerate(lines):
@@ -148,4 +161,4 @@ def order_map(
                 size if size is None else float(size),
             )
             crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, rpm, size))
-    return OrderMap(highest, top, tuple(lines), elastic, tuple(crossings))
+    return OrderMap(highest, top, teeth, tuple(lines), elastic, tuple(crossings))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from solidgear.errors import SceneError
-from solidgear.scene.train import Train
+from solidgear.scene.gears import Pair
 
 #: relative, of pitch radii, and rad, of angles: told from the first on, refused from the second on;
 #: the former is what rounding to three digits leaves
@@ -18,7 +18,7 @@ RADII, ANGLES = (5e-3, 5e-2), (1e-2, 5e-2)
 FACES = 0.25
 
 
-def compared(train: Train) -> list[str]:
+def compared(pair: Pair) -> list[str]:
     """Contradictions between the numbers of both wheels that are small enough to go on with.
 
     Raises
@@ -29,7 +29,7 @@ def compared(train: Train) -> list[str]:
         parallel shafts that differ.
     """
     told, refused = [], []
-    for key, words, severe in _contradictions(train):
+    for key, words, severe in _contradictions(pair):
         if severe:
             refused.append(SceneError(words, path=("gear", key)))
         else:
@@ -39,16 +39,16 @@ def compared(train: Train) -> list[str]:
     return told
 
 
-def _contradictions(train: Train) -> Iterator[tuple[str, str, bool]]:
+def _contradictions(pair: Pair) -> Iterator[tuple[str, str, bool]]:
     """Key of the gear, what it contradicts, and whether that is too much."""
-    pinion, gear, mesh = train.pinion, train.gear, train.mesh
+    pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     of_teeth = mesh.line_of_action is None and not mesh.contact_cells
     if pinion.pitch_radius and gear.pitch_radius:
         given = gear.pitch_radius / pinion.pitch_radius
-        off = abs(given / train.ratio - 1)
+        off = abs(given / pair.ratio - 1)
         words = (
             f"is {given:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the pinion, and "
-            f"{gear.teeth} over {pinion.teeth} teeth ask for {train.ratio:.4g} times"
+            f"{gear.teeth} over {pinion.teeth} teeth ask for {pair.ratio:.4g} times"
         )
         if off > RADII[0]:
             yield "pitch_radius", f"{words}; correct one of the two", of_teeth and off > RADII[1]

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from solidgear.judge.correlation import best_assignment
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
 from solidgear.system.system import System
 
@@ -42,20 +41,21 @@ def seen_modes(
     found = system.modes(count)
     elastic = found.shapes[:, found.rigid :]
     scale = {
-        side: np.array([1.0] * 3 + [workshop.scenes[side].length] * 3)[:, None] for side in SIDES
+        side: np.array([1.0] * 3 + [workshop.scenes[side].length] * 3)[:, None]
+        for side in workshop.scenes
     }
     ends = ports_of(workshop) if ends is None else ends
     rows = [scale[end.partition(".")[0]] * (system.motion(end) @ elastic) for end in ends]
     rows += [
         workshop.scenes[side].length * (system.motion(name)[4:5] @ elastic)
-        for side, name in zip(SIDES, ("engine", "load"))
+        for name, side in ((name, rotor.shaft) for name, rotor in workshop.train.rotors.items())
     ]
     return found, np.vstack(rows)
 
 
 def ports_of(workshop: Workshop) -> list[str]:
-    """Ports of both shafts, the lumped point of each before its others."""
-    return [f"{side}.{s.name}" for side in SIDES for s in workshop.scenes[side].stations]
+    """Ports of all shafts, the lumped point of each before its others."""
+    return [f"{side}.{s.name}" for side in workshop.scenes for s in workshop.scenes[side].stations]
 
 
 def partners(

@@ -18,10 +18,10 @@ from solidgear.report.folder import prepare
 from solidgear.report.page_parts import data_uri
 from solidgear.report.render import RenderJob, RenderResult, render_modes
 from solidgear.report.turning import Member, Turned, together
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
+from solidgear.studies.train.shaft import told_mix
 from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
@@ -32,14 +32,14 @@ PATIENCE = 60.0
 
 
 def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], shape) -> Surface:
-    """Surface of both shafts in the axes of the pinion's scene, moved by coordinates of the system.
+    """Surface of all shafts in the axes of the first one's scene, moved by coordinates of the system.
 
     Parameters
     ----------
     system : System
         Of these models.
     rungs : (str, str)
-        Of pinion and gear.
+        One for each shaft, or one for all.
     shape : (N,) ndarray
 
     Raises
@@ -61,18 +61,18 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
         drawn = body.surface(system.expand(side, shape))
         points, moved = drawn.points @ turn.T + origin, drawn.displacement @ turn.T
         pieces.append((points, moved, drawn.faces, drawn.triangles, drawn.lines))
-    first = len(pieces[0][0])
-    (points, moved, *cells), (others, also, *more) = pieces
-    whole = [np.vstack([mine, its + first]) for mine, its in zip(cells, more)]
-    return Surface(np.vstack([points, others]), np.vstack([moved, also]), *whole)
+    starts = np.cumsum([0, *(len(points) for points, *_ in pieces[:-1])])
+    points, moved, *cells = zip(*pieces)
+    whole = [np.vstack([own + begin for own, begin in zip(one, starts)]) for one in cells]
+    return Surface(np.vstack(points), np.vstack(moved), *whole)
 
 
 def _bodies(
     workshop: Workshop, system: System, rungs: Sequence[str]
 ) -> dict[str, tuple[Body, np.ndarray, np.ndarray]]:
-    """Body, rotation and origin of both shafts, in the axes of the pinion's scene."""
+    """Body, rotation and origin of all shafts, in the axes of the first one's scene."""
     out = {}
-    for side, rung in zip(SIDES, rungs):
+    for side, rung in workshop.mix(rungs).items():
         if rung not in LADDER.bodies:
             raise SolidgearError(
                 f"the model {rung} of the {side} has no shape to draw; "
@@ -84,15 +84,13 @@ def _bodies(
     return out
 
 
-def turned_modes(
-    workshop: Workshop, pinion: str, gear: str, highest_hz: float | None = None
-) -> Turned:
-    """Both shafts in their places with the modes of the train, to be turned in a page.
+def turned_modes(workshop: Workshop, *models: str, highest_hz: float | None = None) -> Turned:
+    """All shafts in their places with the modes of the train, to be turned in a page.
 
     Parameters
     ----------
-    pinion, gear : str
-        Models.
+    *models : str
+        One for each shaft, or one for all.
     highest_hz : float, optional
         Of the modes; that of the file by default. The first elastic mode is always there.
 
@@ -105,21 +103,21 @@ def turned_modes(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> drawn = turned_modes(shop, "euler", "euler", 700.0)
+    >>> drawn = turned_modes(shop, "euler", "euler", highest_hz=700.0)
     >>> drawn.title, len(drawn.along), [shape.name for shape in drawn.shapes][:2]
     ('both shafts euler', 1, ['load torsion 1', 'gear torsion 1'])
     """
-    system = workshop.system(pinion, gear)
+    system = workshop.system(*models)
     found, _ = seen_modes(workshop, system, highest_hz or workshop.train.ask.max_frequency)
     names = mode_names(workshop, system, found)
     elastic = range(found.rigid, len(found.frequency_hz))
-    return _turned(workshop, (pinion, gear), system, found, [(k, names[k]) for k in elastic])
+    return _turned(workshop, models, system, found, [(k, names[k]) for k in elastic])
 
 
 def turned_beside(
     workshop: Workshop,
-    first: tuple[str, str],
-    second: tuple[str, str],
+    first: tuple[str, ...],
+    second: tuple[str, ...],
     highest_hz: float | None = None,
 ) -> list[Turned]:
     """Two mixes of models of a train, to be turned side by side.
@@ -129,8 +127,8 @@ def turned_beside(
 
     Parameters
     ----------
-    first, second : (str, str)
-        Models of pinion and gear.
+    first, second : tuple of str
+        Models of the shafts.
     highest_hz : float, optional
         Of the modes of both; a partner may lie beyond it.
 
@@ -154,17 +152,18 @@ def turned_beside(
         if j in partner:
             kept.append((its.rigid + j, names[found.rigid + partner[j]]))
         elif frequency <= limit:
-            kept.append((its.rigid + j, f"{own[its.rigid + j]}, {_title(*second)} alone"))
+            kept.append((its.rigid + j, f"{own[its.rigid + j]}, {_title(workshop, second)} alone"))
     return [base, _turned(workshop, second, other, its, kept, [base])]
 
 
-def _title(pinion: str, gear: str) -> str:
-    return f"both shafts {gear}" if pinion == gear else f"pinion {pinion}, gear {gear}"
+def _title(workshop: Workshop, models: Sequence[str]) -> str:
+    alike = len({*models}) == 1
+    return f"{workshop.train.every} shafts {models[0]}" if alike else told_mix(workshop.mix(models))
 
 
 def _turned(
     workshop: Workshop,
-    rungs: tuple[str, str],
+    rungs: tuple[str, ...],
     system: System,
     found: SystemModes,
     kept: Sequence[tuple[int, str]],
@@ -176,13 +175,12 @@ def _turned(
         for side, (body, turn, origin) in _bodies(workshop, system, rungs).items()
     ]
     modes = [(name, float(found.frequency_hz[k])) for k, name in kept]
-    return together(_title(*rungs), modes, members, like)
+    return together(_title(workshop, rungs), modes, members, like)
 
 
 def draw_modes(
     workshop: Workshop,
-    pinion: str,
-    gear: str,
+    *models: str,
     folder: str | os.PathLike,
     numbers: Sequence[int],
 ) -> dict[str, RenderResult]:
@@ -190,8 +188,8 @@ def draw_modes(
 
     Parameters
     ----------
-    pinion, gear : str
-        Models.
+    *models : str
+        One for each shaft, or one for all.
     numbers : sequence of int
         Of modes as system-modes lists them, from 1.
 
@@ -205,7 +203,7 @@ def draw_modes(
     SolidgearError
         For a model without a shape, a number that there is not, or a folder that cannot be written.
     """
-    system = workshop.system(pinion, gear)
+    system = workshop.system(*models)
     most = system.free.shape[1] + len(system.elastic[0])
     wrong = [str(n) for n in numbers if not 1 <= n <= most]
     if wrong:
@@ -213,10 +211,12 @@ def draw_modes(
     found = system.modes(max(1, max(numbers) - system.free.shape[1]))
     names = mode_names(workshop, system, found)
     frames = [(cos(radians(phase)), f"phase {phase}°") for phase in PHASES]
-    both = pinion if pinion == gear else f"{pinion} pinion, {gear} gear"
+    alike = len({*models}) == 1
+    mix = workshop.mix(models).items()
+    both = models[0] if alike else ", ".join(f"{rung} {side}" for side, rung in mix)
     jobs = {}
     for n in numbers:
-        surface = system_surface(workshop, system, (pinion, gear), found.shapes[:, n - 1])
+        surface = system_surface(workshop, system, models, found.shapes[:, n - 1])
         told = f"{names[n - 1]}, {found.frequency_hz[n - 1]:.1f} Hz"
         path = Path(folder) / f"system_mode_{n:02d}.png"
         jobs[told] = RenderJob(surface, f"{told} ({both})", path, frames, along=False)
@@ -224,18 +224,18 @@ def draw_modes(
     return dict(zip(jobs, render_modes(jobs.values(), timeout=PATIENCE * len(jobs))))
 
 
-def still_of(workshop: Workshop, pinion: str, gear: str, number: int) -> tuple[str, str]:
+def still_of(workshop: Workshop, *models: str, number: int) -> tuple[str, str]:
     """A picture of one mode for a page: its data URI, and else why there is none.
 
     Parameters
     ----------
-    workshop, pinion, gear
+    workshop, models
         As of :func:`draw_modes`.
     number : int
         Of the mode, from 1.
     """
     with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
-        (one,) = draw_modes(workshop, pinion, gear, folder, [number]).values()
+        (one,) = draw_modes(workshop, *models, folder=folder, numbers=[number]).values()
         if not one.ok:
             return "", f"no picture for print: {one.reason}"
         return data_uri("mode", one.path) or "", ""

@@ -16,6 +16,7 @@ from solidgear.errors import SolidgearError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.respond import FORCE_UNITS, MOTION_UNITS, Drive
+from solidgear.studies.train.shaft import told_mix
 
 #: a motion this much smaller than what reciprocal motions of both ends allow is rounding
 NOTHING = 1e-12
@@ -30,6 +31,8 @@ class TrainReceptance:
 
     Attributes
     ----------
+    models : dict of str to str
+        By shaft.
     from_, to : (str, str)
         Port and direction.
     unit : str
@@ -40,8 +43,7 @@ class TrainReceptance:
         Hz, amplitude, and the mode that makes it.
     """
 
-    pinion: str
-    gear: str
+    models: dict[str, str]
     damping: str
     from_: End
     to: End
@@ -52,14 +54,13 @@ class TrainReceptance:
 
     @property
     def label(self) -> str:
-        """Name in a legend: the models of both shafts."""
-        return f"pinion {self.pinion}, gear {self.gear}"
+        """Name in a legend: the models of the shafts."""
+        return told_mix(self.models)
 
 
 def receptance(
     workshop: Workshop,
-    pinion: str,
-    gear: str,
+    *models: str,
     from_: End,
     to: End,
     highest_hz: float | None = None,
@@ -67,12 +68,12 @@ def receptance(
     matched_hz: float = 0.0,
     frequency_hz: np.ndarray | None = None,
 ) -> TrainReceptance:
-    """Receptance between two ports of a train with its shafts by two models.
+    """Receptance between two ports of a train with its shafts by models.
 
     Parameters
     ----------
-    pinion, gear : str
-        Models.
+    *models : str
+        One for each shaft, or one for all.
     from_, to : (str, str)
         Port and direction of the force and of the motion, such as ``("gear.gear", "z")``.
     highest_hz : float, optional
@@ -92,13 +93,14 @@ def receptance(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> ends = ("gear.gear", "z"), ("pinion.pinion", "x")
-    >>> found = receptance(shop, "timoshenko", "timoshenko", *ends, 1000.0)
+    >>> ends = {"from_": ("gear.gear", "z"), "to": ("pinion.pinion", "x")}
+    >>> found = receptance(shop, "timoshenko", "timoshenko", **ends, highest_hz=1000.0)
     >>> found.unit, [mode for _, _, mode in found.peaks][:2]
     ('m/N', ['load torsion 1', 'gear torsion 1'])
     """
     force = np.eye(6)[_number(from_)]
-    drive = Drive(workshop, pinion, gear, damping, matched_hz, {from_[0]: force})
+    load = {from_[0]: force}
+    drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, forces=load)
     row = drive.system.motion(to[0])[_number(to)]
     for end, own in ((from_, drive.load), (to, row)):
         if not own.any():
@@ -115,7 +117,8 @@ def receptance(
     value = drive.steady.solved(hz, drive.load, row[None])[:, 0]
     top = drive.tops(hz, np.abs(value), row)
     unit = f"{MOTION_UNITS[_number(to)]}/{_bracketed(FORCE_UNITS[_number(from_)])}"
-    return TrainReceptance(pinion, gear, damping, from_, to, unit, hz, value, tuple(top))
+    rungs = workshop.mix(models)
+    return TrainReceptance(rungs, damping, from_, to, unit, hz, value, tuple(top))
 
 
 def _number(end: End) -> int:

@@ -17,11 +17,11 @@ from solidgear.body import as_supports
 from solidgear.errors import SolidgearError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.threads import pinned
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
+from solidgear.studies.train.shaft import told_mix
 from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks
 from solidgear.system.system import System
@@ -73,11 +73,13 @@ class TrainResponse:
 
     Attributes
     ----------
+    models : dict of str to str
+        By shaft.
     frequency_hz : (f,) ndarray
         Of the excitation; the mesh frequency of its first order.
     columns : dict of str to (f,) complex ndarray
-        By name and unit, such as ``mesh force [N]``; harmonics of the mesh over the frequency of
-        the first.
+        By name and unit, such as ``mesh force [N]``, of the mesh whose error drives the train;
+        harmonics of the mesh over the frequency of the first.
     peaks : tuple of Peak
         Of the mesh force.
     seconds : float
@@ -86,8 +88,7 @@ class TrainResponse:
         Of the train, where it is shown beside another one.
     """
 
-    pinion: str
-    gear: str
+    models: dict[str, str]
     damping: str
     frequency_hz: np.ndarray
     columns: dict[str, np.ndarray]
@@ -99,7 +100,7 @@ class TrainResponse:
     @property
     def label(self) -> str:
         """Name in a legend: the train, or the models of its shafts."""
-        return self.name or f"pinion {self.pinion}, gear {self.gear}"
+        return self.name or told_mix(self.models)
 
     @property
     def force(self) -> np.ndarray:
@@ -108,34 +109,37 @@ class TrainResponse:
 
 
 class Drive:
-    """A train by two models with its losses and its excitation.
+    """A train by models of its shafts with its losses and its excitation.
 
     Parameters
     ----------
-    pinion, gear : str
-        Models.
+    *models : str
+        One for each shaft, or one for all.
     damping : {'hysteretic', 'viscous', 'modal', 'literal'}
     matched_hz : float
         Of viscous losses, Hz.
     forces : mapping of str to (6,) array_like, optional
         At ports, N and N m; instead of the transmission error.
+    mesh : str, optional
+        By whose transmission error it is driven; the first by default.
     """
 
     def __init__(
         self,
         workshop: Workshop,
-        pinion: str,
-        gear: str,
+        *models: str,
         damping: str = "hysteretic",
         matched_hz: float = 0.0,
         forces: Mapping[str, np.ndarray] | None = None,
+        mesh: str | None = None,
     ):
         if damping not in DAMPING:
             raise SolidgearError(
                 f"damping {show(damping, 30)} is unknown; use one of {', '.join(DAMPING)}"
             )
-        self.workshop, self.rungs, self.damping = workshop, (pinion, gear), damping
-        self.system: System = workshop.system(pinion, gear)
+        self.workshop, self.rungs, self.damping = workshop, models, damping
+        self.system: System = workshop.system(*models)
+        self.pair = workshop.train.named_mesh(mesh)
         self._named: dict[int, tuple[SystemModes, list[str]]] = {}
         loss = workshop.losses()
         kind = damping
@@ -143,13 +147,15 @@ class Drive:
             loss = {name: eta / 2 for name, eta in loss.items()}
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
         self.steady = SteadyState(self.system, loss, kind, matched_hz)
-        met, train = workshop.contact, workshop.train
-        ends = [workshop.teeth(side, self.system.parts[side]) for side in SIDES]
-        stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
-        self.row = stretch[0] - stretch[1]
-        self.stiffness = met.stiffness
+        self.rows: dict[str, np.ndarray] = {}
+        for pair in workshop.train.pairs:
+            ends = workshop.teeth(pair, self.system.parts)
+            stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
+            self.rows[pair.name] = stretch[0] - stretch[1]
+        self.row = self.rows[self.pair.name]
+        self.stiffness = workshop.contacts[self.pair.name].stiffness
         self.forces = dict(forces or {})
-        self.error = train.mesh.transmission_error
+        self.error = self.pair.mesh.transmission_error
         self.load = self.system.load(self.forces) if self.forces else self.stiffness * self.row
 
     def amplitude(self, frequency_hz: np.ndarray, order: int = 1) -> np.ndarray:
@@ -163,7 +169,9 @@ class Drive:
         unit = self.steady.motion(frequency_hz, self.load, rows)
         if self.forces:
             return unit
-        scale = self.amplitude(frequency_hz, order) * self.steady.factor("mesh", frequency_hz)
+        scale = self.amplitude(frequency_hz, order) * self.steady.factor(
+            self.pair.name, frequency_hz
+        )
         return unit * scale[:, None]
 
     def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -175,7 +183,7 @@ class Drive:
         self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
     ) -> tuple[np.ndarray, np.ndarray]:
         error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
-        factor = self.stiffness * self.steady.factor("mesh", frequency_hz)
+        factor = self.stiffness * self.steady.factor(self.pair.name, frequency_hz)
         return dte, factor * (dte - error)
 
     def reactions(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
@@ -189,7 +197,7 @@ class Drive:
     def _reaction_rows(self) -> dict[str, tuple[str, np.ndarray]]:
         """Link and rows (6, N) of the elastic force of every bearing, by ``side bearing``."""
         out = {}
-        for side in SIDES:
+        for side in self.workshop.scenes:
             supports = as_supports(self.workshop.scenes[side])
             seats = np.vstack([self.system.motion(f"{side}.{b}") for b in supports.ports])
             link = next(n for n in self.system.links if n.startswith(f"{side}."))
@@ -207,13 +215,15 @@ class Drive:
         }
 
     def columns(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
-        """All that a response tells of the first order, by name and unit: mesh, reactions of every
-        bearing, motions of both lumped points.
+        """All that a response tells of the first order, by name and unit: the mesh that drives it,
+        reactions of every bearing, motions of all main lumped points, forces of other meshes.
         """
-        reactions = self._reaction_rows()
-        ports = {side: f"{side}.{self.workshop.scenes[side].port.name}" for side in SIDES}
+        reactions, scenes = self._reaction_rows(), self.workshop.scenes
+        ports = {side: f"{side}.{scene.port.name}" for side, scene in scenes.items()}
         rows = [self.row[None], *(force for _, force in reactions.values())]
         rows += [self.system.motion(port) for port in ports.values()]
+        others = [pair for pair in self.workshop.train.pairs if pair.name != self.pair.name]
+        rows += [self.rows[pair.name][None] for pair in others]
         found = self.motion(frequency_hz, np.vstack(rows))
         dte, force = self._teeth(frequency_hz, found[:, 0])
         out = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
@@ -224,6 +234,10 @@ class Drive:
         for k, side in enumerate(ports):
             for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
                 out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
+        for pair, stretch in zip(others, moved.T[6 * len(ports) :]):
+            stiff = self.workshop.contacts[pair.name].stiffness
+            factor = stiff * self.steady.factor(pair.name, frequency_hz)
+            out[f"mesh force{pair.label} [N]"] = factor * stretch
         return out
 
     def grid(
@@ -325,21 +339,23 @@ def stands_out(size: np.ndarray, k: int) -> bool:
 @pinned
 def respond(
     workshop: Workshop,
-    pinion: str,
-    gear: str,
+    *models: str,
     highest_hz: float | None = None,
     damping: str = "hysteretic",
     matched_hz: float = 0.0,
     forces: Mapping[str, np.ndarray] | None = None,
     frequency_hz: np.ndarray | None = None,
+    mesh: str | None = None,
 ) -> TrainResponse:
-    """Steady response of a train with its shafts by two models.
+    """Steady response of a train with its shafts by models.
 
     Parameters
     ----------
+    *models : str
+        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
-    damping, matched_hz, forces
+    damping, matched_hz, forces, mesh
         As :class:`Drive`.
     frequency_hz : (f,) ndarray, optional
         Instead of an adaptive grid.
@@ -353,17 +369,19 @@ def respond(
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = respond(shop, "timoshenko", "timoshenko", 1000.0)
+    >>> found = respond(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
     >>> found.peaks[0].mode, round(found.peaks[0].frequency_hz)
     ('load torsion 1', 16)
     """
-    drive = Drive(workshop, pinion, gear, damping, matched_hz, forces)
+    drive = Drive(
+        workshop, *models, damping=damping, matched_hz=matched_hz, forces=forces, mesh=mesh
+    )
     highest = highest_hz or workshop.train.ask.max_frequency
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
     told = drive.columns(hz)
-    mesh = list(told)[:2]
-    columns = {name: told.pop(name) for name in mesh}
-    force = columns[mesh[1]]
+    first = list(told)[:2]
+    columns = {name: told.pop(name) for name in first}
+    force = columns[first[1]]
     orders = len(drive.error.orders) if not drive.forces else 1
     for order in range(2, orders + 1):
         there = order * hz <= highest
@@ -376,5 +394,6 @@ def respond(
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
     found_peaks = drive.peaks(hz, force)
-    seconds = workshop.seconds(pinion, gear)
-    return TrainResponse(pinion, gear, damping, hz, columns, found_peaks, tuple(cautions), seconds)
+    seconds = workshop.seconds(*models)
+    rungs = workshop.mix(models)
+    return TrainResponse(rungs, damping, hz, columns, found_peaks, tuple(cautions), seconds)

@@ -12,14 +12,20 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from solidgear.body import Body
+from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError, nearest, show
+from solidgear.frames import shift
 from solidgear.ladder.registry import LADDER
+from solidgear.reduction.condensed import condensed_shaft
+from solidgear.reduction.effective_mass import synthesise
+from solidgear.reduction.superelement import Superelement
+from solidgear.scene import Scene
 from solidgear.system.parts import Part
 
 RIGID = "rigid"
@@ -53,6 +59,11 @@ def checked_rung(name: str) -> tuple[str, str]:
     return kind, body or JUDGE
 
 
+def told_mix(models: Mapping[str, str]) -> str:
+    """Models by shaft in words."""
+    return ", ".join(f"{side} {rung}" for side, rung in models.items())
+
+
 @dataclass(frozen=True, eq=False)
 class ShaftModel:
     """One shaft by one model, a part of a system.
@@ -81,3 +92,42 @@ class ShaftModel:
     def rigid_mass(self) -> np.ndarray:
         """(6, 6) rigid mass of the body about the origin of its scene."""
         return self.body.mass_matrix()
+
+
+def lumped(under: ShaftModel, kind: str, scene: Scene) -> Part:
+    """A shaft condensed to its main lumped point, by one of the lumped models.
+
+    Raises
+    ------
+    SolidgearError
+        If it has no mode-matched masses.
+    """
+    shaft = under.part
+    supports, port = as_supports(scene), scene.port.name
+    assert isinstance(shaft, Superelement)
+    whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
+    if kind == "lumped":
+        return whole
+    rigid = _mass_about(under.body, scene.port.y)
+    if kind == "lumped-old":
+        return whole.with_mass(np.diag(np.diag(rigid)))
+    mass = np.diag(np.diag(rigid))
+    if kind == "lumped-bending":
+        for plane in ([0, 5], [2, 3]):
+            mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
+        return whole.with_mass(mass)
+    _, models = synthesise(under.body, supports, port)
+    matched = models["mode-matched"]
+    if matched.mass is None or not matched.feasible:
+        raise SolidgearError(
+            f"the {under.side} has no mode-matched masses: {matched.verdict}; use lumped"
+        )
+    for plane in ([0, 5], [2, 3]):
+        mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
+    return whole.with_mass(mass)
+
+
+def _mass_about(body: Body, y: float) -> np.ndarray:
+    """(6, 6) rigid mass about a point of the axis."""
+    back = shift([0.0, -y, 0.0])
+    return back.T @ body.mass_matrix() @ back

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from solidgear.ladder import build
-from solidgear.scene.train import SIDES
 from solidgear.studies.guards import Probe, data
 from solidgear.studies.guards.notice import slip_in_units
 from solidgear.studies.loading import SHAFT
@@ -19,7 +18,7 @@ SOUND = {
 
 
 def slips(workshop: Workshop) -> tuple[str, ...]:
-    """Sentences on the mesh and on both shafts; none where every number is one that can be made.
+    """Sentences on meshes and shafts; none where every number is one that can be made.
 
     Examples
     --------
@@ -31,24 +30,30 @@ def slips(workshop: Workshop) -> tuple[str, ...]:
     >>> slips(Workshop(soft))[0][:62]
     'probably a slip in units: mesh stiffness over E r is 2.73e-05,'
     """
-    out = [sentence] if (sentence := slip_of_mesh(workshop)) else []
-    for side in SIDES:
+    out = slips_of_meshes(workshop)
+    for side in workshop.scenes:
         scene = workshop.scenes[side].plain
         probe = Probe(scene, build(scene, SHAFT))
         out += [f"{side}: {notice.sentence}" for notice in data.units(probe)]
     return tuple(out)
 
 
-def slip_of_mesh(workshop: Workshop) -> str:
-    """Sentence on the stiffness and the transmission error of the mesh; empty where both are sound."""
-    train, met = workshop.train, workshop.contact
-    lever, teeth = abs(met.pinion.lever), train.pinion.teeth
+def slips_of_meshes(workshop: Workshop) -> list[str]:
+    """Sentences on the stiffness and the transmission error of meshes; none where all are sound."""
+    out = []
     stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
-    table = train.mesh.transmission_error
-    error = max((*table.orders, *table.amplitude), default=0.0)
-    values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
-    found = [(name, value, "") for name, value in zip(SOUND, values)]
-    if not error:
-        found.pop()  # told by itself
-    legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
-    return slip_in_units(found, SOUND, legend)
+    for pair in workshop.train.pairs:
+        met, teeth, table = (
+            workshop.contacts[pair.name],
+            pair.pinion.teeth,
+            pair.mesh.transmission_error,
+        )
+        lever, error = abs(met.pinion.lever), max((*table.orders, *table.amplitude), default=0.0)
+        values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
+        found = [(name, value, "") for name, value in zip(SOUND, values)]
+        if not error:
+            found.pop()  # told by itself
+        legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
+        if sentence := slip_in_units(found, SOUND, legend):
+            out.append(f"{pair.name}: {sentence}" if pair.label else sentence)
+    return out

@@ -18,7 +18,6 @@ import numpy as np
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.scene.coned import coned
-from solidgear.scene.train import SIDES
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import OperatingState, settled
 from solidgear.studies.train.shaft import JUDGE
@@ -31,12 +30,12 @@ class StaticBars:
 
     def __init__(self, workshop: Workshop, state: OperatingState, rungs: dict[str, str]):
         self.workshop, self.state = workshop, state
-        self.sides = [side for side in SIDES if rungs[side] == JUDGE]
+        self.sides = [side for side, rung in rungs.items() if rung == JUDGE]
         self.bounds: dict[str, HarmonicBounds] = {}
-        if not self.sides or workshop.train.mesh.local_harmonics:
+        if not self.sides or any(mesh.local_harmonics for mesh in workshop.train.meshes):
             return
         shop = workshop.with_train(settled(workshop.train, state))
-        self.tangent: System = shop.system(rungs["pinion"], rungs["gear"])
+        self.tangent: System = shop.system(*rungs.values())
         for side in self.sides:
             body = workshop.shaft(side, JUDGE).body
             self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)
@@ -64,7 +63,7 @@ class StaticBars:
         if turns > 1e-9 * np.linalg.norm(row):
             return None
         adjoint = port_forces(self.tangent, self.tangent.static(row))
-        own = self._ports(_with_load(adjoint, self.tangent, row))
+        own = self._ports(_with_load(adjoint, self.tangent, row, [*self.workshop.scenes]))
         total = 0.0
         for side, bounds in self.bounds.items():
             f, g = self.rest[side], own[side]
@@ -77,13 +76,13 @@ class StaticBars:
 
 
 def _with_load(
-    forces: dict[str, np.ndarray], system: System, row: np.ndarray
+    forces: dict[str, np.ndarray], system: System, row: np.ndarray, shafts: list[str]
 ) -> dict[str, np.ndarray]:
     """Forces of links with the unit load that a row of coordinates stands for, on the ports that it
     is made of.
     """
     out = dict(forces)
-    ends = [f"{side}.{port}" for side in SIDES for port in system.parts[side].ports]
+    ends = [f"{side}.{port}" for side in shafts for port in system.parts[side].ports]
     rows = np.vstack([system.motion(end) for end in ends])
     loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
     for end, six in zip(ends, loads.reshape(-1, 6)):

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from solidgear.scene.train import SIDES
 
-
-def strain_shares(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def strain_shares(
+    energy: Mapping[str, np.ndarray], shafts: Sequence[str] = ("pinion", "gear")
+) -> dict[str, np.ndarray]:
     """Shares of the strain energy of modes, along the train.
 
     Parameters
     ----------
     energy : mapping of str to (k,) ndarray
         By part and link, as of :class:`solidgear.system.modes.SystemModes`.
+    shafts : sequence of str, optional
 
     Returns
     -------
@@ -30,19 +31,22 @@ def strain_shares(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     >>> {name: float(share[0]) for name, share in shares.items()}
     {'pinion shaft': 0.25, 'pinion bearings': 0.5, 'mesh': 0.25}
     """
-    first, last = SIDES
-    order = ["engine spring", f"{first} shaft", f"{first} bearings", "mesh"]
-    order += [f"{last} bearings", f"{last} shaft", "load spring"]
+    first, *others = shafts
+    order = ["engine spring", f"{first} shaft", f"{first} bearings"]
+    order += [name for name in energy if name.startswith("mesh")]
+    for side in others:
+        order += [f"{side} bearings", f"{side} shaft"]
+    order += ["load spring"]
     out: dict[str, np.ndarray] = {}
     for name, share in energy.items():
-        place = _place(name)
+        place = _place(name, shafts)
         out[place] = out.get(place, 0.0) + share
     return {name: out[name] for name in [*order, *out] if name in out and out[name].any()}
 
 
-def _place(name: str) -> str:
+def _place(name: str, shafts: Sequence[str]) -> str:
     """Place that a part or a link belongs to."""
     side, dot, _ = name.partition(".")
     if dot:
         return f"{side} bearings"
-    return f"{name} shaft" if name in SIDES else name
+    return f"{name} shaft" if name in shafts else name

@@ -12,6 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
+from solidgear.errors import SolidgearError, listed
 from solidgear.machine.threads import pinned
 from solidgear.scene.differences import Difference
 from solidgear.scene.train import SIDES
@@ -202,6 +203,12 @@ def two_trains(
     """
     start = perf_counter()
     first, other = workshops
+    for name, shop in zip(names, workshops):
+        if tuple(shop.scenes) != SIDES:
+            raise SolidgearError(
+                f"{name} has the shafts {listed(shop.scenes)}: two trains are compared where both "
+                "have a pinion and a gear"
+            )
     highest = highest_hz or min(shop.train.ask.max_frequency for shop in workshops)
     ends = shared_ports(first, other)
     trains, seen = [], []
@@ -233,7 +240,7 @@ def two_trains(
 
 def _mirrored(one: Workshop, other: Workshop) -> bool:
     """True where the shafts of two trains are not in the same axes."""
-    members = [[shop.train.member(side) for side in SIDES] for shop in (one, other)]
+    members = [[*shop.train.only().members.values()] for shop in (one, other)]
     return any(a.apex != b.apex or a.hand != b.hand for a, b in zip(*members))
 
 
@@ -247,11 +254,11 @@ def _one_train(
     progress: Callable[[str], None],
 ) -> tuple[OneTrain, np.ndarray]:
     """One of the trains, and what its modes move at some ports."""
-    response = replace(respond(shop, *rungs, highest), name=f"{letter}: {name}")
+    response = replace(respond(shop, *rungs, highest_hz=highest), name=f"{letter}: {name}")
     system = shop.system(*rungs)
     found, seen = seen_modes(shop, system, highest * BEYOND, ends)
     progress(f"{letter}: how sure its frequencies are")
-    modes = told_modes(shop, system, found, dict(zip(SIDES, rungs)))
+    modes = told_modes(shop, system, found, shop.mix(rungs))
     loaded = None
     at_rest = all(rung.partition("/")[0] not in LUMPED for rung in rungs)
     if shop.train.point is not None and at_rest:

@@ -12,7 +12,6 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.environment import environment
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, percent
-from solidgear.scene.train import SIDES
 from solidgear.studies import beside
 from solidgear.studies.train.comparison import described
 from solidgear.studies.train.modes import unpublished_lines
@@ -163,7 +162,7 @@ def _sure(found: TwoTrains) -> str:
             "No error bars: without a harmonic shaft there are none, so that no difference is "
             f"called resolved; {hang}."
         )
-    stations = [b for one in found.both for s in SIDES for b in one.workshop.scenes[s].bearings]
+    stations = [b for one in found.both for s in one.workshop.scenes.values() for b in s.bearings]
     catalogued = any(getattr(b, "catalogue", None) is not None for b in stations)
     left_out = ", not what data of catalogue bearings leave open" * catalogued
     return (

@@ -12,6 +12,7 @@ import scipy.linalg as sla
 from solidgear.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.train import Train
+from solidgear.scene.train_file import ShortFile
 from solidgear.studies.train.models import Workshop
 from validation.manual.case import Answer, Case, Model, Reference, references
 
@@ -180,7 +181,7 @@ def spur_train() -> Train:
         n: {"inertia": 1e-9, "spring": {"stiffness": 1.0, "at": at}}
         for n, at in zip(("engine", "load"), _MEMBERS)
     }
-    return Train(name="spur_train", mesh=mesh, **members, **idle)
+    return ShortFile(name="spur_train", mesh=mesh, **members, **idle).whole()
 
 
 _MEMBERS = {"turbine": TURBINE, "generator": GENERATOR}

@@ -1,0 +1,223 @@
+"""Gears, the shafts that carry them, and the pairs that mesh: data only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.cylindrical import rolling
+from solidgear.scene.model import Scene
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.stations import Status
+from solidgear.scene.train_tables import Mesh
+from solidgear.scene.typed import Model
+from solidgear.scene.units import (
+    Inertia,
+    Mass,
+    PitchAngle,
+    PositiveLength,
+    SpiralAngle,
+)
+
+#: teeth that a wheel may have
+FEWEST_TEETH, MOST_TEETH = 3, 2000
+
+Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
+#: of cylindrical gears (ISO 21771)
+FLANKS = ("left", "right")
+
+
+class HeadInertia(Model):
+    """A rigid mass at the lumped point of a shaft, beside the mass of its segments.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    torsional, bending : float
+        About the shaft and across it, at the lumped point, kg m^2.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    mass: Mass
+    torsional: Inertia
+    bending: Inertia
+    status: Status = "assumed"
+
+
+class Gear(Model):
+    """The teeth of one gear of a shaft.
+
+    Attributes
+    ----------
+    hand : {'left', 'right'} or None
+    loaded_side : {'concave', 'convex', 'left', 'right'} or None
+        Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
+        of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771).
+    pitch_radius, face_width : float or None
+        At the heel and along the cone, m.
+    pitch_angle, spiral_angle : float or None
+        rad.
+    module, helix_angle : float or None
+        Of cylindrical gears instead: normal module, m, and helix angle at the reference cylinder, rad;
+        radii follow from the teeth.
+    profile_shift : float
+        Of cylindrical gears, in modules.
+    apex : {'start', 'end'}
+        Towards which end of the shaft the pitch apex lies.
+    head : HeadInertia or None
+    """
+
+    teeth: Teeth
+    hand: Literal["left", "right"] | None = None
+    loaded_side: Literal["concave", "convex", "left", "right"] | None = None
+    pitch_radius: PositiveLength | None = None
+    face_width: PositiveLength | None = None
+    pitch_angle: PitchAngle | None = None
+    spiral_angle: SpiralAngle | None = None
+    module: PositiveLength | None = None
+    helix_angle: SpiralAngle | None = None
+    profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
+    apex: Literal["start", "end"] = "start"
+    head: HeadInertia | None = None
+
+    @property
+    def flank(self) -> str | None:
+        """The loaded flank of a cylindrical gear, ``left`` or ``right``; None where it is not told.
+
+        A concave flank faces the way the teeth lean: right-handed teeth, seen from the apex, to the
+        right.
+        """
+        if self.loaded_side in FLANKS or self.loaded_side is None:
+            return self.loaded_side
+        if self.hand is None:
+            return None
+        return self.hand if self.loaded_side == "concave" else FLANKS[self.hand == "left"]
+
+
+class Shaft(Model):
+    """A shaft and the gears that it carries.
+
+    Attributes
+    ----------
+    gears : dict of str to Gear
+        By the lumped point of the scene at which each sits.
+    scene_load : {'added', 'replaced'} or None
+        Of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
+        gives way to it; where neither is said it must be the mesh force.
+    """
+
+    scene: Scene
+    gears: dict[str, Gear]
+    scene_load: Literal["added", "replaced"] | None = None
+
+    @model_validator(mode="after")
+    def _at_points(self) -> Shaft:
+        known = [port.name for port in self.scene.ports]
+        problems = [
+            SceneError(
+                f"no lumped point of the scene is called so{nearest(name, known)}; known here: "
+                f"{listed(known)}",
+                path=("gears", name),
+            )
+            for name in self.gears
+            if name not in known
+        ]
+        if problems:
+            raise SceneError.of(problems)
+        return self
+
+    def member(self, port: str = "") -> Member:
+        """One of its gears, the first by default, on the scene with that lumped point as main one."""
+        port = port or next(iter(self.gears))
+        main = self.scene.port.name == port
+        return Member(
+            scene=self.scene if main else self.scene.with_main_port(port),
+            scene_load=self.scene_load,
+            **{key: getattr(self.gears[port], key) for key in Gear.model_fields},
+        )
+
+
+class Member(Gear):
+    """A gear and the shaft that it sits on, whose main lumped point is its own.
+
+    Attributes
+    ----------
+    scene : Scene
+    scene_load : {'added', 'replaced'} or None
+        As of `Shaft`.
+    """
+
+    scene: Scene
+    scene_load: Literal["added", "replaced"] | None = None
+
+    @property
+    def shaft(self) -> Shaft:
+        """A shaft that carries this gear alone."""
+        own = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
+        gears = {self.scene.port.name: own}
+        return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two gears that mesh.
+
+    Attributes
+    ----------
+    name : str
+        Of the mesh: ``mesh`` where it is the only one.
+    shafts, ports : (str, str)
+        Of the first gear, called pinion here whatever its size, and of the other.
+    paths : mapping of str to tuple
+        Keys of a file at which ``pinion``, ``gear`` and ``mesh`` stand.
+    point : OperatingPoint or None
+        At which the train is looked at.
+    """
+
+    name: str
+    shafts: tuple[str, str]
+    ports: tuple[str, str]
+    paths: Mapping[str, tuple]
+    pinion: Member
+    gear: Member
+    mesh: Mesh
+    point: OperatingPoint | None
+
+    @property
+    def members(self) -> dict[str, Member]:
+        """Both by ``pinion`` and ``gear``."""
+        return {"pinion": self.pinion, "gear": self.gear}
+
+    @property
+    def label(self) -> str:
+        """Name of the mesh in the middle of a phrase; empty where it is the only one."""
+        return self.name.removeprefix("mesh")
+
+    @property
+    def ratio(self) -> float:
+        """Teeth of the gear over teeth of the pinion."""
+        return self.gear.teeth / self.pinion.teeth
+
+    @cached_property
+    def rolling(self) -> Pair:
+        """The same with pitch radii and angles of parallel shafts where their wheels roll on each
+        other: what module, helix angle, profile shifts and centre distance come to.
+
+        Raises
+        ------
+        SceneError
+            For a centre distance or profile shifts that no pressure angle meets.
+        """
+        return replace(self, **rolling(self.pinion, self.gear, self.mesh))
+
+    def told(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
+        """Problems with paths from ``pinion``, ``gear`` or ``mesh``, by the keys of a file."""
+        for one in problems:
+            first, *rest = one.path
+            yield one.located(None, path=(*self.paths[first], *rest))

@@ -1,0 +1,192 @@
+"""Layout of a train: what meshes with what, how fast it turns, and the way a torque takes."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+from math import isclose
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SceneError, listed, nearest
+
+if TYPE_CHECKING:
+    from solidgear.scene.gears import Pair
+    from solidgear.scene.train import Train
+
+#: a ratio that is typed with four digits may differ from that of the teeth by this
+RATIO_TYPED = 1e-3
+#: names that mean something else in a file, in a result or in an order
+RESERVED = (
+    "caution cautions cause contact coordinates damping error facts faults files free ground kept "
+    "load local losses mesh meshes mesh_force mesh_forces misalignment displacement mode model "
+    "models modes name notes operation peaks point points ratio reduction response rigid rotor "
+    "rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
+    "unpublished verdict verdicts"
+).split()
+
+
+class PerTurn(float):
+    """Teeth that pass in one turn of a shaft, and which."""
+
+    of: str
+
+    def __new__(cls, value: float, of: str = "pinion") -> PerTurn:
+        """A number that knows its shaft."""
+        out = super().__new__(cls, value)
+        out.of = of
+        return out
+
+
+def layout_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of names, of meshes between shafts that are not there, and of shafts left out.
+
+    Yields
+    ------
+    SceneError
+    """
+    for name in train.shafts:
+        if name in RESERVED or name in train.rotors or "." in name or not name.strip():
+            reason = f"a shaft cannot be called {name!r}; give it another name, without dots"
+            yield SceneError(reason, path=("shaft", name))
+    found = [*_meshes(train), *_rotors(train)]
+    yield from found
+    if found:
+        return
+    yield from _named_twice(train)
+    met = {side for k in range(len(train.meshes)) for side, _ in ends_of(train, k)}
+    for side in train.shafts:
+        if side not in met:
+            reason = "is in no mesh; write a [[mesh]] between it and another shaft, or leave it out"
+            yield SceneError(reason, path=("shaft", side))
+    first = next(iter(train.shafts), "")
+    reached = {side for side, _ in _outward(train, first)} if train.shafts else set()
+    apart = [side for side in train.shafts if side in met and side not in reached]
+    for side in apart:
+        reason = f"no mesh leads from the {first} to it; a train hangs together by its teeth"
+        yield SceneError(reason, path=("shaft", side))
+    if not apart and met == {*train.shafts}:
+        yield from _loops(train)
+
+
+def _meshes(train: Train) -> Iterator[SceneError]:
+    if not train.meshes:
+        reason = "this table is missing; write [[mesh]] with between, stiffness and line of action"
+        yield SceneError(reason, path=("mesh",))
+    for k, mesh in enumerate(train.meshes):
+        path = ("mesh", k, "between")
+        for word in mesh.between:
+            side, dot, port = word.partition(".")
+            known = [*train.shafts]
+            if side not in train.shafts:
+                reason = (
+                    f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
+                )
+                yield SceneError(reason, path=path)
+                continue
+            gears = [*train.shafts[side].gears]
+            if not gears:
+                reason = f"the {side} carries no gear; write teeth under [shaft.{side}]"
+                yield SceneError(reason, path=path)
+            elif dot and port not in gears:
+                reason = f"the {side} carries no gear at {port!r}; it has {listed(gears)}"
+                yield SceneError(reason, path=path)
+            elif not dot and len(gears) > 1:
+                each = " or ".join(f'"{side}.{port}"' for port in gears)
+                yield SceneError(f"the {side} carries several gears; write {each}", path=path)
+        one, two = (word.partition(".")[0] for word in mesh.between)
+        if one == two:
+            yield SceneError(
+                f"both gears are on the {one}; teeth mesh with another shaft", path=path
+            )
+        if mesh.local_harmonics and len(train.meshes) > 1:
+            reason = "are there for a train of one mesh only; leave them out"
+            yield SceneError(reason, path=("mesh", k, "local_harmonics"))
+
+
+def _rotors(train: Train) -> Iterator[SceneError]:
+    for name, rotor in train.rotors.items():
+        if rotor.shaft not in train.shafts:
+            known = listed(train.shafts)
+            said = (
+                "says which shaft it turns with"
+                if not rotor.shaft
+                else (f"names no shaft{nearest(rotor.shaft, train.shafts)}")
+            )
+            yield SceneError(f"{said}; known here: {known}", path=(name, "shaft"))
+
+
+def _named_twice(train: Train) -> Iterator[SceneError]:
+    names = [pair.name for pair in train.pairs]
+    for k, name in enumerate(names):
+        if name in names[:k]:
+            reason = f"{name!r} is there twice; give the meshes names of their own"
+            yield SceneError(reason, path=("mesh", k, "name"))
+
+
+def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
+    """Shaft and lumped point of both gears of a mesh."""
+    out = []
+    for word in train.meshes[k].between:
+        side, _, port = word.partition(".")
+        out.append((side, port or next(iter(train.shafts[side].gears))))
+    return out[0], out[1]
+
+
+def _outward(train: Train, first: str) -> Iterator[tuple[str, int]]:
+    """Shafts as meshes lead from one to them, each with the mesh it is come by, -1 for the first."""
+    queue, known = deque([(first, -1)]), {first}
+    while queue:
+        side, by = queue.popleft()
+        yield side, by
+        for k, mesh in enumerate(train.meshes):
+            both = [word.partition(".")[0] for word in mesh.between]
+            if side in both:
+                other = both[1 - both.index(side)]
+                if other not in known:
+                    known.add(other)
+                    queue.append((other, k))
+
+
+def outward(train: Train, first: str) -> Iterator[tuple[str, Pair | None]]:
+    """Shafts as meshes lead from one to them, each with the pair it is come by, the first by none."""
+    for side, k in _outward(train, first):
+        yield side, None if k < 0 else train.pairs[k]
+
+
+def turns_of(train: Train) -> dict[str, float]:
+    """Turns of every shaft in one turn of the engine's, by the teeth."""
+    out: dict[str, float] = {}
+    for side, pair in outward(train, train.reference):
+        if pair is None:
+            out[side] = 1.0
+        elif side == pair.shafts[1]:
+            out[side] = out[pair.shafts[0]] / pair.ratio
+        else:
+            out[side] = out[pair.shafts[1]] * pair.ratio
+    return out
+
+
+def path_between(train: Train, first: str, last: str) -> tuple[Pair, ...]:
+    """Pairs that lead from one shaft to another, in turn."""
+    by = dict(outward(train, first))
+    out: list[Pair] = []
+    side = last
+    while (pair := by[side]) is not None:
+        out.insert(0, pair)
+        side = pair.shafts[side == pair.shafts[0]]
+    return tuple(out)
+
+
+def _loops(train: Train) -> Iterator[SceneError]:
+    """Meshes that close a loop and whose teeth ask for another ratio than the rest of it."""
+    turns = turns_of(train)
+    for k, pair in enumerate(train.pairs):
+        one, two = pair.shafts
+        asked = turns[one] / turns[two]
+        if not isclose(pair.ratio, asked, rel_tol=1e-12):
+            yield SceneError(
+                f"closes a loop in which the other meshes turn the {one} {asked:.6g} times as fast "
+                f"as the {two}, and its {pair.gear.teeth} over {pair.pinion.teeth} teeth "
+                f"{pair.ratio:.6g} times: the loop cannot turn; correct the teeth",
+                path=("mesh", k, "between"),
+            )
