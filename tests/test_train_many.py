@@ -250,6 +250,36 @@ def test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_t
         assert np.abs(six).max() < 1e-10 * largest
 
 
+@pytest.mark.parametrize("told", ["", 'loaded_side = "right"'])
+def test_an_idler_between_two_wheels_is_pushed_across_by_both(tmp_path, told):
+    """Driven on one flank it drives with the other: forces along its teeth add up, and those that
+    push wheels apart cancel where the three axes lie in a line.
+    """
+    written(tmp_path)
+    (tmp_path / "idler.toml").write_text(scene_text("input", BEARING))
+    text = ""
+    for side, scene, teeth in (
+        ("input", "input", 20),
+        ("idler", "idler", 31),
+        ("output", "output", 40),
+    ):
+        text += f'[shaft.{side}]\nscene = "{scene}.toml"\nteeth = {teeth}\nface_width = 0.03\n'
+        text += f"pitch_radius = {0.0015 * teeth}\nspiral_angle = 0\n"
+        text += {"input": 'loaded_side = "left"\n', "idler": told + "\n", "output": ""}[side]
+    for one, two in (("input", "idler"), ("idler", "output")):
+        text += f'[[mesh]]\nbetween = ["{one}", "{two}"]\nshaft_angle = 0\nstiffness = 3e8\n'
+        text += f"pressure_angle = {PRESSURE}\ntransmission_error = 1e-6\n"
+    for name, shaft in (("engine", "input"), ("load", "output")):
+        text += f'[{name}]\nshaft = "{shaft}"\ninertia = 0.03\n'
+        text += f'[{name}.spring]\nstiffness = 4e3\nat = "b1"\n'
+    (tmp_path / "train.toml").write_text(text + "[operation]\ntorque = 90\n")
+    train = sg.load_train(tmp_path / "train.toml")
+    state = Operating(Workshop(train), "timoshenko").at(train.operation[0])
+    push = sum(state.forces()[f"idler.{b}"][:3] for b in ("b0", "b1"))  # of the bearings
+    assert np.abs(push) == pytest.approx([0, 0, 2 * 90 / 0.03], abs=1e-6)
+    assert state.outside["load"][4] == pytest.approx(90.0 * 40 / 20, rel=1e-10)
+
+
 BAD = {
     "unknown shaft": (
         (('"middle.pinion", "output', '"middle.pinion", "outptu'),),

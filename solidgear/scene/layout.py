@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from solidgear.errors import SceneError, listed, nearest
 
 if TYPE_CHECKING:
-    from solidgear.scene.gears import Pair
+    from solidgear.scene.gears import Member, Pair
     from solidgear.scene.train import Train
 
 #: a ratio that is typed with four digits may differ from that of the teeth by this
@@ -23,6 +23,9 @@ RESERVED = (
     "rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
     "unpublished verdict verdicts"
 ).split()
+
+
+OTHER_FLANK = {"left": "right", "right": "left", "concave": "convex", "convex": "concave"}
 
 
 class PerTurn(float):
@@ -130,6 +133,30 @@ def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
         side, _, port = word.partition(".")
         out.append((side, port or next(iter(train.shafts[side].gears))))
     return out[0], out[1]
+
+
+def with_flanks(
+    train: Train, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
+) -> tuple[Member, Member]:
+    """The two gears of a mesh with the flanks that are loaded there.
+
+    A gear that is second in one mesh and first in another passes a torque on: what drives it pushes
+    on the flank behind those that it drives with.  Its `loaded_side` is that of the mesh in which it
+    is first, and follows from the other where it is not told.
+    """
+    meshes = [ends_of(train, k) for k in range(len(train.meshes))]
+    if gear.loaded_side and ends[1] in [first for first, _ in meshes]:
+        gear = gear.with_changes(loaded_side=OTHER_FLANK[gear.loaded_side])
+    driver, end, passed = pinion, ends[0], 0
+    while driver.flank is None and passed < len(meshes):
+        before = next((first for first, second in meshes if second == end), None)
+        if before is None:
+            return pinion, gear
+        driver, end, passed = train.shafts[before[0]].member(before[1]), before, passed + 1
+    if passed and driver.flank:
+        flank = driver.flank if passed % 2 == 0 else OTHER_FLANK[driver.flank]
+        pinion = pinion.with_changes(loaded_side=flank)
+    return pinion, gear
 
 
 def _outward(train: Train, first: str) -> Iterator[tuple[str, int]]:

@@ -74,7 +74,7 @@ def _flanks(pair: Pair) -> Iterator[SceneError]:
         if pinion.flank != gear.flank:
             yield SceneError(
                 f"is the {gear.flank} flank, and the {pinion.flank} one is loaded on "
-                "the pinion: seen from one side, left flanks touch left ones; correct one of "
-                "the two, or leave that of the gear out",
+                f"the {pair.shafts[0]}: seen from one side, left flanks touch left ones; correct "
+                "one of the two, or leave that of the gear out",
                 path=("gear", "loaded_side"),
             )

@@ -15,7 +15,14 @@ from pydantic import model_validator
 
 from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft
-from solidgear.scene.layout import PerTurn, ends_of, layout_problems, path_between, turns_of
+from solidgear.scene.layout import (
+    PerTurn,
+    ends_of,
+    layout_problems,
+    path_between,
+    turns_of,
+    with_flanks,
+)
 from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
@@ -170,6 +177,7 @@ class Train(Model):
             alone = len(self.meshes) == 1
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
             pinion, gear = (self.shafts[side].member(port) for side, port in ends)
+            pinion, gear = with_flanks(self, ends, pinion, gear)
             out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point))
         return tuple(out)
 

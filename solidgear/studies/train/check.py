@@ -111,7 +111,7 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
         yield (
             f"{of}{pair.pinion.teeth} and {pair.gear.teeth} teeth, lever arms {levers[0]:.2f} and "
             f"{levers[1]:.2f} mm, mesh {met.stiffness:.4g} N/m along "
-            f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the pinion"
+            f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the {pair.shafts[0]}"
         )
         teeth = train.per_turn(pair)
         yield (

@@ -361,8 +361,8 @@ def _levers(pair: Pair, pinion: MeshVector, gear: MeshVector) -> list[str]:
     off = levers / pair.ratio - 1
     if abs(off) > LEVER_REFUSED:
         raise SceneError(
-            f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the pinion and "
-            f"{1e3 * abs(gear.lever):.2f} mm on the gear, a ratio of {levers:.4f}; "
+            f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the {pair.shafts[0]} and "
+            f"{1e3 * abs(gear.lever):.2f} mm on the {pair.shafts[1]}, a ratio of {levers:.4f}; "
             f"the teeth ask for {pair.ratio:.4f}",
             path=path,
         )

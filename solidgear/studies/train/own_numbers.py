@@ -47,7 +47,7 @@ def _contradictions(pair: Pair) -> Iterator[tuple[str, str, bool]]:
         given = gear.pitch_radius / pinion.pitch_radius
         off = abs(given / pair.ratio - 1)
         words = (
-            f"is {given:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the pinion, and "
+            f"is {given:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the {pair.shafts[0]}, and "
             f"{gear.teeth} over {pinion.teeth} teeth ask for {pair.ratio:.4g} times"
         )
         if off > RADII[0]:
@@ -56,7 +56,7 @@ def _contradictions(pair: Pair) -> Iterator[tuple[str, str, bool]]:
         both = pinion.pitch_angle + gear.pitch_angle
         off = abs(both - mesh.shaft_angle)
         words = (
-            f"and that of the pinion add up to {both:.4g} rad, and the shafts are at "
+            f"and that of the {pair.shafts[0]} add up to {both:.4g} rad, and the shafts are at "
             f"{mesh.shaft_angle:.4g} rad; correct one of the three"
         )
         if off > ANGLES[0]:
