@@ -59,13 +59,14 @@ def _materials(scene: Mapping[str, Any], units: Units) -> str:
 def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> list[list[str]]:
     """Rows of one mesh, below its name where there are several."""
     name, (pinion, gear) = mesh["name"], mesh["teeth"]
+    first = mesh["between"][0].partition(".")[0]
     known = f"{name}.stiffness", f"{name}.transmission_error"
     line = next((k for k in status if k.startswith(f"{name}.") and k not in known), "")
     rows = [
         ["teeth", f"{pinion} and {gear}, ratio {gear / pinion:.4f}", ""],
         ["shaft angle", f"{degrees(mesh['shaft_angle']):g}°", ""],
         ["mesh stiffness", units.text(mesh["stiffness"], "N/m", 4), known[0]],
-        ["line of action on the pinion", _vector(mesh["line_of_action"][0], 4), line],
+        [f"line of action on the {first}", _vector(mesh["line_of_action"][0], 4), line],
         ["mesh point from the lumped points", _points(mesh, units), ""],
         ["lever arms", _levers(mesh, units), ""],
         ["transmission error", _error(mesh["transmission_error"], units), known[1]],
