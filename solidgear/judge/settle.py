@@ -252,7 +252,10 @@ def _settled_body(scene: Scene, tol: float, progress: Progress) -> Settled:
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
-        why = "no finer mesh is calibrated" if bars else ONE_MESH
+        finer = (
+            "no finer mesh is calibrated" if block else "list a finer mesh beside those of the file"
+        )
+        why = finer if bars else ONE_MESH
         why *= done and not reached
         setting = mesh_words(options)
         steps.append(
