@@ -28,7 +28,7 @@ def main():
     shop = Workshop(train, settings={"harmonic": {"order": 2}})
     first, force = {}, {}
     for gear in ("timoshenko", "harmonic"):
-        found = train_modes(shop, "timoshenko", gear, 1000.0)
+        found = train_modes(shop, "timoshenko", gear, max_frequency=1000.0)
         first[gear] = next(m.frequency_hz for m in found.modes if m.name == "gear bending 1")
         drive = Drive(shop, "timoshenko", gear)
         force[gear] = float(abs(drive.mesh(np.array([700.0]))[1][0]))

@@ -934,10 +934,10 @@ MUTATIONS = (
     ),
     Mutation(
         "motion in time: the stiffness stands still",
-        "solidgear/nonlinear/motion.py",
+        "solidgear/nonlinear/integrated.py",
         "Integrated._seen",
-        "np.array([self.omega * t])",
-        "np.array([0.0 * t])",
+        "self.angle(t)",
+        "0.0 * self.angle(t)",
         "tests/test_nonlinear_varying.py::test_balance_and_time_agree_on_every_law",
     ),
     Mutation(

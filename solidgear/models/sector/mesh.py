@@ -63,6 +63,8 @@ class PieceSolid(SolidMesh):
     """
 
     inner: np.ndarray
+    # its shapes are waves of a given order around, not displacements of the whole part
+    motion = None  # type: ignore[assignment]
 
     @cached_property
     def boundary(self) -> np.ndarray:
