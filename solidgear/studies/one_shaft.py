@@ -131,9 +131,9 @@ def one_shaft(
 
 
 def all_modes(found: ModeSet) -> ModeSet:
-    """All modes of a list and beyond it as one list."""
-    every = sorted((*found.modes, *found.beyond), key=lambda mode: mode.frequency_hz)
-    return replace(found, modes=tuple(every), beyond=())
+    """All modes of a list, beyond it and above both as one list."""
+    every = sorted((*found.modes, *found.beyond, *found.above), key=lambda mode: mode.frequency_hz)
+    return replace(found, modes=tuple(every), beyond=(), above=())
 
 
 def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:
