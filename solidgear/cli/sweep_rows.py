@@ -25,7 +25,6 @@ from solidgear.studies.sweep.design import Design
 if TYPE_CHECKING:
     from solidgear.studies.sweep import Summary
     from solidgear.studies.sweep.curves import Curves
-    from solidgear.studies.sweep.design import Design
     from solidgear.studies.sweep.scene_run import SceneSummary
     from solidgear.studies.sweep.train_run import TrainSummary
 

@@ -24,7 +24,7 @@ from solidgear.report.viewer import TURNED, Turning
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.judge.record import Record
-    from solidgear.report.render import RenderJob, RenderResult
+    from solidgear.report.render import RenderResult
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison
 

@@ -39,7 +39,6 @@ from solidgear.studies.guards.models import cells_around
 from solidgear.studies.two_shafts import two_shafts
 
 if TYPE_CHECKING:
-    from solidgear.scene import Scene
     from solidgear.studies.two_shafts import TwoShafts
 
 log = logging.getLogger(__name__)

@@ -5,9 +5,10 @@ Both lists ascend. They are laid beside each other by a hidden Markov model: a s
 each (the same mode), two measured and one computed (a pair that was measured split), one measured
 and two computed (two modes too near each other to be told apart), two of each crosswise, or one of
 either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
-by a common shift, such as that of a modulus which is not known well, and a scatter beside what is told
-of each; both are found with the pairing (expectation maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77,
-257, eqs. 19 to 27) give the probability of every pair, which is what is told.
+by a common shift, such as that of a modulus which is not known well, and a scatter beside what is
+told of each; both are found with the pairing (expectation maximisation). Forward and backward sums
+(Rabiner 1989, Proc. IEEE 77, 257, eqs. 19 to 27) give the probability of every pair, which is what
+is told.
 """
 
 from __future__ import annotations

@@ -85,8 +85,9 @@ def contact(pair: Pair, coast: bool | None = None) -> Contact:
     Raises
     ------
     SceneError
-        For missing gear data, numbers of the gear that contradict those of the pinion, a line of action that is no unit vector or lies in the wrong frame,
-        a mesh point off the gears, or lever arms that are not in the ratio of the teeth.
+        For missing gear data, numbers of the gear that contradict those of the pinion, a line of
+        action that is no unit vector or lies in the wrong frame, a mesh point off the gears, or
+        lever arms that are not in the ratio of the teeth.
 
     Examples
     --------
