@@ -19,7 +19,7 @@ from solidgear.cli.shared import (
     options_by_name,
 )
 from solidgear.cli.train_judge import compare_train
-from solidgear.cli.train_options import Mix, Reduced, refuse_given
+from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed
 from solidgear.ladder.registry import LADDER
@@ -119,7 +119,7 @@ def compare(
         "--mesh": bool(mesh),
     }
     if more:
-        mix = Mix(pinion or MODEL, gear or MODEL, None, shafts)
+        mix = Pair(pinion or MODEL, gear or MODEL, shafts)
         compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
         return
     for option, given in of_trains.items():
@@ -162,7 +162,7 @@ TRAINS = "of two trains --pinion, --gear and --shaft choose the models"
 def compare_two(
     files: list[Path],
     out: Path,
-    mix: Mix,
+    mix: Pair,
     mesh: str | None,
     run: Shown,
     given: dict[str, bool],
@@ -174,7 +174,7 @@ def compare_two(
     ----------
     files : list of Path
         Two; more are refused.
-    mix : Mix
+    mix : Pair
         Models of the shafts of both trains.
     mesh : str or None
         Whose transmission error drives both; the first by default.
@@ -223,7 +223,7 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
         say(sentence)
 
 
-def _two_trains(a: str, b: str, out: Path, mix: Mix, mesh: str | None, run: Shown) -> None:
+def _two_trains(a: str, b: str, out: Path, mix: Pair, mesh: str | None, run: Shown) -> None:
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
