@@ -26,6 +26,7 @@ from solidgear.studies.train.operation import at_point
 from solidgear.studies.train.respond import respond
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
+TWO_STAGE = GEOMETRY / "gearbox_two_stage.toml"
 GEARBOX, AXLE = GEOMETRY / "gearbox_train.toml", GEOMETRY / "axle_overhung.toml"
 BEAMS = {"pinion": "timoshenko", "gear": "timoshenko"}
 LIGHT = {**BEAMS, "max_frequency": 1500.0}
@@ -107,6 +108,52 @@ def test_a_row_is_what_the_same_files_edited_by_hand_give(tmp_path):
             told = [row[f"{shaft.name}.{bearing.name}.{w}"] for w in ("radial", "axial", "moment")]
             own = bearing.radial, bearing.load[1], bearing.moment
             np.testing.assert_allclose(told, own, rtol=1e-6, atol=1e-6)
+
+
+def test_a_row_of_three_shafts_is_what_the_same_files_edited_by_hand_give(tmp_path):
+    mix = {"input": "euler", "middle": "timoshenko", "output": "lumped/euler"}
+    how = {"mesh": "middle-output", "models": mix, "pinion": None, "gear": None}
+    vary = [
+        "mesh.middle-output.stiffness=4.5e8 N/m,9e8 N/m",
+        "middle.bearing.E.position=18 mm",
+        "output.head.mass=12 kg,13 kg",
+    ]
+    found, rows = swept(TWO_STAGE, vary, tmp_path / "rows.csv", max_frequency=700.0, **how)
+    assert (found.total, found.refused, found.bodies) == (4, 0, 3 + 2)
+    (row,) = (r for r in rows if list(r.values())[1:4] == [9e8, 0.018, 13.0])
+    path = by_hand(
+        tmp_path,
+        TWO_STAGE,
+        (TWO_STAGE.name, 'stiffness = "4.5e8 N/m"', 'stiffness = "9e8 N/m"'),
+        (TWO_STAGE.name, 'mass = "12 kg"', 'mass = "13 kg"'),
+        ("gearbox_middle.toml", 'position = "15 mm"', 'position = "18 mm"'),
+    )
+    train = sg.load_train(path)
+    shop = Workshop(train)
+    modes = train_modes(shop, *mix.values(), max_frequency=700.0).modes[1:]
+    assert row["modes"] == len(modes) and row["mode3"] == modes[2].name
+    hz = [row[f"f{k}_hz"] for k in range(1, len(modes) + 1)]
+    np.testing.assert_allclose(hz, [mode.frequency_hz for mode in modes], rtol=1e-8)
+    tops = respond(shop, *mix.values(), mesh="middle-output", highest_hz=700.0).peaks
+    top = max(tops, key=lambda one: one.force)
+    assert row["peak1_force"] == pytest.approx(top.force, rel=1e-6)
+    assert row["peak1_mode"] == top.mode
+    still = deflection(shop, train.operation[0], "euler", "timoshenko", "euler")
+    for name, force in still.mesh_forces.items():
+        assert row[f"mesh_force_{name.partition(' ')[2]}"] == pytest.approx(force, rel=1e-12)
+    for one in still.misalignment:
+        column = f"misalignment_{one.name.replace(' ', '_')}"
+        assert row[column] == pytest.approx(one.value, rel=1e-6, abs=1e-12)
+    carried = {f"{s.name}.{b.name}.radial": b.radial for s in still.shafts for b in s.bearings}
+    assert {c: row[c] for c in carried} == pytest.approx(carried, rel=1e-6) and len(carried) == 6
+    for other, says in (
+        ({"models": {"pinion": "euler"}}, "has no shaft 'pinion'"),
+        ({"mesh": "third"}, "no mesh 'third'"),
+    ):
+        with pytest.raises(SolidgearError, match=says):
+            swept(TWO_STAGE, vary, tmp_path / "no.csv", **how | other)
+    with pytest.raises(SolidgearError, match="input.bearing.A.position or middle.bearing.A"):
+        swept(TWO_STAGE, ["bearing.A.position=1,2"], tmp_path / "no.csv", **how)
 
 
 def test_the_bound_of_a_row_is_the_largest_of_its_frequencies(tmp_path):

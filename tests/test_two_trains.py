@@ -12,21 +12,27 @@ import pytest
 
 import solidgear as sg
 from solidgear.body import as_supports
+from solidgear.errors import SolidgearError
+from solidgear.report.two_trains_page import others, reactions
 from solidgear.scene.differences import differences
 from solidgear.scene.operation import OperatingPoint
 from solidgear.studies.train import models
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.respond import respond
 from solidgear.studies.train.strain import strain_shares
 from solidgear.studies.train.two_trains import two_trains
-from solidgear.studies.train.two_trains_told import sentences
+from solidgear.studies.train.two_trains_told import results, sentences
 from tests.command import command, table
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 OVERHUNG, STRADDLE = GEOMETRY / "axle_overhung.toml", GEOMETRY / "axle_straddle.toml"
+TWO_STAGE = GEOMETRY / "gearbox_two_stage.toml"
 SCENE = GEOMETRY / "pinion_overhung.toml"
 COARSE = {"harmonic": {"order": 2, "layers": 1}}
 EULER = ("euler", "euler")
+#: columns of both mesh forces of two stages, the second driving
+MESHES = ("mesh force [N]", "mesh force input-middle [N]")
 
 
 def copied(folder, name="b.toml", **replaced):
@@ -137,7 +143,9 @@ def test_modes_that_both_share_are_pairs_and_what_the_mesh_strains_rises(stiffer
 def test_a_train_beside_itself_differs_nowhere_and_nothing_is_resolved(monkeypatch):
     monkeypatch.setattr(models, "MESH", COARSE)
     shop = Workshop(sg.load_train(OVERHUNG))
-    found = two_trains((shop, shop), ("one", "same"), (), "harmonic", "timoshenko", 1000.0)
+    found = two_trains(
+        (shop, shop), ("one", "same"), (), "harmonic", "timoshenko", highest_hz=1000.0
+    )
     assert found.modes and found.peaks
     for pair in found.modes:
         assert pair.a.name == pair.b.name and pair.mac == pytest.approx(1.0)
@@ -158,7 +166,7 @@ def test_a_mirrored_train_has_the_same_frequencies_found_by_name(tmp_path):
         back=('hand = "other"', 'hand = "right"'),
     )
     shops = [Workshop(sg.load_train(file)) for file in (OVERHUNG, mirrored)]
-    found = two_trains(shops, ("left", "right"), (), *EULER, 2500.0)
+    found = two_trains(shops, ("left", "right"), (), *EULER, highest_hz=2500.0)
     assert "by the motion that names them" in found.pairing
     for pair in found.modes:
         assert pair.a.name == pair.b.name and pair.mac is None
@@ -224,7 +232,7 @@ def test_twice_the_torque_and_transmission_error_double_all_and_move_no_frequenc
         )
         for twice in (1, 2)
     ]
-    found = two_trains(shops, ("once", "twice"), (), *EULER, 1000.0)
+    found = two_trains(shops, ("once", "twice"), (), *EULER, highest_hz=1000.0)
     assert {name for name, *_ in found.misalignment()} == {"E", "P", "G", "shaft angle"}
     for _, _, _, change in found.misalignment():
         assert change.relative == pytest.approx(np.sign(change.a), rel=1e-6)
@@ -237,6 +245,67 @@ def test_twice_the_torque_and_transmission_error_double_all_and_move_no_frequenc
     double = pytest.approx(6.0206, abs=1e-4)  # dB
     assert [pair.decibels for pair in found.peaks] == [double] * len(found.peaks)
     assert found.decibels("gear bearing 3 z [N]") == double
+
+
+# --------------------------------------------------------------------------- three shafts
+@pytest.fixture(scope="module")
+def three():
+    """The shipped gearbox of two stages, and it with twice the stiffness of the second mesh."""
+    train = sg.load_train(TWO_STAGE)
+    first, second = train.meshes
+    stiffer = second.with_changes(stiffness=2 * second.stiffness)
+    return Workshop(train), Workshop(train.with_changes(meshes=(first, stiffer)))
+
+
+def test_a_train_of_three_shafts_beside_itself_differs_nowhere(three):
+    shop = three[0].with_train(three[0].train.with_changes(operation=()))
+    found = two_trains((shop, shop), ("one", "same"), (), "euler", highest_hz=400.0)
+    assert [*found.models] == ["input", "middle", "output"]
+    for pair in found.modes:
+        assert pair.a.name == pair.b.name and pair.change.difference == 0.0
+    assert found.peaks and all(pair.decibels == 0.0 for pair in found.peaks)
+    assert all(found.decibels(c) in (0.0, None) for c in found.columns)
+
+
+def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
+    mix = ("euler", "timoshenko", "euler")
+    how = {"mesh": "middle-output", "highest_hz": 700.0}
+    found = two_trains(three, ("usual", "stiffer"), (), *mix, **how)
+    told = results(found)
+    assert told["models"] == dict(zip(("input", "middle", "output"), mix))
+    for key, shop in zip("ab", three):
+        alone = respond(shop, *mix, **how)
+        assert [p[key] for p in told["peaks"] if p[key]] == [vars(p) for p in alone.peaks]
+        for column in (*MESHES, "middle bearing E z [N]", "output thx [rad]"):
+            own = np.abs(alone.columns[column])
+            assert told["responses"][key]["amplitude"][column] == own.tolist()
+            assert told["largest"][column][key]["size"] == own.max()
+        modes = {m.name: m.frequency_hz for m in train_modes(shop, *mix, max_frequency=700).modes}
+        del modes["train rotation"]
+        seen = {p[key]["name"]: p[key]["frequency_hz"] for p in told["modes"] if p[key]}
+        assert {name: seen[name] for name in modes} == pytest.approx(modes, rel=1e-12)
+        assert all(sum(p[key]["shares"].values()) == pytest.approx(1) for p in told["modes"])
+    # by Rayleigh: a stiffer spring lowers no frequency, counted from below
+    hz = [sorted(p[key]["frequency_hz"] for p in told["modes"]) for key in "ab"]
+    assert np.all(np.array(hz[1]) > (1 - 1e-9) * np.array(hz[0])) and hz[1][-1] > hz[0][-1]
+    for words in ("Largest force of the mesh middle-output: ", "Largest force of the mesh input-"):
+        assert any(one.startswith(words) for one in told["sentences"])
+    # at rest torque alone makes the forces, whatever the teeth give
+    changes = {name: change for name, *_, change in found.misalignment()}
+    assert {"in plane input-middle", "across middle-output"} <= {*changes}
+    assert all(change.relative == pytest.approx(0, abs=1e-6) for change in changes.values())
+    assert others(found) == [(MESHES[1], "force of the mesh input-middle")]
+    for unit in (" [N]", " [N m]"):
+        shafts = [column.split()[0] for column, _ in reactions(found) if column.endswith(unit)]
+        assert shafts == sorted(shafts) and {*shafts} == {*told["models"]}
+
+
+def test_shafts_and_meshes_that_one_train_does_not_have_are_refused(three):
+    pair = Workshop(sg.load_train(OVERHUNG))
+    with pytest.raises(SolidgearError, match="pinion, gear and b has the shafts input, middle"):
+        two_trains((pair, three[0]), ("a", "b"))
+    with pytest.raises(SolidgearError, match="no mesh 'third'; it has input-middle, middle-out"):
+        two_trains(three, ("a", "b"), mesh="third")
 
 
 # --------------------------------------------------------------------------- page and files
@@ -282,6 +351,8 @@ def test_the_tables_of_the_folder_are_both_responses(stiffer):
         ([OVERHUNG, STRADDLE, "--models", "euler"], "--models is for one shaft"),
         ([OVERHUNG, STRADDLE, "--pinion", "eulr"], "did you mean.*euler"),
         ([OVERHUNG, "--pinion", "euler"], "--pinion is for two trains"),
+        ([OVERHUNG, "--mesh", "mesh"], "--mesh is for two trains"),
+        ([TWO_STAGE, OVERHUNG, "--pinion", "euler"], 'has no shaft "pinion"; it has input'),
         ([OVERHUNG, "missing.toml"], "there is no such file"),
     ],
     ids=lambda w: "" if isinstance(w, list) else w[:30],

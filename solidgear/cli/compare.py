@@ -19,7 +19,7 @@ from solidgear.cli.shared import (
     options_by_name,
 )
 from solidgear.cli.train_judge import compare_train
-from solidgear.cli.train_options import Reduced, refuse_given
+from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed
 from solidgear.ladder.registry import LADDER
@@ -91,6 +91,19 @@ def compare(
     gear: Annotated[
         str | None, typer.Option("--gear", help="Of two trains: model of both gears, as --pinion.")
     ] = None,
+    shafts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--shaft",
+            help="Of two trains: model of a shaft of another name, input=euler; repeatable.",
+        ),
+    ] = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Of two trains: whose transmission error drives, of several; the first."
+        ),
+    ] = None,
     run: Shown,
 ) -> None:
     of_one_shaft = {
@@ -99,10 +112,17 @@ def compare(
         "--set": bool(settings),
         "--chart": chart,
     }
+    of_trains = {
+        "--pinion": bool(pinion),
+        "--gear": bool(gear),
+        "--shaft": bool(shafts),
+        "--mesh": bool(mesh),
+    }
     if more:
-        compare_two([scene, *more], out, (pinion, gear), run, of_one_shaft)
+        mix = Pair(pinion or MODEL, gear or MODEL, shafts)
+        compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
         return
-    for option, given in (("--pinion", pinion), ("--gear", gear)):
+    for option, given in of_trains.items():
         if given:
             raise SolidgearError(
                 f"{option} is for two trains, and {scene} is one file: every model of it is solved"
@@ -136,15 +156,17 @@ def compare(
 
 
 #: where options of one shaft lead
-TRAINS = "of two trains --pinion and --gear choose the models"
+TRAINS = "of two trains --pinion, --gear and --shaft choose the models"
 
 
 def compare_two(
     files: list[Path],
     out: Path,
-    models: tuple[str | None, str | None],
+    mix: Pair,
+    mesh: str | None,
     run: Shown,
     given: dict[str, bool],
+    of_trains: dict[str, bool],
 ) -> None:
     """Two trains beside each other, or two shafts.
 
@@ -152,10 +174,12 @@ def compare_two(
     ----------
     files : list of Path
         Two; more are refused.
-    models : (str or None, str or None)
-        Of pinion and gear of both trains; of two shafts none.
-    given : dict of str to bool
-        Options of compare that speak of one shaft, and whether they were given.
+    mix : Pair
+        Models of the shafts of both trains.
+    mesh : str or None
+        Whose transmission error drives both; the first by default.
+    given, of_trains : dict of str to bool
+        Options of compare that speak of one shaft and of trains, and whether they were given.
 
     Raises
     ------
@@ -174,11 +198,11 @@ def compare_two(
     if trains[0]:
         refuse_given(given, files[0], TRAINS)
     else:
-        _refuse_of_two_shafts(given | {"--pinion": bool(models[0]), "--gear": bool(models[1])})
+        _refuse_of_two_shafts(given | of_trains)
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
     elif trains[0]:
-        _two_trains(a, b, out, (models[0] or MODEL, models[1] or MODEL), run)
+        _two_trains(a, b, out, mix, mesh, run)
     else:
         _two_shafts(a, b, out, run)
 
@@ -199,13 +223,16 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
         say(sentence)
 
 
-def _two_trains(a: str, b: str, out: Path, models: tuple[str, str], run: Shown) -> None:
-    for model in models:
-        checked_rung(model)
+def _two_trains(a: str, b: str, out: Path, mix: Pair, mesh: str | None, run: Shown) -> None:
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
+    models = mix.by_shaft(shops[0].train)
+    for model in models.values():
+        checked_rung(model)
     shown, names = units_named(run.units), _names(a, b)
     with held(out), run.progress() as progress:
-        found = two_trains(shops, names, differences(a, b), *models, progress=progress)
+        found = two_trains(
+            shops, names, differences(a, b), *models.values(), mesh=mesh, progress=progress
+        )
         told, words = two_trains_told.results(found), two_trains_told.sentences(found, shown)
         progress("report")
         write_two_trains(found, told, words, out, shown)

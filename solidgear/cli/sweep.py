@@ -88,6 +88,8 @@ def sweep(
     of_train = {
         "--pinion": pair.pinion != MODEL,
         "--gear": pair.gear != MODEL,
+        "--shaft": bool(pair.shafts),
+        "--mesh": bool(told.mesh),
         "--ask": bool(told.ask),
         "--every-point": told.every_point,
         **reduced.given,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -23,10 +24,12 @@ from solidgear.cli.sweep_rows import (
 )
 from solidgear.cli.train_options import Pair, Reduced
 from solidgear.report.sweep_chart import sweep_table
+from solidgear.scene.toml_file import parse
 from solidgear.studies.sweep.train_run import TrainSummary
 from solidgear.studies.sweep.train_run import sweep_train as swept
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES
-from solidgear.studies.train.shaft import JUDGE
+from solidgear.studies.sweep.train_variants import shafts_in
+from solidgear.studies.train.shaft import JUDGE, told_mix
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,12 @@ class Told(Group):
     every_point: Annotated[
         bool, typer.Option("--every-point", help="Of a train: a row for each operating point.")
     ] = False
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Of a train: whose transmission error drives it, of several; the first."
+        ),
+    ] = None
     chart: Annotated[
         Path | None,
         typer.Option(
@@ -66,13 +75,14 @@ def sweep_train(
     """Sweep a train and tell of it."""
     checked_chart(told.chart)
     reduced.checked()
+    mix = pair.of([*shafts_in(parse(str(train)))], train.stem)
     with rows.counted(run.as_json) as (show, tell):
         found = swept(
             train,
             rows.design(vary),
-            pinion=pair.pinion,
-            gear=pair.gear,
-            settings=of_shafts(settings, {"pinion": pair.pinion, "gear": pair.gear}),
+            models=mix,
+            mesh=told.mesh,
+            settings=of_shafts(settings, mix),
             ask=told.ask or ASKED,
             every_point=told.every_point,
             charted=told.chart is not None,
@@ -86,15 +96,15 @@ def sweep_train(
             **rows.how,
         )
     curves = found.curves
-    written = drawn(curves, found.title, _lead(found, pair), told.chart, found.cautions)
+    written = drawn(curves, found.title, _lead(found, mix), told.chart, found.cautions)
     if run.as_json:
         print(record_of(found))
         ended_rows(found)
         return
-    say(f"{found.title}: pinion {pair.pinion}, gear {pair.gear}")
+    say(f"{found.title}: {told_mix(mix)}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
         say(sweep_table(curves))
-    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, pair), *written)
+    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, mix), *written)
     say(*map(caution, found.cautions))
     ended_rows(found)
 
@@ -111,7 +121,7 @@ def _work(found: TrainSummary) -> list[str]:
     ]
 
 
-def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
+def _limits(found: TrainSummary, told: Told, mix: Mapping[str, str]) -> list[str]:
     """Sentences on what rows do not tell."""
     lines = []
     if found.cut > 0:
@@ -120,11 +130,12 @@ def _limits(found: TrainSummary, told: Told, pair: Pair) -> list[str]:
             f"{MOST_MODES}: give -n {MOST_MODES + found.cut} for all."
         )
     if MODES in (told.ask or (MODES,)):
-        meshed = JUDGE in (pair.pinion, pair.gear)
+        meshed = JUDGE in mix.values()
         meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
         lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
     return lines
 
 
-def _lead(found: TrainSummary, pair: Pair) -> str:
-    return f"Pinion {pair.pinion}, gear {pair.gear}; rows in {found.path.name}."
+def _lead(found: TrainSummary, mix: Mapping[str, str]) -> str:
+    models = told_mix(mix)
+    return f"{models[0].upper()}{models[1:]}; rows in {found.path.name}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -103,7 +103,7 @@ class Reduced(Group):
 
 @dataclass(frozen=True)
 class Pair(Group):
-    """Models of the two shafts."""
+    """Models of the shafts."""
 
     pinion: Annotated[
         str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
@@ -111,13 +111,6 @@ class Pair(Group):
     gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
         MODEL
     )
-
-
-@dataclass(frozen=True)
-class Mix(Pair):
-    """The same with their builder options, and models of shafts by other names."""
-
-    settings: ShaftSettings = None
     shafts: Annotated[
         list[str] | None,
         typer.Option(
@@ -125,14 +118,12 @@ class Mix(Pair):
         ),
     ] = None
 
-    def workshop(self, reduced: Reduced, path: Path) -> Workshop:
-        """Workshop of a train with these builder options."""
-        shop = reduced.workshop(path)
-        shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
-        return shop
-
     def by_shaft(self, train: Train) -> dict[str, str]:
-        """Models of the shafts of a train.
+        """Models of the shafts of a train."""
+        return self.of(train.shafts, train.name)
+
+    def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
+        """Models of shafts, of a train by that name.
 
         Raises
         ------
@@ -146,10 +137,23 @@ class Mix(Pair):
                 raise SolidgearError(f"--shaft {show(text, 40)}: write SHAFT=MODEL, input=euler")
             given[side] = model
         for side in given:
-            if side not in train.shafts:
-                known = listed(train.shafts)
-                raise SolidgearError(f"{train.name} has no shaft {show(side, 40)}; it has {known}")
-        return {side: given.get(side, MODEL) for side in train.shafts}
+            if side not in shafts:
+                known = listed(shafts)
+                raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {known}")
+        return {side: given.get(side, MODEL) for side in shafts}
+
+
+@dataclass(frozen=True)
+class Mix(Pair):
+    """The same with their builder options."""
+
+    settings: ShaftSettings = None
+
+    def workshop(self, reduced: Reduced, path: Path) -> Workshop:
+        """Workshop of a train with these builder options."""
+        shop = reduced.workshop(path)
+        shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
+        return shop
 
 
 @dataclass(frozen=True)

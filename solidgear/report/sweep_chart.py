@@ -64,7 +64,8 @@ def sweep_table(found: Any, units: Units = ENGINEERING) -> Table:
     notes = ["Peak: largest of the mesh force."] if found.peak_hz else []
     if told and told[0] in found.frequencies:
         notes.append("f and a number: natural frequencies, those that change most.")
-    return Table(f"Over {found.over}", columns, range(len(found.x)), " ".join(notes), style="bare")
+    style = "bare" if len(found.mesh_force) < 2 else "ruled"  # names of meshes fill their columns
+    return Table(f"Over {found.over}", columns, range(len(found.x)), " ".join(notes), style=style)
 
 
 def _moving_most(frequencies: Sequence[Any]) -> list[Any]:

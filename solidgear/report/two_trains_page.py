@@ -8,6 +8,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,9 +30,9 @@ from solidgear.report.words import hertz, seconds
 LARGE = 0.2
 #: panels of a chart: more do not fit a sheet of paper
 MOST_PANELS = 8
-SIDES = ("pinion", "gear")
 #: charts that are files as well; those of many panels are read on the page
 FILED = ("response", "shares")
+REACTED = ("[N]", "[N m]")
 EXCITED = "Steady response to the transmission error of each file."
 REACTIONS = (
     f"Those of {100 * LARGE:g} % of the largest of their kind or more, and the largest of every "
@@ -76,8 +77,7 @@ def write_two_trains(
         # Numbers first: whatever happens to charts, they are there.
         write_json(folder / "results.json", {**results, "files": files})
         for key, one in zip("ab", found.both):
-            teeth = one.workshop.train.pinion.teeth
-            over_frequency(one.response, teeth).write(folder / f"response_{key}.csv")
+            over_frequency(one.response, _teeth(found, one)).write(folder / f"response_{key}.csv")
         for name in FILED:
             write_charts(folder / name, charts[name])
         return write_sheet(
@@ -94,25 +94,45 @@ def write_two_trains(
 def charts_of(found: Any, units: Units) -> dict[str, Make]:
     """Charts by their names: response, shares, and those of reactions and motions, numbered."""
     both = [one.response for one in found.both]
-    teeth = {one.workshop.train.pinion.teeth for one in found.both}
-    shared = teeth.pop() if len(teeth) == 1 else None
+    teeth, its = (_teeth(found, one) for one in found.both)
+    shared = teeth if (teeth, teeth.of) == (its, its.of) else None
     charts: dict[str, Make] = {
         "response": partial(response_chart, both, "", shared, None, {}, units),
         "shares": partial(shares_chart, _bars(found)),
     }
-    forces, moved = _pages(reactions(found), ("[N]", "[N m]")), _pages(motions(found), SIDES)
-    for name, pages in (("reactions", forces), ("motions", moved)):
-        for k, own in enumerate(pages):
+    forces, moved = reactions(found), motions(found)
+    for name, groups in (
+        ("response", [others(found)]),
+        ("reactions", [[c for c in forces if c[0].endswith(f" {unit}")] for unit in REACTED]),
+        ("motions", [[c for c in moved if _place(c[0]) == side] for side in found.models]),
+    ):
+        for k, own in enumerate(_pages(groups)):
             charts[f"{name}_{k}"] = partial(columns_chart, both, own, shared, units)
     return charts
 
 
+def _teeth(found: Any, one: Any) -> Any:
+    train = one.workshop.train
+    return train.per_turn(train.named_mesh(found.mesh))
+
+
+def _place(column: str) -> str:
+    """Shaft or bearing that a column of a component is of."""
+    return column.partition(" [")[0].rpartition(" ")[0]
+
+
+def others(found: Any) -> list[tuple[str, str]]:
+    """Columns of forces of meshes that do not drive, and what they are called."""
+    return [*found.forces.items()][1:]
+
+
 def reactions(found: Any) -> list[tuple[str, str]]:
     """Columns of bearing reactions that are large, or the largest of their bearing, and what they are
-    called; forces before moments, the pinion's before the gear's.
+    called; forces before moments, shaft by shaft.
     """
     out: list[tuple[str, str]] = []
-    for unit in ("[N]", "[N m]"):
+    turn = [*found.models]
+    for unit in REACTED:
         sizes: dict[tuple[str, str], float] = {}
         for column in found.columns:
             bearing, _, dof = column.removesuffix(f" {unit}").rpartition(" ")
@@ -121,7 +141,8 @@ def reactions(found: Any) -> list[tuple[str, str]]:
                 sizes[bearing, dof] = max(top[1] for top in tops if top is not None)
         largest = max(sizes.values(), default=0.0)
         by_bearing = sorted(
-            sizes.items(), key=lambda one: (SIDES.index(one[0][0].split()[0]), one[0][0])
+            sizes.items(),
+            key=lambda one: (turn.index(one[0][0].partition(" bearing ")[0]), one[0][0]),
         )
         for (bearing, dof), size in by_bearing:
             own = max(other for (name, _), other in sizes.items() if name == bearing)
@@ -130,23 +151,20 @@ def reactions(found: Any) -> list[tuple[str, str]]:
     return out
 
 
-def _pages(
-    columns: list[tuple[str, str]], groups: Sequence[str]
-) -> Iterator[list[tuple[str, str]]]:
-    """Columns that share a chart: those of a unit or a shaft, and no more than a sheet takes."""
-    for group in groups:
-        own = [c for c in columns if c[0].startswith(f"{group} ") or c[0].endswith(f" {group}")]
+def _pages(groups: Sequence[list[tuple[str, str]]]) -> Iterator[list[tuple[str, str]]]:
+    """Columns that share a chart: those of a group, and no more than a sheet takes."""
+    for own in groups:
         charts = math.ceil(len(own) / MOST_PANELS)
         size = 2 * math.ceil(len(own) / charts / 2) if own else 1  # alike, whole rows of two
         yield from (own[k : k + size] for k in range(0, len(own), size))
 
 
 def motions(found: Any) -> list[tuple[str, str]]:
-    """Columns of the motions of both lumped points, and what they are called."""
+    """Columns of the motions of the main lumped points, and what they are called."""
     return [
-        (column, f"{column.partition(' ')[0]}, {column.partition(' [')[0].rpartition(' ')[2]}")
+        (column, f"{_place(column)}, {column.partition(' [')[0].rpartition(' ')[2]}")
         for column in found.columns
-        if column.partition(" ")[0] in SIDES and " bearing " not in column
+        if _place(column) in found.models
     ]
 
 
@@ -169,11 +187,14 @@ def _sections(
     units: Units,
 ) -> list[Section]:
     loaded = [one for one in found.both if found.misalignment()]
-    points = [
-        f"{one.letter} at {one.loaded.point.label}: {units.text(one.loaded.mesh_force, 'N', 4)} "
-        "along the line of action."
-        for one in loaded
-    ]
+    points = []
+    for one in loaded:
+        told = [
+            units.text(size, "N", 4) + name.removeprefix("mesh")
+            for name, size in one.loaded.mesh_forces.items()
+        ]
+        at = one.loaded.point.label
+        points.append(f"{one.letter} at {at}: {', '.join(told)} along the line of action.")
     facts = [
         train_tables.facts(train, units, f"Train {one.label}")
         for train, one in zip(results["trains"].values(), found.both)
@@ -191,7 +212,13 @@ def _sections(
             "" if found.inputs else beside_tables.SAME,
             beside_tables.inputs(found),
         ),
-        section("response", "Mesh force", EXCITED, tables.peaks(found, units)),
+        section(
+            "response",
+            "Mesh force",
+            EXCITED,
+            tables.peaks(found, units),
+            *tables.largest(found, others(found), units),
+        ),
         section("modes", "Modes", "", beside_tables.modes(found)),
         section(
             "reactions",
@@ -219,7 +246,14 @@ def _sections(
 
 #: in the order of shares, the colours in turn; shafts are dark, what they rest on is light
 COLOURS = ("#8a6d3b", "#0072b2", "#9cc9e6", "#b3305c", "#9fd3bf", "#00805e", "#5a3e8c")
-LIGHT = ("#9cc9e6", "#9fd3bf")
+#: of more places than that by the last word of their names, in turn, and of meshes
+OF_KIND = {
+    "spring": ("#8a6d3b", "#5a3e8c", "#1f9bb8"),
+    "shaft": ("#0072b2", "#00805e", "#c46200", "#444444"),
+    "bearings": ("#9cc9e6", "#9fd3bf", "#f2c79b", "#c4c4c4"),
+}
+OF_MESHES = ("#b3305c", "#e07aa0", "#7a1f3d")
+LIGHT = OF_KIND["bearings"]
 #: px of a bar; of the names of modes on a wide and on a narrow page; of the letter beside a bar, and
 #: of a place in the legend
 BAR, NAMES, NARROW_NAMES, LETTER, PLACE = 13.0, 215.0, 120.0, 14.0, 142.0
@@ -257,7 +291,7 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
         Axis("share of the strain energy", (low, 1.0), label=PERCENT),
         Axis("", (len(modes) - 0.5, -0.5), ticks=names, grid=False),
         max(BAR * most + 8, 15 * lines + 2) * len(modes),
-        series={place: Series(COLOURS[k % len(COLOURS)]) for k, place in enumerate(places)},
+        series={place: Series(colour) for place, colour in _colours(places).items()},
         legend={"orient": "top", "columns": int(width / PLACE), "symbolType": "square"},
         left=left,
     )
@@ -280,6 +314,15 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
         look = {"type": "text", "baseline": "middle", "fontSize": 9, "color": colour}
         panel.draw(look, figures)
     return Chart([[panel]], width)
+
+
+def _colours(places: Sequence[str]) -> dict[str, str]:
+    """Colour of every place."""
+    if len(places) <= len(COLOURS):
+        return dict(zip(places, COLOURS))
+    left = {kind: cycle(own) for kind, own in OF_KIND.items()}
+    meshes = cycle(OF_MESHES)
+    return {place: next(left.get(place.rpartition(" ")[2], meshes)) for place in places}
 
 
 def _pieces(bar: Bar, y: float, half: float) -> Iterator[dict[str, Any]]:

@@ -26,7 +26,7 @@ TEETH = DATA["gears"]["teeth"][0]
 def mountings(way: str) -> TwoTrains:
     """Both mountings of the pinion beside each other."""
     shops = [fourteen(case, way).workshop for case in CASES]
-    return two_trains(shops, CASES, (), "thesis", "thesis", HIGHEST)
+    return two_trains(shops, CASES, (), "thesis", highest_hz=HIGHEST)
 
 
 def responses(way: str) -> list[TrainResponse]:

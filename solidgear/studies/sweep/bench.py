@@ -38,24 +38,24 @@ class Bench:
         self._trains: OrderedDict[Hashable, Operating] = OrderedDict()
         self.made = 0
 
-    def workshop(self, train: Train, pinion: str, gear: str) -> Workshop:
-        """Workshop of a train that has the bodies of its shafts by two models."""
+    def workshop(self, train: Train, *models: str) -> Workshop:
+        """Workshop of a train that has the bodies of its shafts by these models."""
         shop = Workshop(train, *self._how)
-        for side, model in shop.mix((pinion, gear)).items():
+        for side, model in shop.mix(models).items():
             kind, base = checked_rung(model)
             shop.keep(self._shaft(shop, side, base or kind))
         return shop
 
-    def operating(self, key: Hashable, train: Train, pinion: str, gear: str) -> Operating:
-        """A train to be put at rest, its shafts by two models; the key is alike for trains that
+    def operating(self, key: Hashable, train: Train, *models: str) -> Operating:
+        """A train to be put at rest, its shafts by these models; the key is alike for trains that
         differ in operating points alone.
         """
 
-        key = key, pinion, gear
+        key = key, *models
         if key not in self._trains:
             if len(self._trains) >= TRAINS:
                 self._trains.popitem(last=False)
-            self._trains[key] = Operating(self.workshop(train, pinion, gear), pinion, gear)
+            self._trains[key] = Operating(self.workshop(train, *models), *models)
         self._trains.move_to_end(key)
         return self._trains[key].with_points(train)
 

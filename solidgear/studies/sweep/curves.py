@@ -12,12 +12,14 @@ import numpy as np
 from solidgear.errors import SolidgearError, listed
 from solidgear.studies.sweep.entries import Entry, in_si
 from solidgear.studies.sweep.file_variants import POINT, FileVariants
-from solidgear.studies.sweep.train_task import misaligned
+from solidgear.studies.sweep.train_task import force_of, misaligned
 
 #: rows that curves are made of
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
+#: what columns of mesh forces begin with
+FORCE = force_of("mesh")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,8 +56,10 @@ class Curves:
         Names of the rows where they have some, such as operating points.
     radial, axial : list of Curve
         Loads of bearings.
-    mesh_force, peak_hz, peak_force : list of Curve
-        One each, or none; of the largest peak of the mesh force.
+    mesh_force : list of Curve
+        One for each mesh, or none.
+    peak_hz, peak_force : list of Curve
+        One each, or none; of the largest peak of the force of the mesh that drives.
     """
 
     over: str
@@ -174,17 +178,27 @@ def curves(columns: Mapping[str, list[Any]], one: Entry, measured: Sequence[str]
             for column in modes
             for curve in told(column[:-3], column, "Hz", f"mode{column[1:-3]}")
         ],
-        mesh_force=told("mesh force", "mesh_force", "N"),
-        misalignment=[
+        mesh_force=[
             curve
-            for name in measured
-            for curve in told(name, misaligned(name), UNITS.get(name, "m moved"))
+            for column in columns
+            if column.startswith(FORCE)
+            for curve in told(
+                f"mesh force{column.removeprefix(FORCE).replace('_', ' ')}", column, "N"
+            )
+        ],
+        misalignment=[
+            curve for name in measured for curve in told(name, misaligned(name), _unit_of(name))
         ],
         radial=radial,
         axial=axial,
         peak_hz=told("largest peak", "peak1_hz", "Hz", "peak1_mode"),
         peak_force=told("largest peak", "peak1_force", "N", "peak1_mode"),
     )
+
+
+def _unit_of(name: str) -> str:
+    """Unit of a number of the misalignment, of several meshes with the name of its own."""
+    return next((unit for what, unit in UNITS.items() if name.startswith(what)), "m moved")
 
 
 def _numbers(values: Sequence[Any]) -> np.ndarray:

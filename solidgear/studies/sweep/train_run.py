@@ -23,7 +23,7 @@ from solidgear.studies.sweep.train_variants import TrainVariants, train_variants
 from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.misalignment import measured_names
 from solidgear.studies.train.models import KEPT
-from solidgear.studies.train.shaft import checked_rung
+from solidgear.studies.train.shaft import JUDGE, checked_rung
 
 #: most natural frequencies of a row
 MOST_SHAPES = 200
@@ -77,8 +77,10 @@ def sweep_train(
     design: Design,
     out: Path | str,
     *,
-    pinion: str = "harmonic",
-    gear: str = "harmonic",
+    pinion: str | None = None,
+    gear: str | None = None,
+    models: Mapping[str, str] | None = None,
+    mesh: str | None = None,
     ask: Iterable[str] = ASKED,
     n: int | None = None,
     max_frequency: float | None = None,
@@ -103,14 +105,18 @@ def sweep_train(
     train : path
         Of the train file.
     design : Design
-        Entries that vary: any number or word of the train file, or of the scene of a side, such as
+        Entries that vary: any number or word of the train file, or of the scene of a shaft, such as
         ``pinion.bearing.2.position=140 mm:160 mm:5``. The change is made to the tables of the file,
         and every rule of the file applies.
     out : path
         ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
         again.
-    pinion, gear : str
-        Models of both shafts, as of ``system-modes``.
+    pinion, gear : str, optional
+        Models of the shafts of these names, as of ``system-modes``; ``harmonic`` by default.
+    models : mapping of str to str, optional
+        Models of shafts by any name.
+    mesh : str, optional
+        Whose transmission error drives the train; the first by default.
     ask : iterable of str
         Some of ``system-modes``, ``response`` and ``deflect``: what a row tells, all by default.
     n : int, optional
@@ -157,20 +163,27 @@ def sweep_train(
     """
     start = time.perf_counter()
     asked = _asked(ask)
-    for model in (pinion, gear):
+    given = {side: one for side, one in (("pinion", pinion), ("gear", gear)) if one is not None}
+    given |= models or {}
+    for model in given.values():
         checked_rung(model)
     if n is not None:
         number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     number("sweep", "jobs", jobs, least=1, whole=True)
     variants = train_variants(Path(train), design, point=point, every_point=every_point)
     if local_harmonics:
-        variants = variants.with_entry(OWN, ("mesh", "local_harmonics"), list(local_harmonics))
+        alone = ("mesh", 0) if isinstance(variants.files[OWN].get("mesh"), list) else ("mesh",)
+        variants = variants.with_entry(OWN, (*alone, "local_harmonics"), list(local_harmonics))
     if charted:
         chartable(variants)
-    how = reduction, kept, dict(settings or {})
-    task = TrainTask(variants, pinion, gear, asked, n, max_frequency, *how)
     first = variants.first_sound()
     usual = variants.train(first)
+    usual.named_mesh(mesh)
+    for side in given:
+        usual.member(side)
+    mix = {side: given.get(side, JUDGE) for side in usual.shafts}
+    how = reduction, kept, dict(settings or {}), mesh
+    task = TrainTask(variants, mix, asked, n, max_frequency, *how)
     made = make_rows(
         task,
         len(variants),
@@ -225,18 +238,19 @@ def _plan(task: TrainTask, first: int, usual: Train, design: Design) -> dict[str
     variants = task.variants
     files = {name or "train": plain(t) for name, t in variants.tables(first).items()}
     # what these files name
-    cells = [cell.model_dump() for cell in usual.mesh.contact_cells]
+    cells = [cell.model_dump() for mesh in usual.meshes for cell in mesh.contact_cells]
     parts = [own.scene.body for own in usual.shafts.values()]
     named = {"cells": cells, "parts": [part and part.model_dump(mode="json") for part in parts]}
     settings = {" ".join(key): dict(own) for key, own in task.settings.items()}
     return {
-        **files,
+        "files": files,
         **named,
         "scenes": {word: plain(tables) for word, tables in _in_turn(variants)},
         "vary": variants.plan,
         "point": variants.point,
         "sample": design.plan,
-        "models": [task.pinion, task.gear],
+        "models": [*task.models.values()],
+        "mesh": task.mesh,
         "n": task.n,
         "max_frequency": task.max_frequency,
         "reduction": [task.reduction, task.kept],

@@ -40,8 +40,8 @@ class TrainTask:
 
     Attributes
     ----------
-    pinion, gear : str
-        Models.
+    models : dict of str to str
+        By shaft, in the sequence of the file.
     ask : tuple of str
         Some of `ASKED`.
     n : int or None
@@ -50,17 +50,19 @@ class TrainTask:
         Hz; that of the file by default.
     settings : mapping
         Builder options by (side, model).
+    mesh : str or None
+        Whose transmission error drives the train; the first by default.
     """
 
     variants: TrainVariants
-    pinion: str
-    gear: str
+    models: Mapping[str, str]
     ask: tuple[str, ...] = ASKED
     n: int | None = None
     max_frequency: float | None = None
     reduction: str = "rubin"
     kept: int = KEPT
     settings: Mapping[Any, Mapping] = field(default_factory=dict)
+    mesh: str | None = None
 
     @cached_property
     def bench(self) -> Bench:
@@ -76,7 +78,7 @@ class TrainTask:
         out |= self.variants.columns
         out["status"] = str
         if train.operation:
-            out |= {"torque": float, "mesh_force": float}
+            out |= {"torque": float} | {force_of(pair.name): float for pair in train.pairs}
         if train.operation and DEFLECTION in self.ask:
             out |= dict.fromkeys(map(misaligned, measured_names(train)), float)
             out |= dict.fromkeys(_loads(train), float)
@@ -115,18 +117,18 @@ class TrainTask:
         self, index: int, train: Train, point: OperatingPoint
     ) -> tuple[Train, dict[str, Any]]:
         """A train whose bearings have settled at an operating point, and what is told of it there."""
-        key = self.variants.beside_operation(index)
-        state = self.bench.operating(key, train, SHAFT, SHAFT).at(point)
+        key, on_shafts = self.variants.beside_operation(index), (SHAFT,) * len(self.models)
+        state = self.bench.operating(key, train, *on_shafts).at(point)
         at = settled(train, state)
         out: dict[str, Any] = {
             "torque": point.torque,
-            "mesh_force": state.mesh_force,
+            **{force_of(name): force for name, force in state.mesh_forces.items()},
             "unloaded": ", ".join(at.unloaded),
         }
         if DEFLECTION in self.ask:
-            models = statics_of(self.pinion), statics_of(self.gear)
+            models = tuple(map(statics_of, self.models.values()))
             operating = self.bench.operating(key, train, *models)
-            told = state if models == (SHAFT, SHAFT) else operating.at(point)
+            told = state if models == on_shafts else operating.at(point)
             shop = operating.workshop.on_flank(point.coast)
             out |= {
                 misaligned(one.name): float(one.row @ told.coordinates)
@@ -138,8 +140,8 @@ class TrainTask:
     # ------------------------------------------------------------------------------ moving
     def _moving(self, train: Train) -> dict[str, Any]:
         """Natural frequencies and peaks of the mesh force."""
-        shop = self.bench.workshop(train, self.pinion, self.gear)
-        drive = Drive(shop, self.pinion, self.gear)
+        shop = self.bench.workshop(train, *self.models.values())
+        drive = Drive(shop, *self.models.values(), mesh=self.mesh)
         limit = self.max_frequency or train.ask.max_frequency
         refuse_unresolved(shop, drive.system, limit)
         out: dict[str, Any] = {}
@@ -170,6 +172,11 @@ def statics_of(model: str) -> str:
     """
     kind, base = checked_rung(model)
     return base if kind in LUMPED else model
+
+
+def force_of(mesh: str) -> str:
+    """Column of the force of a mesh at rest."""
+    return f"mesh_force{mesh.removeprefix('mesh').replace(' ', '_')}"
 
 
 def misaligned(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -75,7 +76,7 @@ class TrainVariants(FileVariants):
         """Variants in an order in which those of the same shafts stand together, and operating points
         of the same train.
         """
-        dear = {side: k for k, side in enumerate((*SIDES, OWN))}
+        dear = {side: k for k, side in enumerate((*(f for f in self.files if f != OWN), OWN))}
         ranks = [len(dear) if _of_operation(one) else dear[one.file] for one in self.entries]
         order = np.argsort(ranks, kind="stable")
         return sorted(numbers, key=lambda k: (*_ranked(self.values[k, order]).tolist(), k))
@@ -101,7 +102,7 @@ class TrainVariants(FileVariants):
             if key not in self._scenes:
                 if len(self._scenes) >= KEPT:
                     self._scenes.clear()
-                usual = path == self.path.parent / str(self.files[OWN][side]["scene"])
+                usual = path == self.path.parent / str(shafts_in(self.files[OWN])[side]["scene"])
                 tables = self.put(side, varied, row, None if usual else parse(str(path)))
                 self._scenes[key] = scene_of(tables, path, alone)
             return self._scenes[key]
@@ -131,40 +132,59 @@ def train_variants(
         For files and texts that cannot be read, and for too many variants.
     """
     own = parse(str(path))
-    if "shaft" in own:
-        raise SolidgearError(
-            f"{path}: a sweep is there for a train of two shafts, described by [pinion] and [gear]"
-        )
-    files = {OWN: own} | {side: _side(path, own, side) for side in SIDES}
+    if isinstance(own.get("mesh"), list):
+        own["mesh"] = [*map(_named, own["mesh"])]
+    shafts, many = shafts_in(own), "shaft" in own
+    files = {OWN: own} | {side: _scene(path, table) for side, table in shafts.items()}
 
     def points(varied: tuple[Entry, ...]) -> tuple[Entry, ...]:
         return (_every_point(own, varied, point),) if every_point else ()
 
     varied, values, kept = design.points(
-        files, _owner, points, example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5"
+        files,
+        partial(_owner, [*shafts], many),
+        points,
+        example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5",
     )
     at = point or _varied_point(own, varied)
     return TrainVariants(path, files, varied, values, kept, at)
 
 
-def _side(path: Path, own: Tables, side: str) -> Tables:
-    """Tables of the scene of a side; none where the train file does not name it, which its own
+def shafts_in(own: Tables) -> dict[str, Any]:
+    """Tables of the shafts of a train file, by name; whatever is wrong with them its reader tells."""
+    found = own.get("shaft", {side: own.get(side) for side in SIDES})
+    return dict(found) if isinstance(found, Mapping) else {}
+
+
+def _named(mesh: Any) -> Any:
+    """A mesh of several with the name that it has without one."""
+    between = mesh.get("between") if isinstance(mesh, Mapping) else None
+    if not isinstance(between, list) or mesh.get("name"):
+        return mesh
+    return {**mesh, "name": "-".join(str(end).partition(".")[0] for end in between)}
+
+
+def _scene(path: Path, table: Any) -> Tables:
+    """Tables of the scene of a shaft; none where the train file does not name it, which its own
     reader tells.
     """
-    table = own.get(side)
     name = table.get("scene") if isinstance(table, Mapping) else None
     return parse(str(path.parent / name)) if isinstance(name, str) else {}
 
 
-def _owner(path: str) -> tuple[str, str]:
-    """The scene of a side owns the keys of scenes, the train file all others."""
+def _owner(shafts: Sequence[str], many: bool, path: str) -> tuple[str, str]:
+    """The scene of a shaft owns the keys of scenes, the train file all others."""
+    if many:
+        path = path.removeprefix("shaft.")
     first, _, within = path.partition(".")
-    if first in SIDES and within.partition(".")[0] in KEYS:
+    if first in shafts and within.partition(".")[0] in KEYS:
         return first, within
-    if first in KEYS and first not in {*Train.model_fields, *SIDES, *SHORT, "mesh"}:
+    if many and first in shafts:
+        return OWN, f"shaft.{path}"
+    if first in KEYS and first not in {*Train.model_fields, *shafts, *SHORT, "mesh"}:
         raise SolidgearError(
             f"--vary {path}: is of the scene of a shaft; say of which: "
-            + " or ".join(f"{side}.{path}" for side in SIDES)
+            + " or ".join(f"{side}.{path}" for side in shafts)
         )
     return OWN, path
 

@@ -15,7 +15,7 @@ import numpy as np
 from solidgear.errors import SolidgearError, listed
 from solidgear.machine.threads import pinned
 from solidgear.scene.differences import Difference
-from solidgear.scene.train import SIDES
+from solidgear.scene.gears import Pair
 from solidgear.studies.change import Change
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
@@ -29,8 +29,11 @@ from solidgear.studies.train.mode_pairs import (
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.pairing import BEYOND, ports_of, seen_modes
 from solidgear.studies.train.respond import Peak, TrainResponse, respond
-from solidgear.studies.train.shaft import JUDGE, LUMPED
+from solidgear.studies.train.shaft import JUDGE, LUMPED, told_mix
 from solidgear.studies.train.slips import slips
+
+#: column of the force of the mesh that drives
+FORCE = "mesh force [N]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +93,10 @@ class TwoTrains:
 
     Attributes
     ----------
-    pinion, gear : str
-        Models of both.
+    models : dict of str to str
+        By shaft, the same in both.
+    mesh : str
+        By whose transmission error both are driven, as :class:`solidgear.scene.gears.Pair` has it.
     inputs : tuple of Difference
         Of their files.
     modes : tuple of SeenPair
@@ -104,8 +109,8 @@ class TwoTrains:
 
     a: OneTrain
     b: OneTrain
-    pinion: str
-    gear: str
+    models: dict[str, str]
+    mesh: str
     highest_hz: float
     inputs: tuple[Difference, ...]
     modes: tuple[SeenPair, ...]
@@ -117,6 +122,14 @@ class TwoTrains:
     def both(self) -> tuple[OneTrain, OneTrain]:
         """Both trains."""
         return self.a, self.b
+
+    @property
+    def forces(self) -> dict[str, str]:
+        """Columns of mesh forces that both have, that of the mesh which drives first, and their names."""
+        pairs = self.a.workshop.train.pairs
+        out = {FORCE: _force_of(self.a.workshop.train.named_mesh(self.mesh))}
+        out |= {f"mesh force{p.label} [N]": _force_of(p) for p in pairs if p.name != self.mesh}
+        return {c: name for c, name in out.items() if c in self.b.response.columns}
 
     @property
     def columns(self) -> list[str]:
@@ -155,6 +168,10 @@ class TwoTrains:
         ]
 
 
+def _force_of(pair: Pair) -> str:
+    return f"force of the {pair.name}" if pair.label else "mesh force"
+
+
 def decibels(one: float, other: float) -> float | None:
     """Of an amplitude over another; None where either is zero."""
     return float(20 * np.log10(other / one)) if one > 0 and other > 0 else None
@@ -165,8 +182,8 @@ def two_trains(
     workshops: Sequence[Workshop],
     names: Sequence[str],
     inputs: Sequence[Difference] = (),
-    pinion: str = JUDGE,
-    gear: str = JUDGE,
+    *models: str,
+    mesh: str | None = None,
     highest_hz: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> TwoTrains:
@@ -180,8 +197,10 @@ def two_trains(
         Of their files.
     inputs : sequence of Difference
         Of their files.
-    pinion, gear : str
-        Models.
+    *models : str
+        One for each shaft, or one for all; `JUDGE` by default.
+    mesh : str, optional
+        Whose transmission error drives both; the first of the first by default.
     highest_hz : float, optional
         The lower of those that both ask for by default.
     progress : callable, optional
@@ -190,31 +209,37 @@ def two_trains(
     Raises
     ------
     SolidgearError
-        For a frequency beyond what a reduction resolves, or unknown models.
+        For a frequency beyond what a reduction resolves, unknown models, shafts of other names, or
+        a mesh that one of them does not have.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> files = "geometry/axle_overhung.toml", "geometry/axle_straddle.toml"
     >>> shops = [Workshop(sg.load_train(file)) for file in files]
-    >>> found = two_trains(shops, ("overhung", "straddle"), (), "euler", "euler", 1000.0)
+    >>> found = two_trains(shops, ("overhung", "straddle"), (), "euler", highest_hz=1000.0)
     >>> [pair.a.name for pair in found.modes][:2], found.modes[0].change.verdict
     (['load torsion 1', 'gear torsion 1'], 'no band')
     """
     start = perf_counter()
     first, other = workshops
-    for name, shop in zip(names, workshops):
-        if tuple(shop.scenes) != SIDES:
-            raise SolidgearError(
-                f"{name} has the shafts {listed(shop.scenes)}: two trains are compared where both "
-                "have a pinion and a gear"
-            )
+    if [*first.scenes] != [*other.scenes]:
+        has = [
+            f"{name} has the shafts {listed(shop.scenes)}" for name, shop in zip(names, workshops)
+        ]
+        raise SolidgearError(
+            f"{' and '.join(has)}: two trains are compared where both call their shafts alike, in "
+            "the same sequence"
+        )
+    mix = first.mix(models or (JUDGE,))
+    driver = first.train.named_mesh(mesh).name
+    other.train.named_mesh(driver)
     highest = highest_hz or min(shop.train.ask.max_frequency for shop in workshops)
     ends = shared_ports(first, other)
     trains, seen = [], []
     for letter, name, shop, own in zip("AB", names, workshops, ends):
-        progress(f"{letter}: pinion {pinion}, gear {gear}")
-        one, motions = _one_train(letter, name, shop, (pinion, gear), highest, own, progress)
+        progress(f"{letter}: {told_mix(mix)}")
+        one, motions = _one_train(letter, name, shop, mix, driver, highest, own, progress)
         trains.append(one)
         seen.append(motions)
     mirrored = _mirrored(first, other)
@@ -227,8 +252,8 @@ def two_trains(
     return TwoTrains(
         trains[0],
         trains[1],
-        pinion,
-        gear,
+        mix,
+        driver,
         highest,
         tuple(inputs),
         tuple(p for p in pairs if p.within(highest)),
@@ -240,25 +265,33 @@ def two_trains(
 
 def _mirrored(one: Workshop, other: Workshop) -> bool:
     """True where the shafts of two trains are not in the same axes."""
-    members = [[*shop.train.only().members.values()] for shop in (one, other)]
-    return any(a.apex != b.apex or a.hand != b.hand for a, b in zip(*members))
+    its = {pair.name: pair.members for pair in other.train.pairs}
+    return any(
+        own.apex != its[pair.name][role].apex or own.hand != its[pair.name][role].hand
+        for pair in one.train.pairs
+        if pair.name in its
+        for role, own in pair.members.items()
+    )
 
 
 def _one_train(
     letter: str,
     name: str,
     shop: Workshop,
-    rungs: tuple[str, str],
+    mix: dict[str, str],
+    mesh: str,
     highest: float,
     ends: list[str],
     progress: Callable[[str], None],
 ) -> tuple[OneTrain, np.ndarray]:
     """One of the trains, and what its modes move at some ports."""
-    response = replace(respond(shop, *rungs, highest_hz=highest), name=f"{letter}: {name}")
+    rungs = tuple(mix.values())
+    response = respond(shop, *rungs, highest_hz=highest, mesh=mesh)
+    response = replace(response, name=f"{letter}: {name}")
     system = shop.system(*rungs)
     found, seen = seen_modes(shop, system, highest * BEYOND, ends)
     progress(f"{letter}: how sure its frequencies are")
-    modes = told_modes(shop, system, found, shop.mix(rungs))
+    modes = told_modes(shop, system, found, mix)
     loaded = None
     at_rest = all(rung.partition("/")[0] not in LUMPED for rung in rungs)
     if shop.train.point is not None and at_rest:

@@ -15,12 +15,11 @@ from solidgear.report.words import hertz, percent
 from solidgear.studies import beside
 from solidgear.studies.train.comparison import described
 from solidgear.studies.train.modes import unpublished_lines
+from solidgear.studies.train.shaft import told_mix
 from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains, decibels
 
 #: peaks that a verdict tells, the loudest in either train
 LOUDEST = 3
-#: column of the mesh force
-FORCE = "mesh force [N]"
 
 
 def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
@@ -44,11 +43,14 @@ def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
 
 
 def _models(found: TwoTrains) -> str:
-    names = found.pinion, found.gear
-    titles = [LADDER[name].title if name in LADDER.bodies else name for name in names]
-    words = f"pinion {titles[0]}, gear {titles[1]}"
-    if len(set(names)) == 1:
-        words = f"both shafts as {titles[0]}s" if names[0] in LADDER.bodies else f"both {titles[0]}"
+    titles = {s: LADDER[m].title if m in LADDER.bodies else m for s, m in found.models.items()}
+    words = told_mix(titles)
+    if len({*found.models.values()}) == 1:
+        every, (title, *_) = found.a.workshop.train.every, titles.values()
+        of_bodies = {*found.models.values()} <= {*LADDER.bodies}
+        words = f"{every} shafts as {title}s" if of_bodies else f"{every} {title}"
+    driver = found.a.workshop.train.named_mesh(found.mesh)
+    words += f", driven by the {driver.name}" * bool(driver.label)
     damping = found.a.response.damping
     asked = {one.workshop.train.ask.max_frequency for one in found.both}
     lower = " (the lower of what both files ask for)" * (len(asked) > 1)
@@ -58,12 +60,13 @@ def _models(found: TwoTrains) -> str:
 
 
 def _largest_force(found: TwoTrains, units: Units) -> Iterator[str]:
-    tops = [_top(one, FORCE) for one in found.both]
-    told = [
-        f"{units.text(size, 'N', 4)} at {hertz(hz)} Hz in {one.letter}{_of_mode(one, hz)}"
-        for one, (hz, size) in zip(found.both, tops)
-    ]
-    yield f"Largest mesh force: {' and '.join(told)}{_in_decibels(tops)}."
+    for column, name in found.forces.items():
+        tops = [_top(one, column) for one in found.both]
+        told = [
+            f"{units.text(size, 'N', 4)} at {hertz(hz)} Hz in {one.letter}{_of_mode(one, hz)}"
+            for one, (hz, size) in zip(found.both, tops)
+        ]
+        yield f"Largest {name}: {' and '.join(told)}{_in_decibels(tops)}."
 
 
 def _top(one: OneTrain, column: str) -> tuple[float, float]:
@@ -178,7 +181,8 @@ def results(found: TwoTrains) -> dict[str, Any]:
     return {
         "kind": "two trains",
         "trains": {key: {"file": one.name, **described(one.workshop)} for key, one in both.items()},
-        "models": {"pinion": found.pinion, "gear": found.gear},
+        "models": found.models,
+        **({"mesh": found.mesh} if len(found.forces) > 1 else {}),
         "highest_hz": found.highest_hz,
         "differences": [asdict(one) for one in found.inputs],
         "sentences": sentences(found),
