@@ -164,7 +164,7 @@ class BacklashTold:
     def _contact(self, one: Backlash) -> list[str]:
         """Where the teeth of a mesh part, and the other flank is hit."""
         if not one.lost:
-            linear = one.law and not one.teeth.half_gap
+            linear = len(self.train.meshes) > 1 and not one.teeth.half_gap
             return [] if linear else [f"The teeth{self._of(one)} keep contact in all of the range."]
         lines = [f"The teeth{self._of(one)} part from {self._ranges(one.lost)}."]
         if one.both_flanks:
