@@ -126,7 +126,12 @@ def test_what_parts_is_told_of_each_mesh(shop):
     assert other["mesh"] == "mesh middle-output" and other["parts"]
     # the torque above which nothing parts is that at which the linear force is the mean one
     driven, second = found.every
-    share = second.linear_loudest[1] / second.teeth.mean_force
+    hz, most = second.linear_loudest
+    drive = Drive(own, *BEAMS, damping="modal")
+    stretch = drive.motion(np.array([hz]), drive.rows[second.teeth.mesh][None])
+    # modes above 3 kHz that give way without inertia take 2 %, the loss of the excitation 1 %
+    assert most == pytest.approx(float(np.abs(stretch[0, 0])) * 4.5e8, rel=0.05)
+    share = most / second.teeth.mean_force
     assert found.holding[1].max() == pytest.approx(500.0 * share)
 
 
