@@ -395,9 +395,5 @@ def test_commands_take_the_shipped_gearbox_of_two_stages(tmp_path):
     assert done.exit_code == 0 and "driven by the mesh" in done.output
     head = (out / "response.csv").read_text().splitlines()[0]
     assert "input speed [rpm]" in head and "mesh force input-middle [N]" in head
-    for words in (
-        ["nonlinear", file, "--backlash", "50 um"],
-        ["response", file, "--mesh", "third"],
-    ):
-        done = command(*words)
-        assert done.exit_code != 0 and "mesh" in str(done.exception)
+    done = command("response", file, "--mesh", "third")
+    assert done.exit_code != 0 and "mesh" in str(done.exception)

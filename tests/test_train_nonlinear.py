@@ -45,7 +45,7 @@ def teeth(shop):
 
 @pytest.fixture(scope="module")
 def solids(shop, teeth):
-    return with_backlash(shop, *SOLIDS, teeth, 1100.0, 300.0)
+    return with_backlash(shop, SOLIDS, teeth, 1100.0, 300.0)
 
 
 def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
@@ -63,7 +63,7 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
 
 
 def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
-    others = [with_backlash(shop, m, m, teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
+    others = [with_backlash(shop, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
     lumped, beams = BacklashTold(shop.train, (solids, *others), 0.044).sufficiency()
     assert lumped.enough and lumped.jumps < 0.01 and abs(lumped.force) < 0.015
     assert not beams.enough and beams.force == pytest.approx(0.30, abs=0.01)
@@ -96,7 +96,7 @@ def test_no_motion_jumps_at_a_torque_above_the_linear_peak(solids):
 
 def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
     # with more of them the branch turns a little sooner, and has no motion at the speed it is at
-    own = backlash_model(shop, "lumped", "lumped", teeth_of(shop, 8017.8), 4000.0)
+    own = backlash_model(shop, ["lumped"], teeth_of(shop, 8017.8), 4000.0)
     branch = follow(own, 2 * np.pi * 150.0, 2 * np.pi * 2000.0, step=0.02)
     up, down = (branch.points[k].omega / (2 * np.pi) for k in branch.turning)
     # both lie between those at 6.4 and 9.6 kN
@@ -185,8 +185,8 @@ def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(sh
     assert found.cycle[0] == pytest.approx((1e-3, 0.0), rel=5e-3, abs=1e-12)
     # a small share c of k under the force F acts as a transmission error c F / k
     system = parting(varied.system(*BEAMS), found)
-    own = backlash_model(varied, *BEAMS, replace(found, errors=(0.0,)), 4000.0)
-    other = backlash_model(shop, *BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
+    own = backlash_model(varied, BEAMS, replace(found, errors=(0.0,)), 4000.0)
+    other = backlash_model(shop, BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
     assert system.links["mesh"].stiffness == 2.5e8
     for hz in (400.0, 1000.0):
         w = 2 * np.pi * hz
@@ -227,7 +227,7 @@ def lines(shop, turn=0.0, **changes):
 
 def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
     first, other = (
-        backlash_model(one, *BEAMS, teeth_of(one, 5000.0), 4000.0) for one in (shop, lines(shop))
+        backlash_model(one, BEAMS, teeth_of(one, 5000.0), 4000.0) for one in (shop, lines(shop))
     )
     assert other.sway is None
     for name in ("omega", "seen", "mean", "losses", "flexible", "stiffness", "error"):
@@ -238,10 +238,10 @@ def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
 def test_a_line_of_action_that_turns_moves_the_train_alike_by_balance_and_in_time(shop):
     turned = lines(shop, 0.15)
     found = teeth_of(turned, 5000.0)
-    own = backlash_model(turned, "lumped/timoshenko", "lumped/timoshenko", found, 2000.0)
+    own = backlash_model(turned, ["lumped/timoshenko"], found, 2000.0)
     assert own.rows > 1 and found.turns
     point = follow(own, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
-    still = backlash_model(shop, "lumped/timoshenko", "lumped/timoshenko", found, 2000.0)
+    still = backlash_model(shop, ["lumped/timoshenko"], found, 2000.0)
     other = follow(still, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
     force, straight = (np.ptp(one.forces()[:, 0]) for one in (point, other))
     assert abs(force / straight - 1) > 0.01, "the line is to matter"
@@ -274,7 +274,7 @@ def test_tables_over_the_cycle_that_begin_apart_or_push_elsewhere_are_refused(sh
     met = shop.contact.pinion
     moved = lines(shop, point=np.tile(met.point * [0.5, 1.0, 1.0], (41, 1)))
     with pytest.raises(SceneError, match="has lever arms of"):
-        backlash_model(moved, *BEAMS, teeth_of(moved, 5000.0), 4000.0)
+        backlash_model(moved, BEAMS, teeth_of(moved, 5000.0), 4000.0)
 
 
 def test_phases_of_the_transmission_error_shift_it_in_time_or_change_its_force(shop):
@@ -282,7 +282,7 @@ def test_phases_of_the_transmission_error_shift_it_in_time_or_change_its_force(s
         error = {"orders": ("10 um", "5 um"), "phases": phases}
         mesh = shop.train.mesh.with_changes(transmission_error=error)
         one = shop.with_train(shop.train.with_changes(mesh=mesh))
-        own = backlash_model(one, *BEAMS, teeth_of(one, 5e5), 4000.0)
+        own = backlash_model(one, BEAMS, teeth_of(one, 5e5), 4000.0)
         balance = Balance(own, 3)
         motion = balance.linear(2 * np.pi * 300.0)
         return np.ptp(balance.stretch(motion, 2 * np.pi * 300.0)[0])

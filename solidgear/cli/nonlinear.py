@@ -16,6 +16,7 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.report.folder import held
 from solidgear.report.nonlinear_files import lead, mixes, over_force, write_nonlinear
 from solidgear.report.units import units_named
+from solidgear.scene.gears import Pair
 from solidgear.scene.units import quantity
 from solidgear.studies.train import nonlinear as study
 from solidgear.studies.train.comparison import described
@@ -51,6 +52,14 @@ def nonlinear(
         str | None,
         typer.Option(help='Transmission error, such as "10 um"; that of the file without it.'),
     ] = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh",
+            help="Whose transmission error drives the train, of several, and whose --backlash, "
+            "--mean-force and --error are given; the first.",
+        ),
+    ] = None,
     min_frequency: Annotated[
         float | None,
         typer.Option("--min-frequency", help="Hz; a hundredth of the highest by default."),
@@ -59,7 +68,7 @@ def nonlinear(
         list[str] | None,
         typer.Option(
             "--against",
-            help="Further models to judge, as PINION+GEAR; lumped and Timoshenko shafts by default.",
+            help="Further models to judge, as PINION+GEAR, one for each shaft; lumped and Timoshenko shafts by default.",
         ),
     ] = None,
     in_time: Annotated[
@@ -92,29 +101,36 @@ def nonlinear(
     run: Shown,
 ) -> None:
     shop = models.workshop(reduced, train)
-    first = models.pinion, models.gear
-    usual = [("lumped", "lumped"), ("timoshenko", "timoshenko")]
-    others = usual if against is None else [_pair(shop, text) for text in against]
-    shop = _with_teeth(shop, backlash, error)
+    first, driver = tuple(models.by_shaft(shop.train).values()), shop.train.named_mesh(mesh)
+    others = _usual(shop) if against is None else [_mix(shop, text) for text in against]
+    shop = _with_teeth(shop, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
         raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
-    teeth = study.teeth_of(shop, _read("--mean-force", mean_force, "load"), contact_loss)
+    teeth = study.teeth_of(
+        shop, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
+    )
     for option, count in (("--in-time", in_time), ("--forces", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
     low, high = study.ends(shop, reduced.max_frequency, min_frequency)
-    ramps = [ramp_of(rpm, shop.train.pinion.teeth, low, high) for rpm in run_up or []]
+    if run_up and teeth.others:
+        raise SolidgearError("--run-up is there for a train of one mesh; leave it out")
+    passing = shop.train.per_turn(driver)
+    ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = tuple(
-            study.with_backlash(shop, *pair, teeth, reduced.max_frequency, min_frequency, progress)
-            for pair in [first, *(pair for pair in others if pair != first)]
+            study.with_backlash(shop, mix, teeth, reduced.max_frequency, min_frequency, progress)
+            for mix in [first, *(mix for mix in others if mix != first)]
         )
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
         mapped = study.over_force(found[0], forces, progress) if forces else ()
         runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
-        lever = abs(shop.contact.pinion.lever)
+        turns = abs(shop.train.turns[driver.shafts[0]])
+        lever = abs(shop.contacts[driver.name].pinion.lever) * turns
         told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
+        if teeth.others:
+            title += f", driven by the {driver.name}"
         cautions = [*slips(shop), *shop.cautions]
         files = []
         if out:
@@ -132,14 +148,20 @@ def nonlinear(
         say(f"Written: {', '.join(map(str, files))}")
 
 
-def _pair(shop: Workshop, text: str) -> tuple[str, str]:
-    """Models of both shafts, from a text such as ``euler+euler``."""
-    pinion, gear = shop.mix(mix(text)).values()
-    return pinion, gear
+def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
+    """Models of all shafts, from a text such as ``euler+euler``."""
+    return tuple(shop.mix(mix(text)).values())
 
 
-def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Workshop:
-    """The same train with teeth as given."""
+def _usual(shop: Workshop) -> list[tuple[str, ...]]:
+    """Models that the first are held against; a shaft of several gears is no lumped one."""
+    single = all(len(shaft.gears) == 1 for shaft in shop.train.shafts.values())
+    usual = ("lumped", "timoshenko") if single else ("timoshenko",)
+    return [(model,) * len(shop.train.shafts) for model in usual]
+
+
+def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:
+    """The same train, one of its meshes with teeth as given."""
     width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
     if width is None and size is None:
         return shop
@@ -149,8 +171,11 @@ def _with_teeth(shop: Workshop, backlash: str | None, error: str | None) -> Work
     changes: dict[str, Any] = {} if width is None else {"backlash": width}
     if size is not None:
         changes["transmission_error"] = size
-    mesh = shop.train.mesh.with_changes(**changes)
-    return shop.with_train(shop.train.with_changes(mesh=mesh))
+    meshes = [
+        pair.mesh.with_changes(**changes) if pair.name == driver.name else pair.mesh
+        for pair in shop.train.pairs
+    ]
+    return shop.with_train(shop.train.with_changes(meshes=tuple(meshes)))
 
 
 def _read(option: str, text: str | None, dimension: str) -> float | None:

@@ -97,11 +97,12 @@ class Point:
         still = np.zeros_like(stretch)
         return self.balance.remainder.forces(stretch, still, self.balance.factor, line).value
 
-    def along(self) -> np.ndarray:
-        """(T,) stretch over a period of the first link with a law, along its line of action."""
-        line, stretch = self.balance.line(self.omega), self.waves()[0]
-        at = self.balance.remainder.laws[0][1]
-        return stretch[:, 0] if line is None else line.along(at, stretch)
+    def along(self, law: int = 0) -> np.ndarray:
+        """(T,) stretch over a period of a link with a law, along its line of action."""
+        line, at = self.balance.line(self.omega), self.balance.remainder.laws[law][1]
+        if line is not None and at in line.links:
+            return line.along(at, self.waves()[0])
+        return self.waves()[0][:, at.start]
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,10 +33,11 @@ def backlash_chart(
     width : float
         px.
     """
-    judge, teeth = found.judge, found.train.pinion.teeth
+    judge, teeth = found.judge, found.teeth_a_turn
     rpm = 60 * judge.frequency_hz / teeth
     ends = float(rpm.min()), float(rpm.max())
-    panels = [_force(found, rpm, ends, units, width), _contact(judge, rpm, ends, width)]
+    panels = [_force(found, rpm, ends, units, width)]
+    panels += [_contact(one, rpm, ends, width, teeth.of) for one in judge.every if _may_part(one)]
     if found.over_force:
         panels.append(_map(found, ends, units))
     return Chart(in_columns([*panels, _orders(judge, units)], 1), width, title)
@@ -44,11 +45,11 @@ def backlash_chart(
 
 def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
     """Where teeth part, and jumps, over speed and mean force."""
-    judge, teeth = found.judge, found.train.pinion.teeth
-    unit, (hz, size) = units.unit("N"), judge.linear
+    judge, teeth = found.judge, found.teeth_a_turn
+    unit, (hz, size) = units.unit("N"), judge.holding
     top = 1.05 * float(units.values(size, "N").max())
     panel = Panel(
-        Axis("speed of the pinion in rpm", ends),
+        Axis(f"speed of the {teeth.of} in rpm", ends),
         Axis(f"mean mesh force in {unit}", (0.0, top)),
         240.0,
         "Teeth part below the line; triangles: jumps as the speed rises (up) and falls (down)",
@@ -72,7 +73,7 @@ def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
 
 
 def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Panel:
-    judge, teeth = found.judge, found.train.pinion.teeth
+    judge, teeth = found.judge, found.teeth_a_turn
     unit = units.unit("N")
     hz, size = judge.linear
     linear = units.values(size, "N")
@@ -83,7 +84,7 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     named = [*(one.label for one in found.found[1:]), *ran]
     others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
     panel = Panel(
-        Axis("speed of the pinion in rpm", ends),
+        Axis(f"speed of the {teeth.of} in rpm", ends),
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
         360.0,
         "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
@@ -156,13 +157,19 @@ def _runs(where: np.ndarray) -> np.ndarray:
     return np.flatnonzero(np.diff(np.r_[False, where, False].astype(int))).reshape(-1, 2)
 
 
-def _contact(judge: Any, rpm: np.ndarray, ends, width: float) -> Panel:
+def _may_part(one: Any) -> bool:
+    """Whether it has a gap, or is the one that is driven."""
+    return one.law == 0 or one.teeth.half_gap > 0
+
+
+def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Panel:
     """Shares of the cycle in areas over one another; of stable motions, the largest loss a speed."""
+    of = f" of the {judge.teeth.mesh}" if judge.teeth.others or judge.law else ""
     panel = Panel(
-        Axis("speed of the pinion in rpm", ends),
+        Axis(f"speed of the {shaft} in rpm", ends),
         Axis("share of the cycle in %", (0.0, 100.0)),
         130.0,
-        "Contact over a mesh cycle; of several motions, the one that parts longest; blank: none is stable",
+        f"Contact{of} over a mesh cycle; of several motions, the one that parts longest; blank: none is stable",
         series=CONTACT,
         legend={"orient": "top", "columns": 3 if width > NARROW else 1},
     )

@@ -29,10 +29,16 @@ def lead(found: Any, shown: Units) -> str:
     varying = " and ".join(name for name, there in named.items() if there)
     cycle = f" {varying.capitalize()} over the mesh cycle as in the file." if varying else ""
     force = shown.text(teeth.mean_force, "N", 4)
-    return (
+    told = (
         f"Backlash {gap}, mean mesh force {force} ({teeth.source}), transmission error {error}; "
         f"{found.judge.label}.{cycle}"
     )
+    others = [
+        f" {other.mesh.capitalize()}: backlash {shown.text(2 * other.half_gap, 'm moved', 4)}, mean "
+        f"force {shown.text(other.mean_force, 'N', 4)}."
+        for other in teeth.others
+    ]
+    return told + "".join(others)
 
 
 def write_nonlinear(
@@ -73,7 +79,7 @@ def branch(found: Any) -> Table:
     one = found.judge
     there = {
         "frequency [Hz]": one.frequency_hz,
-        "pinion speed [rpm]": 60 * one.frequency_hz / found.train.pinion.teeth,
+        f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
         "dynamic mesh force [N]": one.force,
         "largest mesh force [N]": one.highest,
         "share of the cycle in contact": one.driving,
@@ -81,6 +87,12 @@ def branch(found: Any) -> Table:
         "stable": one.stable.astype(float),
         "largest multiplier": np.abs(one.multiplier),
     }
+    for other in one.every[1:]:
+        there |= {
+            f"{other.teeth.mesh} dynamic force [N]": other.force,
+            f"{other.teeth.mesh} largest force [N]": other.highest,
+            f"{other.teeth.mesh} share of the cycle in contact": other.driving,
+        }
     rows = np.column_stack(list(there.values())).tolist()
     return Table("", [Column(head, write=figures) for head in there], rows)
 
@@ -91,13 +103,13 @@ def runs(found: Any) -> dict[str, Table]:
     for one in found.runs:
         there = {
             "frequency [Hz]": one.frequency_hz,
-            "pinion speed [rpm]": 60 * one.frequency_hz / found.train.pinion.teeth,
+            f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
             "dynamic mesh force [N]": one.force,
             "largest mesh force [N]": one.run.highest,
             "steady dynamic mesh force [N]": one.steady_force,
         }
         rows = np.column_stack(list(there.values())).tolist()
-        rpm = 60 * abs(one.ramp) / found.train.pinion.teeth
+        rpm = 60 * abs(one.ramp) / found.teeth_a_turn
         stem = f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")
         out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
     return out
@@ -119,7 +131,14 @@ def mixes(found: Any, units: Units = ENGINEERING) -> Table:
         Column(f"linear, {units.unit('N')}", lambda one: _force(one.linear_loudest[1], units)),
         Column("at, Hz", lambda one: hertz(one.linear_loudest[0])),
     ]
+    for k, other in enumerate(found.teeth.others, start=1):
+        head = f"{other.mesh.removeprefix('mesh ')}, {units.unit('N')}"
+        columns.append(Column(head, partial(_largest, k, units)))
     return Table("Jumps and largest dynamic mesh force", columns, found.found, style="bare")
+
+
+def _largest(mesh: int, units: Units, one: Any) -> str:
+    return _force(one.every[mesh].loudest[1], units)
 
 
 def over_force(found: Any, units: Units = ENGINEERING) -> Table:
@@ -138,7 +157,12 @@ def over_force(found: Any, units: Units = ENGINEERING) -> Table:
         text("jump down, Hz", lambda one: jumps(one, False)),
         Column(f"largest, {units.unit('N')}", lambda one: _force(one.largest, units)),
     ]
-    return Table("Jumps over the torque of the pinion", columns, found.over_force, style="bare")
+    return Table(
+        f"Jumps over the torque of the {found.train.reference}",
+        columns,
+        found.over_force,
+        style="bare",
+    )
 
 
 def _force(value: float, units: Units) -> str:

@@ -67,11 +67,11 @@ def models(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     found = []
     for mix in MIXES:
         told(f"{name}: {' + '.join(mix)}")
-        found.append(with_backlash(shop, *mix, teeth, HIGHEST, LOWEST))
+        found.append(with_backlash(shop, mix, teeth, HIGHEST, LOWEST))
     beside = BacklashTold(shop.train, tuple(found), lever(shop)).sufficiency()
     out = []
     for one, judged in zip(found, (None, *beside)):
-        row = of(one) | {"unknowns": shop.system(one.pinion, one.gear).size, "by": one.label}
+        row = of(one) | {"unknowns": shop.system(*one.models.values()).size, "by": one.label}
         row["enough"] = None if judged is None else judged.enough
         out.append(row)
     return out
@@ -103,14 +103,14 @@ def over_torque(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     """Rows of models and mean forces: where the linear force exceeds the mean, and where teeth part."""
     shop = workshop(name)
     teeth, out = teeth_of(shop, FORCE), []
-    peak = with_backlash(shop, *MIXES[0], teeth, HIGHEST, LOWEST).linear_loudest[1]
+    peak = with_backlash(shop, MIXES[0], teeth, HIGHEST, LOWEST).linear_loudest[1]
     for mix in MAPPED:
         for share in SHARES:
             force = share * peak
             told(f"{name}: {' + '.join(mix)}, {force:.0f} N")
             row = {"by": mix[0], "force": force, "torque": force * lever(shop)}
             try:
-                one = with_backlash(shop, *mix, replace(teeth, mean_force=force), HIGHEST, LOWEST)
+                one = with_backlash(shop, mix, replace(teeth, mean_force=force), HIGHEST, LOWEST)
                 row |= of(one) | criterion(one, force)
             except SolidgearError as error:
                 row["error"] = str(error)
@@ -145,7 +145,7 @@ def detached(shop: Workshop, model: str, force: float) -> dict[str, Any]:
         N, and the same in time.
     """
     teeth = replace(teeth_of(shop, FORCE), mean_force=CONNECTED)
-    own = backlash_model(shop, model, model, teeth, shop.train.ask.max_frequency)
+    own = backlash_model(shop, [model], teeth, shop.train.ask.max_frequency)
     branch = follow(own, *(2 * np.pi * f for f in (400.0, 800.0)), step=STEP)
     begin = branch.at(2 * np.pi * RAISED_AT)[-1]
     motion = begin.motion

@@ -61,7 +61,7 @@ def axle(model: str, highest_hz: float = WHOLE[1]) -> Remainder:
     train = sg.load_train(ROOT / "geometry" / "axle_overhung.toml")
     mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
     shop = Workshop(train.with_changes(mesh=mesh))
-    return backlash_model(shop, model, model, teeth_of(shop, 5000.0), highest_hz)
+    return backlash_model(shop, [model], teeth_of(shop, 5000.0), highest_hz)
 
 
 def branched(own: Remainder, begin: float, end: float, **more) -> Sample:

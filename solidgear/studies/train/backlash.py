@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +12,7 @@ from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import Branch, Point
 from solidgear.nonlinear.model import Remainder
 from solidgear.nonlinear.stability import ON
+from solidgear.studies.train.shaft import told_mix
 
 #: points at which the linear answer is told
 LINEAR = 1500
@@ -41,6 +42,10 @@ class Teeth:
         The line of action varies over the cycle.
     contact_loss_hz : float or None
         Where a damper in contact alone has the loss factor of the mesh.
+    mesh : str
+        Its name.
+    others : tuple of Teeth
+        Of other meshes, which nothing but their motion excites; no gap where they have no backlash.
     """
 
     half_gap: float
@@ -51,6 +56,13 @@ class Teeth:
     phases: tuple[float, ...] = ()
     turns: bool = False
     contact_loss_hz: float | None = None
+    mesh: str = "mesh"
+    others: tuple[Teeth, ...] = ()
+
+    @property
+    def every(self) -> tuple[Teeth, ...]:
+        """These, and those of the other meshes."""
+        return (self, *self.others)
 
     @property
     def harmonics(self) -> tuple[complex, ...]:
@@ -110,29 +122,47 @@ class AtForce:
 
 @dataclass(frozen=True, eq=False)
 class Backlash:
-    """Periodic motion of a train by two models, over frequency.
+    """Periodic motion of a train by models of its shafts, over frequency, told of one mesh.
 
     Attributes
     ----------
+    models : dict of str to str
+        By shaft.
     branch : Branch
         In order; more than one point may lie at one frequency.
     seconds : float
         Processor time, of the branch and its stability.
+    law : int
+        Number of the law whose mesh is told: 0 for that whose transmission error drives the train.
     """
 
-    pinion: str
-    gear: str
+    models: dict[str, str]
     teeth: Teeth
     remainder: Remainder = field(repr=False)
     branch: Branch = field(repr=False)
     multiplier: np.ndarray = field(repr=False)
     seconds: float
+    law: int = 0
 
     @property
     def label(self) -> str:
-        """Of both models."""
-        same = self.pinion == self.gear
-        return f"both {self.gear}" if same else f"pinion {self.pinion}, gear {self.gear}"
+        """Of all models."""
+        first, *others = self.models.values()
+        if any(one != first for one in others):
+            return told_mix(self.models)
+        count = len(self.models)
+        return f"{'both' if count == 2 else f'all {count}'} {first}"
+
+    @cached_property
+    def every(self) -> tuple[Backlash, ...]:
+        """The same told of each mesh with a law, that which drives the train first."""
+        others = enumerate(self.teeth.others, start=1)
+        return (self, *(replace(self, teeth=teeth, law=k) for k, teeth in others))
+
+    @property
+    def row(self) -> int:
+        """Of the stretch of this mesh."""
+        return self.remainder.laws[self.law][1].start
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -146,12 +176,12 @@ class Backlash:
 
     @cached_property
     def _waves(self) -> list[np.ndarray]:
-        return [point.forces()[:, 0] for point in self.points]
+        return [point.forces()[:, self.row] for point in self.points]
 
     @cached_property
     def stretch(self) -> list[np.ndarray]:
         """Of the teeth over a cycle, at every point, m."""
-        return [point.along() for point in self.points]
+        return [point.along(self.law) for point in self.points]
 
     @cached_property
     def force(self) -> np.ndarray:
@@ -201,9 +231,9 @@ class Backlash:
 
     def linear_force(self, hz: float) -> float:
         """Dynamic mesh force without backlash at one frequency, N."""
-        balance = Balance(self.remainder, len(self.teeth.errors))
+        balance, row = Balance(self.remainder, len(self.remainder.error)), self.row
         wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
-        return float(self.remainder.stiffness[0, 0] * np.ptp(wave[:, 0]) / 2)
+        return float(self.remainder.stiffness[row, row] * np.ptp(wave[:, row]) / 2)
 
     @property
     def returns(self) -> float | None:
@@ -224,6 +254,16 @@ class Backlash:
         return float(hz[size.argmax()]), float(size.max())
 
     @cached_property
+    def holding(self) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies, and the mean force of the mesh that drives the train below which teeth of some
+        mesh part, all mean forces in the ratio of the torques.
+        """
+        apart = [one for one in self.every if one.teeth.half_gap > 0] or [self]
+        own = self.teeth.mean_force
+        sizes = [one.linear[1] * (own / one.teeth.mean_force) for one in apart]
+        return self.linear[0], np.max(sizes, axis=0)
+
+    @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """Turning points, in order."""
         out = []
@@ -239,7 +279,7 @@ class Backlash:
         if half == 0:
             return ()
         gone = self.driving < 1
-        ends = self.branch.crossings(lambda p: float(p.along().min()) - half)
+        ends = self.branch.crossings(lambda p: float(p.along(self.law).min()) - half)
         return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])
 
     @cached_property

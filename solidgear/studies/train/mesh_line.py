@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.scene.mesh_cycle import LineCycle
+from solidgear.scene.gears import Pair
 from solidgear.studies.train.contact import LEVER_REFUSED, axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.gear_mesh import MeshVector, to_gear_frame
@@ -24,7 +24,6 @@ CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
 STILL = 1e-12
 #: rotation about the shaft, of six components
 AXIAL = 4
-PATH = ("mesh", "line_cycle")
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +63,8 @@ def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.nda
     return parts[0].real, 2 * parts[1 : CYCLE_ORDERS + 1]
 
 
-def turning_line(workshop: Workshop, table: LineCycle) -> TurningLine:
-    """Mean row of the teeth, and how it turns.
+def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
+    """Mean row of the teeth of a mesh, and how it turns; None where its line stays.
 
     Raises
     ------
@@ -73,20 +72,22 @@ def turning_line(workshop: Workshop, table: LineCycle) -> TurningLine:
         For a train whose teeth hold their mesh point, or act on the other flank, and lever arms that
         are not in the ratio of the teeth.
     """
-    train = workshop.train
-    if train.mesh.local_harmonics:
+    table, path = pair.mesh.line_cycle, (*pair.paths["mesh"], "line_cycle")
+    if table is None:
+        return None
+    if pair.mesh.local_harmonics:
         raise SceneError(
             "moves the mesh point, and local_harmonics hold it where it is on the rim; leave one out",
-            path=PATH,
+            path=path,
         )
-    if train.point is not None and train.point.coast:
+    if pair.point is not None and pair.point.coast:
         raise SceneError(
             "is that of one flank; a torque on the other one (coast, below zero) needs a file with "
             "its own",
-            path=PATH,
+            path=path,
         )
     rows = [
-        _row(workshop, np.array(normal), np.array(point))
+        _row(workshop, pair, np.array(normal), np.array(point), path)
         for normal, point in zip(table.normal, table.point)
     ]
     mean, orders = orders_of(np.array(table.angle), np.array(rows))
@@ -98,9 +99,11 @@ def turning_line(workshop: Workshop, table: LineCycle) -> TurningLine:
     return TurningLine(mean, scale[:, None] * right[kept], shares / scale)
 
 
-def _row(workshop: Workshop, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
+def _row(
+    workshop: Workshop, pair: Pair, normal: np.ndarray, point: np.ndarray, path: tuple
+) -> np.ndarray:
     """(12,) row of the teeth on both shafts while they touch at a point."""
-    pair, met = workshop.train.only(), workshop.contact
+    met = workshop.contacts[pair.name]
     normal = normal / np.linalg.norm(normal)
     angle = pair.mesh.shaft_angle
     here = (
@@ -117,7 +120,7 @@ def _row(workshop: Workshop, normal: np.ndarray, point: np.ndarray) -> np.ndarra
             f"has lever arms of {1e3 * own[0].lever:.2f} mm on the pinion and "
             f"{1e3 * own[1].lever:.2f} mm on the gear where the mesh point is ({told}) mm; those of "
             f"the mesh are {1e3 * met.pinion.lever:.2f} and {1e3 * met.gear.lever:.2f} mm",
-            path=PATH,
+            path=path,
         )
     gear = own[1].vector.copy()
     gear[AXIAL] = ratio * own[0].vector[AXIAL]

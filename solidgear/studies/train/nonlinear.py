@@ -12,7 +12,7 @@ its teeth in contact, each with the damping ratio that its loss factors make.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from time import process_time
 
@@ -23,11 +23,14 @@ from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.nonlinear.stability import multipliers
+from solidgear.scene.gears import Pair
+from solidgear.scene.operation import OperatingPoint
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
+from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
-from solidgear.studies.train.operation import mesh_force
+from solidgear.studies.train.operation import torques
 from solidgear.system.law import Gap
 from solidgear.system.links import RowSpring
 from solidgear.system.system import System
@@ -42,29 +45,36 @@ FADED = 1e-4
 
 
 def teeth_of(
-    workshop: Workshop, mean_force: float | None = None, contact_loss_hz: float | None = None
+    workshop: Workshop,
+    mean_force: float | None = None,
+    contact_loss_hz: float | None = None,
+    mesh: str | None = None,
 ) -> Teeth:
     """What the teeth of a train do, from its file.
 
     Parameters
     ----------
     mean_force : float, optional
-        Instead of that of the operating point, N.
+        Instead of that of the operating point, N; those of other meshes are in the ratio of the torques.
     contact_loss_hz : float, optional
         Frequency at which a damper in contact alone has the loss factor of the mesh; without it the
         mesh takes part in the damping ratios of the modes.
+    mesh : str, optional
+        By whose transmission error the train is driven; the first by default.
 
     Raises
     ------
     SolidgearError
-        If there is no backlash or no mean force, or the transmission error is a table over
-        frequency.
+        If there is no backlash or no mean force, the transmission error is a table over frequency,
+        meshes share a torque by their stiffness, or another mesh varies over its own cycle.
     """
-    mesh, point = workshop.train.mesh, workshop.train.point
-    if mesh.backlash is None:
+    train = workshop.train
+    pair, point = train.named_mesh(mesh), train.point
+    if not any(one.mesh.backlash is not None for one in train.pairs):
         raise SolidgearError(
             'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
         )
+    _refuse_several(workshop, pair)
     source = "given"
     if mean_force is None:
         if point is None:
@@ -72,88 +82,134 @@ def teeth_of(
                 'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
                 '--mean-force, such as "5 kN"'
             )
-        mean_force, source = mesh_force(workshop, point), point.label
-    if not mean_force > 0:
-        raise SolidgearError(f"a mean force of {mean_force:g} N holds no teeth; give more than 0")
-    if mesh.transmission_error.frequency:
+        forces, source = mesh_forces(train, workshop.contacts, point), point.label
+    else:
+        forces = _in_ratio(workshop, pair.name, mean_force)
+    gaps = {one.name: one.mesh.backlash for one in train.pairs if one.mesh.backlash}
+    for name in (pair.name, *gaps):
+        if not forces[name] > 0:
+            of = f" of the {name}" * (len(forces) > 1)
+            raise SolidgearError(
+                f"a mean force of {forces[name]:g} N holds no teeth{of}; give more than 0"
+            )
+    if pair.mesh.transmission_error.frequency:
         raise SolidgearError(
             "the transmission error is a table over frequency, which has no cycle in time; give it "
             'by orders in the file, or --error "10 um"'
         )
-    error, table = mesh.transmission_error, mesh.stiffness_cycle
+    error, table = pair.mesh.transmission_error, pair.mesh.stiffness_cycle
     cycle: tuple[tuple[float, float], ...] = ()
     if table is not None:
         mean, orders = orders_of(np.array(table.angle), np.array(table.stiffness)[:, None])
         cycle = tuple((float(c.real), float(-c.imag)) for c in orders[:, 0] / mean[0])
+    others = [
+        Teeth(gaps.get(name, 0.0) / 2, float(force), (), source, mesh=name)
+        for name, force in forces.items()
+        if name != pair.name
+    ]
     return Teeth(
-        mesh.backlash / 2,
-        float(mean_force),
+        (pair.mesh.backlash or 0.0) / 2,
+        float(forces[pair.name]),
         error.orders,
         source,
         cycle,
         error.phases,
-        mesh.line_cycle is not None,
+        pair.mesh.line_cycle is not None,
         contact_loss_hz,
+        pair.name,
+        tuple(others),
     )
 
 
-def parting(system: System, teeth: Teeth, damper: float = 0.0) -> System:
-    """The system with a law on its mesh whose stiffness is what it was, and the mean force positive.
+def _refuse_several(workshop: Workshop, driver: Pair) -> None:
+    """Refuse meshes whose mean forces hang on their stiffness, and cycles of two meshes at once."""
+    train = workshop.train
+    if len(train.meshes) >= len(train.shafts):
+        raise SolidgearError(
+            f"{train.name} has a loop of meshes, which share the torque by their stiffness; teeth "
+            "with backlash are there for trains without a loop"
+        )
+    for pair in train.pairs:
+        varies = pair.mesh.stiffness_cycle or pair.mesh.line_cycle
+        if varies is not None and pair.name != driver.name:
+            raise SolidgearError(
+                f"the {pair.name} varies over its own cycle, and the train is driven at that of the "
+                f"{driver.name}: give --mesh {pair.label.strip()}, or leave its table out"
+            )
+
+
+def parting(system: System, teeth: Teeth, loss: float = 0.0) -> System:
+    """The system with a law on each mesh that has teeth, whose stiffness is what it was, and the mean
+    force positive; that of the driven mesh comes first.
 
     Parameters
     ----------
-    damper : float
-        In contact alone, N s/m.
+    loss : float
+        Loss factor of a damper in contact alone, where the teeth say at which frequency.
     """
-    mesh = _mesh(system)
-    law = Gap(mesh.stiffness, teeth.half_gap, damper=damper)
-    row, other = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
-    turned = replace(mesh, row=row, to_row=other, law=law)
-    return System(system.parts, {**system.links, "mesh": turned})
+    links = dict(system.links)
+    for k, one in enumerate(teeth.every):
+        mesh = mesh_of(system, one.mesh)
+        at = 2 * np.pi * (teeth.contact_loss_hz or np.inf)
+        law = Gap(mesh.stiffness, one.half_gap, damper=loss * mesh.stiffness / at)
+        row, other = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
+        if k:
+            del links[one.mesh]
+        links[one.mesh] = replace(mesh, row=row, to_row=other, law=law)
+    return System(system.parts, links)
 
 
 def backlash_model(
-    workshop: Workshop, pinion: str, gear: str, teeth: Teeth, highest_hz: float
+    workshop: Workshop, models: Sequence[str], teeth: Teeth, highest_hz: float
 ) -> Remainder:
-    """The remainder of a train with backlash, by two models.
+    """The remainder of a train with backlash, by models of its shafts.
 
     Parameters
     ----------
+    models : sequence of str
+        One for each shaft, or one for all.
     highest_hz : float
         Modes above it give way like springs.
     """
-    loss, damper = workshop.losses(), 0.0
+    pair, loss, damped = workshop.train.named_mesh(teeth.mesh), workshop.losses(), 0.0
     if teeth.contact_loss_hz:
-        damper = loss.pop("mesh") * workshop.contact.stiffness / (2 * np.pi * teeth.contact_loss_hz)
-    system, table = workshop.system(pinion, gear), workshop.train.mesh.line_cycle
-    turning = None if table is None else turning_line(workshop, table)
+        damped = [loss.pop(one.mesh) for one in teeth.every][0]
+    system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name
+    force = teeth.mean_force
     if turning is not None:
-        system = System(system.parts, {**system.links, "mesh": turning.mean_of(_mesh(system))})
-    system = parting(system, teeth, damper)
+        links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
+        system = System(system.parts, links)
+        force *= float(turning.mean[AXIAL] / workshop.contacts[name].pinion.vector[AXIAL])
+    load = torques(workshop, _in_ratio(workshop, name, force))
+    system = parting(system, teeth, damped)
     refuse_unresolved(workshop, system, highest_hz)
-    mesh = _mesh(system)
-    row, other = np.ravel(np.asarray(mesh.row)), np.ravel(np.asarray(mesh.to_row))
-    lever = {"engine": row[AXIAL], "load": -other[AXIAL]}
-    load = system.load(
-        {name: np.array([0, 0, 0, 0, teeth.mean_force * h, 0]) for name, h in lever.items()}
-    )
     sways = {}
     if turning is not None and len(turning.further):
         # both rows turned as that of the mean line is
-        sways["mesh"] = turning.further_of(mesh), -turning.orders
+        sways[name] = turning.further_of(mesh_of(system, name)), -turning.orders
     return remainder(
         system,
         loss=loss,
-        load=load,
-        errors={"mesh": teeth.harmonics},
-        cycles={"mesh": [complex(c, -s) for c, s in teeth.cycle]},
+        load=system.load(load),
+        errors={name: teeth.harmonics},
+        cycles={name: [complex(c, -s) for c, s in teeth.cycle]},
         sways=sways,
         highest_hz=highest_hz,
     )
 
 
-def _mesh(system: System) -> RowSpring:
-    mesh = system.links["mesh"]
+def _in_ratio(workshop: Workshop, mesh: str, force: float) -> dict[str, float]:
+    """Forces of all meshes under a torque that brings a force to one, N."""
+    train = workshop.train
+    unit = mesh_forces(train, workshop.contacts, OperatingPoint(torque=1.0, of=train.reference))
+    if not unit[mesh]:
+        raise SolidgearError(f"no torque passes the {mesh} between engine and load")
+    return {name: force * (one / unit[mesh]) for name, one in unit.items()}
+
+
+def mesh_of(system: System, name: str) -> RowSpring:
+    """The link of a mesh."""
+    mesh = system.links[name]
     assert isinstance(mesh, RowSpring)
     return mesh
 
@@ -179,21 +235,20 @@ def ends(
 
 def with_backlash(
     workshop: Workshop,
-    pinion: str,
-    gear: str,
+    models: Sequence[str],
     teeth: Teeth,
     highest_hz: float | None = None,
     lowest_hz: float | None = None,
     told: Callable[[str], None] | None = None,
 ) -> Backlash:
-    """Periodic motion of a train whose teeth have backlash, by two models of its shafts.
+    """Periodic motion of a train whose teeth have backlash, by models of its shafts.
 
     Parameters
     ----------
-    pinion, gear : str
-        Models.
+    models : sequence of str
+        One for each shaft, or one for all.
     highest_hz, lowest_hz : float, optional
-        Of the mesh; the highest is that of the file by default, the lowest a hundredth of it.
+        Of the driven mesh; the highest is that of the file by default, the lowest a hundredth of it.
     told : callable, optional
         Called with words as it goes on.
 
@@ -210,33 +265,34 @@ def with_backlash(
     >>> mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
     >>> shop = Workshop(train.with_changes(mesh=mesh))
     >>> teeth = teeth_of(shop, mean_force=5000.0)
-    >>> found = with_backlash(shop, "lumped/timoshenko", "lumped/timoshenko", teeth, 1000.0, 500.0)
+    >>> found = with_backlash(shop, ["lumped/timoshenko"], teeth, 1000.0, 500.0)
     >>> [jump.rising for jump in found.jumps][:2]
     [True, False]
     """
     lowest, highest = ends(workshop, highest_hz, lowest_hz)
     begin = process_time()
     most = max(workshop.train.ask.max_frequency, highest)
-    own = backlash_model(workshop, pinion, gear, teeth, most)
+    mix = workshop.mix(models)
+    own = backlash_model(workshop, models, teeth, most)
     if told:
-        told(f"branch of {pinion} + {gear}")
+        told(f"branch of {' + '.join(mix.values())}")
     branch = follow(own, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
     largest = np.array([multipliers(point)[0] for point in branch.points])
     seconds = process_time() - begin
-    return Backlash(pinion, gear, teeth, own, branch, largest, seconds)
+    return Backlash(mix, teeth, own, branch, largest, seconds)
 
 
 def over_force(
     found: Backlash, count: int, told: Callable[[str], None] | None = None
 ) -> tuple[AtForce, ...]:
-    """Jumps over the mean force of the teeth, up to that above which they never part.
+    """Jumps over the mean force of the driven teeth, up to that above which none part.
 
     Parameters
     ----------
     count : int
         Mean forces, equally apart.
     """
-    most = found.linear_loudest[1]
+    most = found.holding[1].max()
     out = []
     for share in np.arange(1, count + 1) / count:
         force = float(share * most)
@@ -294,10 +350,11 @@ def in_time(
     count : int
         Speeds of each sweep.
     """
-    if not found.lost:
+    lost = [one for mesh in found.every for one in mesh.lost]
+    if not lost:
         return ()
-    low = max(found.lost[0].low * 0.97, found.frequency_hz.min())
-    high = min(found.lost[-1].high * 1.03, found.frequency_hz.max())
+    low = max(min(one.low for one in lost) * 0.97, found.frequency_hz.min())
+    high = min(max(one.high for one in lost) * 1.03, found.frequency_hz.max())
     up = np.linspace(low, high, count)
     out: list[InTime] = []
     for rising, hz in ((True, up), (False, up[::-1])):

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.scene.layout import PerTurn
 from solidgear.scene.train import Train
 from solidgear.studies.train.backlash import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.studies.train.nonlinear import InTime
@@ -40,9 +41,9 @@ class Sufficiency:
     count : int
         Of its jumps.
     force : float
-        Relative error of the largest dynamic mesh force.
+        Relative error of the largest dynamic mesh force, of several meshes the worst.
     at : float
-        Relative error of where it is.
+        Relative error of where that of the driven mesh is.
     lost : float or None
         Largest relative error of an end of the ranges in which teeth part; None as above.
     enough : bool
@@ -66,7 +67,7 @@ class BacklashTold:
     Attributes
     ----------
     lever : float
-        Torque of the pinion over mesh force, m.
+        Torque of the engine's shaft over the force of the driven mesh, m.
     in_time : tuple of InTime
         Of the first.
     over_force : tuple of AtForce
@@ -95,8 +96,13 @@ class BacklashTold:
     def _at(self, hz: float) -> str:
         return f"{hz:.1f} Hz ({self._rpm(hz):.0f} rpm)"
 
+    @property
+    def teeth_a_turn(self) -> PerTurn:
+        """Teeth of the driven mesh that pass in one turn of the engine's shaft."""
+        return self.train.per_turn(self.train.named_mesh(self.teeth.mesh))
+
     def _rpm(self, hz: float) -> float:
-        return 60 * hz / self.train.pinion.teeth
+        return 60 * hz / self.teeth_a_turn
 
     def _range(self, one: Range) -> str:
         return f"{one.low:.0f} to {one.high:.0f} Hz ({self._rpm(one.low):.0f} to {self._rpm(one.high):.0f} rpm)"
@@ -104,7 +110,7 @@ class BacklashTold:
     def sentences(self) -> list[str]:
         """What the first mix says, and which of the others is enough."""
         own = self.judge
-        calm = not own.lost and not own.teeth.varies
+        calm = not any(one.lost for one in own.every) and not own.teeth.varies
         if calm:
             return [
                 "The teeth keep contact in all of the range: the linear answer holds to the last "
@@ -112,29 +118,23 @@ class BacklashTold:
                 *self._run(),
                 *self._verdict(),
             ]
-        if own.lost:
-            lines = [f"The teeth part from {'; from '.join(map(self._range, own.lost))}."]
-        else:
-            lines = ["The teeth keep contact in all of the range."]
-        if own.both_flanks and own.lost:
-            lines.append(
-                f"The other flank is hit from {'; from '.join(map(self._range, own.both_flanks))}."
-            )
+        lines = [line for one in own.every for line in self._contact(one)]
         lines += self._jumped(own.jumps)
         lines += self._returned(own)
         lines += [WANDERS.format(self._range(one), kind) for kind, one in own.wandering]
-        at, size = own.loudest
-        there, linear = own.linear_loudest
-        lines.append(
-            f"Largest dynamic mesh force {size:.0f} N at {self._at(at)}; the linear answer says "
-            f"{linear:.0f} N at {self._at(there)}."
-        )
-        if not own.teeth.varies:
+        for one in own.every:
+            (at, size), (there, linear) = one.loudest, one.linear_loudest
             lines.append(
-                f"At mean forces above {linear:.0f} N ({linear * self.lever:.0f} N m on the pinion) "
-                "the teeth never part in this range."
+                f"Largest dynamic mesh force{self._of(one)} {size:.0f} N at {self._at(at)}; the linear "
+                f"answer says {linear:.0f} N at {self._at(there)}."
             )
-        lines += self._off()
+        if not own.teeth.varies:
+            held = float(own.holding[1].max())
+            lines.append(
+                f"At mean forces{self._of(own)} above {held:.0f} N ({held * self.lever:.0f} N m on the "
+                f"{self.train.reference}) the teeth never part in this range."
+            )
+        lines += [line for one in own.every for line in self._off(one)]
         lines += [*self._checked(), *self._run(), *self._verdict()]
         if own.teeth.contact_loss_hz:
             lines.append(IN_CONTACT.format(own.teeth.contact_loss_hz))
@@ -157,16 +157,35 @@ class BacklashTold:
         label = one.label[0].upper() + one.label[1:]
         return [RETURNS.format(label, self._at(one.returns))] if one.returns else []
 
-    def _off(self) -> list[str]:
-        band = self.train.ask.decibels
-        far = self.judge.off(band)
+    def _of(self, one: Backlash, word: str = "of") -> str:
+        """Which mesh, where there are several."""
+        return f" {word} the {one.teeth.mesh}" if len(self.train.meshes) > 1 else ""
+
+    def _contact(self, one: Backlash) -> list[str]:
+        """Where the teeth of a mesh part, and the other flank is hit."""
+        if not one.lost:
+            linear = len(self.train.meshes) > 1 and not one.teeth.half_gap
+            return [] if linear else [f"The teeth{self._of(one)} keep contact in all of the range."]
+        lines = [f"The teeth{self._of(one)} part from {self._ranges(one.lost)}."]
+        if one.both_flanks:
+            lines.append(
+                f"The other flank{self._of(one)} is hit from {self._ranges(one.both_flanks)}."
+            )
+        return lines
+
+    def _ranges(self, several: Sequence[Range]) -> str:
+        return "; from ".join(map(self._range, several))
+
+    def _off(self, one: Backlash) -> list[str]:
+        band, named = self.train.ask.decibels, self._of(one, "for")
+        far = one.off(band)
         if not far:
-            return [f"The linear answer is off by less than {band:g} dB everywhere."]
+            return [f"The linear answer{named} is off by less than {band:g} dB everywhere."]
         return [
-            f"The linear answer is off by {abs(most):.1f} dB at most, too "
-            f"{'high' if most > 0 else 'low'}, from {self._rpm(one.low):.0f} to "
-            f"{self._rpm(one.high):.0f} rpm ({one.low:.0f} to {one.high:.0f} Hz)."
-            for one, most in far
+            f"The linear answer{named} is off by {abs(most):.1f} dB at most, too "
+            f"{'high' if most > 0 else 'low'}, from {self._rpm(where.low):.0f} to "
+            f"{self._rpm(where.high):.0f} rpm ({where.low:.0f} to {where.high:.0f} Hz)."
+            for where, most in far
         ]
 
     def _checked(self) -> list[str]:
@@ -177,8 +196,8 @@ class BacklashTold:
             return ["In time no motion came to repeat itself every mesh period."]
         worst = max(periodic, key=lambda one: abs(one.off))
         lines = [
-            f"Integration in time agrees within {100 * abs(worst.off):.2g} % in mesh force at "
-            f"{len(periodic)} of {len(self.in_time)} speeds, swept up and down."
+            f"Integration in time agrees within {100 * abs(worst.off):.2g} % in mesh "
+            f"force{self._of(self.judge)} at {len(periodic)} of {len(self.in_time)} speeds, swept up and down."
         ]
         longer = sorted({one.cycle for one in self.in_time if one.cycle > 1})
         for cycle in longer:
@@ -219,8 +238,12 @@ class BacklashTold:
         ask, judge = self.train.ask, self.judge
         ours, theirs = (sorted(j.frequency_hz for j in f.jumps) for f in (one, judge))
         jumps = _worst(ours, theirs)
-        lost = _worst(*([e for r in f.lost for e in (r.low, r.high)] for f in (one, judge)))
-        force = one.loudest[1] / judge.loudest[1] - 1
+        both = [*zip(one.every, judge.every)]
+        ends = [
+            _worst(*([e for r in f.lost for e in (r.low, r.high)] for f in two)) for two in both
+        ]
+        lost = None if None in ends else max(e for e in ends if e is not None)
+        force = max((a.loudest[1] / b.loudest[1] - 1 for a, b in both), key=abs)
         factor = 10 ** (ask.decibels / 20)
         close = 1 / factor <= 1 + force <= factor
         return Sufficiency(
@@ -255,7 +278,7 @@ class BacklashTold:
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold, SI."""
         return {
-            "teeth": asdict(self.teeth),
+            "teeth": self._teeth(),
             "sentences": self.sentences(),
             "mixes": [self._plain(one) for one in self.found],
             "beside_the_first": [asdict(one) for one in self.sufficiency()],
@@ -263,6 +286,13 @@ class BacklashTold:
             "in_time": [asdict(one) | {"off": one.off} for one in self.in_time],
             "runs": [self._ran(one) for one in self.runs],
         }
+
+    def _teeth(self) -> dict[str, Any]:
+        """What is given; of the only mesh no name and no others."""
+        told = asdict(self.teeth)
+        if len(self.train.meshes) > 1:
+            return told
+        return {key: value for key, value in told.items() if key not in ("mesh", "others")}
 
     def _ran(self, one: SpeedRun) -> dict[str, Any]:
         at, size = one.loudest
@@ -277,17 +307,26 @@ class BacklashTold:
         }
 
     def _plain(self, one: Backlash) -> dict[str, Any]:
-        at, size = one.loudest
-        there, linear = one.linear_loudest
+        models = one.models if self.train.short else {"models": one.models}
+        others = [{"mesh": m.teeth.mesh, **self._of_mesh(m)} for m in one.every[1:]]
+        own = self._of_mesh(one)
         return {
-            "pinion": one.pinion,
-            "gear": one.gear,
+            **models,
             "points": len(one.points),
             "harmonics": max(point.balance.count for point in one.points),
-            "parts": [asdict(r) for r in one.lost],
-            "other_flank": [asdict(r) for r in one.both_flanks],
+            "parts": own["parts"],
+            "other_flank": own["other_flank"],
             "jumps": [asdict(jump) for jump in one.jumps],
             "unstable": [{"by": kind, **asdict(r)} for kind, r in one.wandering],
+            **own,
+            **({"other_meshes": others} if others else {}),
+        }
+
+    def _of_mesh(self, one: Backlash) -> dict[str, Any]:
+        (at, size), (there, linear) = one.loudest, one.linear_loudest
+        return {
+            "parts": [asdict(r) for r in one.lost],
+            "other_flank": [asdict(r) for r in one.both_flanks],
             "largest": {"frequency_hz": at, "force": size},
             "linear_largest": {"frequency_hz": there, "force": linear},
             "linear_off": [

@@ -222,12 +222,6 @@ def torques(workshop: Workshop, forces: Mapping[str, float]) -> dict[str, np.nda
     return out
 
 
-def mesh_force(workshop: Workshop, point: OperatingPoint) -> float:
-    """Force of the teeth of the only mesh along their line of action, N."""
-    forces = mesh_forces(workshop.train, workshop.contacts, point)
-    return forces[workshop.train.only().name]
-
-
 def refuse_own_loads(train: Train, side: str) -> None:
     """Refuse bearings whose load is told by themselves where a torque brings it.
 

@@ -72,7 +72,7 @@ class SpeedRun:
         return float(np.mean(np.abs(self.force / self.steady_force - 1) <= tolerance))
 
 
-def ramp_of(rpm: float, teeth: int, low: float, high: float) -> float:
+def ramp_of(rpm: float, teeth: float, low: float, high: float) -> float:
     """Ramp of the mesh frequency, Hz/s, from one of the pinion in rpm/s, through a range in Hz.
 
     Raises
