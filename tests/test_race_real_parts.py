@@ -4,7 +4,6 @@ slice of the measurements. No time is asserted.
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,6 @@ from validation.race.calculix import present
 from validation.race.heat import Heat
 from validation.race.real_lines import CALCULIX, GRADED, PLAIN, REFERENCE, UNIFORM, Job
 
-ROOT = Path(__file__).parent.parent
 # unknowns of made-up meshes, coarse to fine
 SIZES = np.array([1e3, 4e3, 2e4])
 
@@ -163,17 +161,14 @@ def test_calculix_answers_as_our_solid_on_its_mesh(monkeypatch):
     assert not lane.error and 0 < lane.answer["from_ours"] < measure.SAME
 
 
-def test_rows_that_are_shipped_hold_what_pages_say():
+def test_rows_that_are_shipped_have_all_lines_and_references_that_decide():
     rows = ratios.rows_of(read_result("real_parts"))
     places = [(row["part"], row["lane"]) for row in rows]
     jobs = {(j.part, j.name) for part in lines.PARTS for j in lines.jobs(part)}
     assert len(set(places)) == len(places) and set(places) == jobs
-    page = (ROOT / "docs" / "validation" / "speed.md").read_text()
     for part in lines.PARTS:
         # the reference is better than the error that ratios are taken at
         assert max(q.doubt for q in ratios.references(rows, part).values()) < 5e-4
-        for line in ratios.markdown(rows, part):
-            assert line in page, line
 
 
 def test_jobs_are_told_apart_by_their_names():

@@ -9,6 +9,10 @@ import re
 import shutil
 from pathlib import Path
 
+from validation.common import read_result
+from validation.race.real_costs import markdown, rows_of
+from validation.race.real_lines import PARTS
+
 DOCS = Path(__file__).parent.parent
 #: tables of what the program knows, not under version control
 TABLES = DOCS / "written"
@@ -64,10 +68,13 @@ def with_contents(text: str) -> str:
 
 
 def write_tables(app=None):
-    """Materials and builder options, as the program has them."""
+    """Materials and builder options, as the program has them, and tables of measured costs."""
     TABLES.mkdir(exist_ok=True)
     (TABLES / "materials.md").write_text(materials())
     (TABLES / "options.md").write_text(options())
+    rows = rows_of(read_result("real_parts"))
+    for part in PARTS:
+        (TABLES / f"real_{part}.md").write_text("\n".join(markdown(rows, part)) + "\n")
 
 
 def materials() -> str:

@@ -264,8 +264,9 @@ def _two_digits(number: float) -> str:
 
 
 def markdown(rows: Sequence[Row], part: str, target: float = 1e-3) -> list[str]:
-    """Rows of a table for a page: what the error asked for costs in both quantities."""
-    out = []
+    """Table for a page: what the error asked for costs in both quantities."""
+    head = "| line | processor s | 3D unknowns | peak MB"
+    out = [head + " | raw 3D / this | CalculiX / this | its modes / this |", "| --- " * 7 + "|"]
     for row in table(rows, part, target):
         if row["how"] == "never":
             out.append(f"| {row['line']} | not reached | | | | | |")
