@@ -109,7 +109,7 @@ class Rows(Group):
         return bool(self.one_at_a_time or self.table or self.keep_sum)
 
     def design(self, vary: Sequence[str]) -> Design:
-        """What varies, and in which combinations."""
+        """Entries that vary, and in which combinations."""
         sums = tuple(self.keep_sum or ())
         drawn = self.sample, self.seed, self.one_at_a_time
         return Design(tuple(vary), *drawn, self.table, sums)

@@ -1,4 +1,4 @@
-"""What the data of a scene leave open of its numbers, as ``results.json`` and ``--json`` hold it."""
+"""Ranges that the data of a scene leave open, as ``results.json`` and ``--json`` hold it."""
 
 from __future__ import annotations
 

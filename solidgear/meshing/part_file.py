@@ -1,4 +1,4 @@
-"""What is read from the files of a part: its surface, volume, groups and coarser meshes."""
+"""Contents of the files of a part: its surface, volume, groups and coarser meshes."""
 
 from __future__ import annotations
 

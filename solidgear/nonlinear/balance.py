@@ -138,7 +138,7 @@ class Balance:
         return make @ parts, omega * (slope @ parts)
 
     def residual(self, motion: np.ndarray, omega: float) -> Residual:
-        """What is left of the balance at a motion (n,) and a frequency, rad/s."""
+        """Residual of the balance at a motion (n,) and a frequency, rad/s."""
         own = self.remainder
         make, slope, read = self._series
         s, v = self.stretch(motion, omega)

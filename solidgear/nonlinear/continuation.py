@@ -147,7 +147,7 @@ class Branch:
         return out
 
     def _between(self, before: Point, after: Point, value: Callable[[Point], float]) -> Point:
-        """Where a value changes its sign between two neighbours."""
+        """Change of sign of a value between two neighbours."""
         walk = Follower(before.balance, *self.scale)
         if after.balance.count > before.balance.count:
             before = walk.refit(before, after.balance.count)
@@ -222,7 +222,7 @@ class Follower:
             return found[0]
 
     def where(self, before: Point, step: float, value: Callable[[Point], float]) -> Point | None:
-        """Where a value changes its sign within a step, by Illinois' method; None if none can be
+        """Place at which a value changes its sign within a step, by Illinois' method; None if none can be
         told.
         """
         found = self.correct(before, step)

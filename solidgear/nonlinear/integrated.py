@@ -139,7 +139,7 @@ class Integrated:
 
     @cached_property
     def _least(self) -> float:
-        """What a state is told to: a share of that of the linear system."""
+        """Accuracy of a state: a share of that of the linear system."""
         own = self.remainder
         size = np.abs(own.linear(self.omega, len(own.error))[0]).max()
         return self.tolerance * float(own.omega[0] * size / np.abs(own.seen).max())

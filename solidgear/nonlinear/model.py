@@ -36,7 +36,7 @@ LOOSE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Remainder:
-    """What links with a law move against.
+    """Linear remainder that links with a law move against.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Remainder:
 
     @property
     def varies(self) -> bool:
-        """Whether a law varies over the cycle of the excitation."""
+        """True if a law varies over the cycle of the excitation."""
         return bool(self.cycle.any()) or self.sway is not None
 
     def rows_of(self, at: slice) -> range:
@@ -102,7 +102,7 @@ class Remainder:
         return range(at.start, at.start + 1 if turns else at.stop)
 
     def line(self, angle: np.ndarray, omega: float | np.ndarray) -> Line | None:
-        """Where laws act at angles (T,) of the excitation; None where no line turns."""
+        """Places at which laws act at angles (T,) of the excitation; None where no line turns."""
         return None if self.sway is None else self.sway.line(np.asarray(angle), omega)
 
     def factor(self, angle: np.ndarray) -> np.ndarray:
@@ -139,7 +139,7 @@ class Remainder:
 
     @property
     def drags(self) -> bool:
-        """Whether a force depends on a rate."""
+        """True if a force depends on a rate."""
         return any(law.drags for law, _ in self.laws)
 
     def excess(
@@ -204,7 +204,7 @@ class Remainder:
 
     @cached_property
     def hangs(self) -> bool:
-        """Whether nothing but its laws holds it: without any force of theirs it has no rest."""
+        """True if nothing but its laws holds it: without any force of theirs it has no rest."""
         still = self.receptance(np.zeros(1))[0][0].real + self.flexible
         free = np.eye(self.rows) - still @ self.stiffness
         return bool(np.linalg.svd(free, compute_uv=False)[-1] < LOOSE)
@@ -218,7 +218,7 @@ class Remainder:
         return into.T[:, :, None] * ((self.seen / self.omega) @ right[:r]).T
 
     def growth(self, omega):
-        """What forces are multiplied by at a frequency, or frequencies."""
+        """Factor of forces at a frequency, or frequencies."""
         return omega**2 if self.unbalance else 1.0 + 0.0 * omega
 
     def linear(self, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -74,7 +74,7 @@ class Pieces:
         self._made: dict[tuple[int, ...], Piece] = {}
 
     def name(self, stretch: np.ndarray) -> tuple[int, ...]:
-        """Which piece every stretch (m,) is on."""
+        """Piece that every stretch (m,) is on."""
         return tuple(int(np.searchsorted(e, s)) for e, s in zip(self.edges, stretch))
 
     def piece(self, name: tuple[int, ...]) -> Piece:

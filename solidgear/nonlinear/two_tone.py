@@ -145,7 +145,7 @@ class TwoTone:
         return make @ parts, rate @ parts
 
     def residual(self, motion: np.ndarray) -> Residual:
-        """What is left of the balance at a motion (n,)."""
+        """Residual of the balance at a motion (n,)."""
         own = self.fast
         make, rate, read = self._series
         s, v = self.waves(motion)

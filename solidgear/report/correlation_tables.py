@@ -164,7 +164,7 @@ def _constant(overlay: Any, k: int) -> float | None:
 
 
 def alone(found: Any) -> Table:
-    """What was measured and not computed, and the reverse."""
+    """Resonances measured and not computed, and the reverse."""
     rows = [("measured", "", p.measured.frequency, p.probability) for p in found.pairs]
     rows = [row for row, pair in zip(rows, found.pairs) if pair.computed is None]
     rows += [("computed", mode.name, mode.frequency_hz, share) for mode, share in found.missed]

@@ -44,7 +44,7 @@ def backlash_chart(
 
 
 def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
-    """Where teeth part, and jumps, over speed and mean force."""
+    """Map of parting teeth and jumps over speed and mean force."""
     judge, teeth = found.judge, found.teeth_a_turn
     unit, (hz, size) = units.unit("N"), judge.holding
     top = 1.05 * float(units.values(size, "N").max())
@@ -158,7 +158,7 @@ def _runs(where: np.ndarray) -> np.ndarray:
 
 
 def _may_part(one: Any) -> bool:
-    """Whether it has a gap, or is the one that is driven."""
+    """True if it has a gap, or is the one that is driven."""
     return one.law == 0 or one.teeth.half_gap > 0
 
 

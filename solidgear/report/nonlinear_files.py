@@ -19,7 +19,7 @@ from solidgear.report.words import DASH, hertz
 
 
 def lead(found: Any, shown: Units) -> str:
-    """What the teeth are given as, and the models that answer, in a sentence."""
+    """Data of the teeth, and the models that answer, in a sentence."""
     teeth = found.teeth
     gap = shown.text(2 * teeth.half_gap, "m moved", 4)
     error = ", ".join(shown.text(e, "m moved", 4) for e in teeth.errors)

@@ -43,7 +43,7 @@ def _figures(share: float) -> str:
 
 
 def parts(found: OpenNumbers, quantity: str) -> list[tuple[str, str]]:
-    """What leaves a number open, and its range: every source, and all of them if there are several."""
+    """Sources that leave a number open, and its range: each, and all if there are several."""
     one = found.of(quantity)
     if one is None:
         return []

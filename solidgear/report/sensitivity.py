@@ -1,4 +1,4 @@
-"""What would move a number: tables, chart and files of sensitivities."""
+"""Sensitivities of numbers: tables, chart and files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def strongest(of: Any) -> list[Any]:
 
 
 def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
-    """What moves one number."""
+    """Entries that move one number."""
     shown = strongest(of) if rows is None else rows
     unit = units.unit(of.unit)
     columns: list[Column] = [
@@ -152,6 +152,6 @@ def write(folder: Path, found: Any, units: Units) -> list[Path]:
 
 
 def notes(found: Any) -> list[str]:
-    """What was held, how sure derivatives are, and entries without any."""
+    """Entries held, accuracy of derivatives, and entries without any."""
     without = [f"No derivative by {path}: {why}." for path, why in found.without.items()]
     return [*found.notes, *without]

@@ -213,7 +213,7 @@ def answered(answer: Any) -> Table:
 
 
 def swept(rows: Any) -> Table:
-    """What varies, the first natural frequencies with their bars, and why a row has none."""
+    """Values that vary, the first natural frequencies with their bars, and why a row has none."""
     heads = [*rows.varied, *(name for name in ("f1_hz", "f2_hz", "f3_hz") if name in rows.columns)]
     columns = [*heads, "status"]
     told = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]

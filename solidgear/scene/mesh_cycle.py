@@ -22,7 +22,7 @@ Vector = Annotated[
 
 
 class Cycle(Model):
-    """What a table over one mesh cycle has in common.
+    """Common part of tables over one mesh cycle.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How a bearing holds its seat along y or altogether: held ends, and a ring that slides."""
+"""Support of a seat by its bearing, along y or altogether: held ends, and a ring that slides."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def sliding(stiffness: np.ndarray) -> np.ndarray:
 
 
 def support_problems(bearing: Bearing) -> Iterator[SceneError]:
-    """What contradicts the support of a bearing."""
+    """Contradictions in the support of a bearing."""
     data = bearing.catalogue
     if bearing.support is None:
         return

@@ -1,4 +1,4 @@
-"""What the open inputs of a scene leave open of its numbers: by each, by each source, in total.
+"""Ranges that the open inputs of a scene leave to its numbers: by each, by each source, in total.
 
 **Range**: the lowest and the highest of a number over the points that are solved. Those are the ends
 of every input by itself; the corners of all of them (of more than :data:`MOST_OF_ALL_CORNERS`

@@ -230,7 +230,7 @@ class _Search:
         return first
 
     def _place_of_file(self) -> np.ndarray:
-        """Where the file lies in the ranges; not a number beyond them."""
+        """Place of the file in the ranges; not a number beyond them."""
         out = []
         for entry in self.entries:
             low, high = (in_si(entry.put(value)) for value in (entry.values[0], entry.values[-1]))

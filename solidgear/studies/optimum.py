@@ -1,4 +1,4 @@
-"""What a search for the best design found, in numbers and words."""
+"""Result of a search for the best design, in numbers and words."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Design:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Optimum(Displayed):
-    """What a search found.
+    """Result of a search.
 
     Attributes
     ----------

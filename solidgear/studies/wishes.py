@@ -52,7 +52,7 @@ class Wish:
         return self.name
 
     def missing(self, row: dict[str, Any]) -> float:
-        """What a design is short of its limit, bar included, relative to it; none or less is kept."""
+        """Amount missing to a limit, bar included, relative to it; none or less is kept."""
         told = self.of(row)
         if told is None or self.limit is None:
             return math.inf
@@ -102,7 +102,7 @@ def _in_unit_of(name: str, value: str, text: str) -> float:
 
 
 def _factor(unit: str, wanted: str) -> float:
-    """What a unit is of another of its dimension; of compliances and stiffnesses any will do."""
+    """Factor of a unit to another of its dimension; of compliances and stiffnesses any will do."""
     import pint
 
     registry: Any = pint.UnitRegistry(on_redefinition="ignore")

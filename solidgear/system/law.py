@@ -42,7 +42,7 @@ class Law(Protocol):
 
     @property
     def drags(self) -> bool:
-        """Whether the force depends on the rate."""
+        """True if the force depends on the rate."""
 
     @property
     def kinks(self) -> tuple[tuple[float, float], ...]:
@@ -177,13 +177,13 @@ class Gap:
 
     @property
     def pieces(self) -> bool:
-        """Whether it is linear on either side."""
+        """True if it is linear on either side."""
         plain = self.damper == 0 or (self.ramp == 0 and self.pulls)
         return self.exponent == 1 and self.rounding == 0 and plain
 
     @property
     def drags(self) -> bool:
-        """Whether it has a damper."""
+        """True if it has a damper."""
         return self.damper > 0
 
     @property

@@ -292,7 +292,7 @@ def pieces(e: Elements, station) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def seat(e: Elements, shape, lo, hi, y) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """What each piece of a seat adds to the Gram matrix of the motions of its port, a point at y, and
+    """Contribution of each piece of a seat to the Gram matrix of its port, a point at y, and
     to their rows before they are divided by it, by block.
     """
     place, r, ds, lagrange = surface(e, lo, hi)

@@ -35,7 +35,7 @@ HINGE = ("bend", "stretch", "twist")
 
 
 class BeamAdjoint:
-    """What numbers of a beam feel, each array (..., forms).
+    """Derivatives of numbers of a beam, each array (..., forms).
 
     Attributes
     ----------

@@ -67,7 +67,7 @@ def shear_coefficient(nu, outer, inner):
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """What the elements of a beam are made of, each (e,): where one begins and ends, and the two ends,
+    """Elements of a beam, each (e,): where one begins and ends, and the two ends,
     radii (m) and material (SI) of the segment that it lies in.
     """
 

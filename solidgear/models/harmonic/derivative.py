@@ -36,7 +36,7 @@ TORSION = -1
 
 @dataclass
 class Push:
-    """What one number feels of all that may move: its derivative by each.
+    """Derivatives of one number by all that may move.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Push:
 
 
 class HarmonicAdjoint:
-    """What numbers of a harmonic body of straight sides, of order 3 or more, feel of its shape and
+    """Derivatives of numbers of a harmonic body (straight sides, order 3 or more) by its shape and
     material.
     """
 

@@ -15,7 +15,7 @@ from solidgear.scene.outline import TOUCH
 
 
 class Motion:
-    """How nodes, seats and materials of a harmonic body move with one parameter, from the scene a
+    """Motion of nodes, seats and materials of a harmonic body with one parameter, from the scene a
     little before and after it.
 
     Raises

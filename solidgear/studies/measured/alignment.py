@@ -1,4 +1,4 @@
-"""Which measured resonance is which computed mode, by frequencies, multiplicities and, where they
+"""Pairs of measured resonances and computed modes, by frequencies, multiplicities and, where they
 were measured, shapes, and how sure that is.
 
 Both lists ascend. They are laid beside each other by a hidden Markov model: a step takes one of
@@ -74,7 +74,7 @@ class Peak:
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """How like measured shapes are computed ones.
+    """Likeness of measured and computed shapes.
 
     Attributes
     ----------
@@ -305,12 +305,12 @@ def _normal(away: np.ndarray, variance: np.ndarray) -> np.ndarray:
 
 
 def _named(one: Peak, mode: Peak) -> float:
-    """How likely a mode is called as it is."""
+    """Probability that a mode is called as it is."""
     return RENAMED if one.family and mode.family and one.family != mode.family else 1.0
 
 
 def _alike(one: Peak, mode: Peak) -> float:
-    """How likely a multiplicity is measured of a mode."""
+    """Probability that a multiplicity is measured of a mode."""
     if one.multiplicity is None or one.multiplicity == mode.multiplicity:
         return 1.0
     return HALF if one.multiplicity == 1 else DOUBLE

@@ -80,7 +80,7 @@ class Pair:
 
     @property
     def verdict(self) -> str:
-        """How both stand to each other, in words."""
+        """Relation of both, in words."""
         if self.computed is None:
             return "no mode"
         doubt = "" if self.sure else ", pair not sure"

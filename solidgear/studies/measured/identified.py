@@ -1,4 +1,4 @@
-"""What was identified from measured resonances, in numbers and words."""
+"""Parameters identified from measured resonances, in numbers and words."""
 
 from __future__ import annotations
 

@@ -299,7 +299,7 @@ class _Fit:
         return move[: self.count] + 1j * move[self.count :]
 
     def power(self) -> np.ndarray:
-        """What each mode explains, over the noise of as many unknowns where the mode is seen."""
+        """Power that each mode explains, over the noise of as many unknowns where the mode is seen."""
         # of the lines about: a pole may fit the noise of one line altogether
         square = np.sum(self.rest.reshape(2, -1, self.rest.shape[1]) ** 2, axis=0) / 2
         noise = np.tile(uniform_filter1d(square, ABOUT, axis=0, mode="nearest"), (2, 1))

@@ -64,7 +64,7 @@ class Overlay:
 
     @property
     def told(self) -> str:
-        """How the computed ones were made, in words."""
+        """Model of the computed ones, in words."""
         around = f", up to {self.waves} waves around" * bool(self.waves)
         stiffer = (
             f"What is stiffer counts with its static compliance{around}: at the point that is driven "

@@ -31,7 +31,7 @@ Further = Callable[[tuple[Entry, ...]], tuple[Entry, ...]]
 
 @dataclass(frozen=True)
 class Design:
-    """What varies in a sweep, and in which combinations.
+    """Entries that vary in a sweep, and in which combinations.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class Design:
 
     @property
     def plan(self) -> dict[str, Any] | None:
-        """What rows depend on beside the values of entries."""
+        """All that rows depend on beside the values of entries."""
         out: dict[str, Any] = {}
         if self.sample is not None:
             out |= {"points": self.sample, "seed": self.seed}

@@ -27,7 +27,7 @@ Owner = Callable[[str], tuple[str, str]]
 
 
 class Place(NamedTuple):
-    """Where an entry stands.
+    """Place of an entry.
 
     Attributes
     ----------
@@ -74,12 +74,12 @@ class Entry(Span):
 
     @property
     def file(self) -> str:
-        """Which of several files holds the first of them."""
+        """Index of the file, of several, that holds the first of them."""
         return self.places[0].file
 
     @property
     def keys(self) -> Keys:
-        """Where that is in the tables of its file."""
+        """Path of that in the tables of its file."""
         return self.places[0].keys
 
     def is_in(self, file: str) -> bool:
@@ -87,7 +87,7 @@ class Entry(Span):
         return any(place.file == file for place in self.places)
 
     def put(self, value: float) -> str | float | bool:
-        """What is written into a file for a value."""
+        """Text written into a file for a value."""
         if self.words:
             return self.words[int(value)]
         plain = (self.whole or self.unit) and value == int(value) and abs(value) < 1e15
@@ -253,7 +253,7 @@ class Kept:
         return self.places[-1].label
 
     def left(self, tables: Tables) -> float:
-        """What is left for the last entry, SI."""
+        """Remainder for the last entry, SI."""
         left = self.total - sum(_number_at(place, tables) for place in self.places[:-1])
         return float(f"{left:.12g}")
 

@@ -70,7 +70,7 @@ class FileVariants:
 
     @property
     def plan(self) -> dict[str, list[Any]]:
-        """What varies, as data for JSON."""
+        """Entries that vary, as data for JSON."""
         return {
             one.label: [one.spacing, one.unit, *(one.words or one.values)] for one in self.entries
         }
@@ -108,7 +108,7 @@ class FileVariants:
         self.read(self.entries, self.values[index].tolist())
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Any:
-        """What the files describe with some entries replaced."""
+        """Scene or train of the files with some entries replaced."""
         raise NotImplementedError
 
     def _refuse_whatever_its_value(self, one: Entry) -> None:
@@ -136,7 +136,7 @@ class FileVariants:
         return error.located(self.tables(index)[OWN], where=str(self.path))
 
     def status(self, error: SolidgearError, index: int) -> str:
-        """Why a variant has no numbers, in a line; the file that was asked about goes without its name."""
+        """Reason why a variant has no numbers, in a line; the file asked about is not named."""
         found = self.located(error, index)
         problems = found.problems if isinstance(found, SceneError) else [found]
         told = [str(one).removeprefix(f"{self.path}: ") for one in problems]

@@ -38,7 +38,7 @@ class Made:
 
     @property
     def refusals(self) -> dict[str, int]:
-        """Why variants have no numbers, and how many for that reason."""
+        """Reasons why variants have no numbers, and how many for that reason."""
         return dict(Counter(status for status in self.columns["status"] if status != "ok"))
 
 

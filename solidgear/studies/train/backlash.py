@@ -22,7 +22,7 @@ REAL = 1e-6
 
 @dataclass(frozen=True)
 class Teeth:
-    """What the teeth of a train do beside their stiffness.
+    """Teeth of a train, beside their stiffness.
 
     Attributes
     ----------
@@ -72,7 +72,7 @@ class Teeth:
 
     @property
     def varies(self) -> bool:
-        """Whether the mesh varies over its cycle, and the linear answer with constant teeth with it."""
+        """True if the mesh varies over its cycle, and the linear answer with constant teeth with it."""
         return self.turns or bool(self.cycle)
 
 
@@ -209,7 +209,7 @@ class Backlash:
         return np.abs(self.multiplier) <= 1 + ON
 
     def over(self, hz: np.ndarray, values: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Which of some frequencies (n,) lie between two stable neighbours of the branch, and what
+        """Mask of the frequencies (n,) that lie between two stable neighbours of the branch, and what
         values of its points (p,) are there; once for every such pair.
         """
         own, good = self.frequency_hz, self.stable
@@ -274,7 +274,7 @@ class Backlash:
 
     @cached_property
     def lost(self) -> tuple[Range, ...]:
-        """Where the teeth part for some of the cycle; nowhere without a gap."""
+        """Frequencies at which the teeth part for some of the cycle; nowhere without a gap."""
         half = self.teeth.half_gap
         if half == 0:
             return ()
@@ -284,12 +284,12 @@ class Backlash:
 
     @cached_property
     def both_flanks(self) -> tuple[Range, ...]:
-        """Where the other flank touches as well."""
+        """Frequencies at which the other flank touches as well."""
         return _ranges(self.frequency_hz, self.backside > 0, [])
 
     @cached_property
     def wandering(self) -> tuple[tuple[str, Range], ...]:
-        """Where a periodic motion is unstable other than between turning points, and how."""
+        """Frequencies of unstable periodic motions not between turning points, and how."""
         kinds = np.full(len(self.points), "", dtype=object)
         loose = ~self.stable
         kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
@@ -305,7 +305,7 @@ class Backlash:
         )
 
     def off(self, decibels: float) -> tuple[tuple[Range, float], ...]:
-        """Where the linear answer is off by more than some decibels, and by how much at most there;
+        """Frequencies at which the linear answer is off by some decibels, and how much at most;
         above is positive.
         """
         size = np.array([self.linear_force(f) for f in self.frequency_hz])

@@ -50,7 +50,7 @@ def teeth_of(
     contact_loss_hz: float | None = None,
     mesh: str | None = None,
 ) -> Teeth:
-    """What the teeth of a train do, from its file.
+    """Teeth of a train, from its file.
 
     Parameters
     ----------

@@ -90,7 +90,7 @@ class BacklashTold:
 
     @property
     def teeth(self) -> Teeth:
-        """What all mixes share."""
+        """Sentences that all mixes share."""
         return self.judge.teeth
 
     def _at(self, hz: float) -> str:
@@ -108,7 +108,7 @@ class BacklashTold:
         return f"{one.low:.0f} to {one.high:.0f} Hz ({self._rpm(one.low):.0f} to {self._rpm(one.high):.0f} rpm)"
 
     def sentences(self) -> list[str]:
-        """What the first mix says, and which of the others is enough."""
+        """Sentences of the first mix, and on which of the others is enough."""
         own = self.judge
         calm = not any(one.lost for one in own.every) and not own.teeth.varies
         if calm:
@@ -158,11 +158,11 @@ class BacklashTold:
         return [RETURNS.format(label, self._at(one.returns))] if one.returns else []
 
     def _of(self, one: Backlash, word: str = "of") -> str:
-        """Which mesh, where there are several."""
+        """Name of the mesh, where there are several."""
         return f" {word} the {one.teeth.mesh}" if len(self.train.meshes) > 1 else ""
 
     def _contact(self, one: Backlash) -> list[str]:
-        """Where the teeth of a mesh part, and the other flank is hit."""
+        """Sentence on where the teeth of a mesh part, and the other flank is hit."""
         if not one.lost:
             linear = len(self.train.meshes) > 1 and not one.teeth.half_gap
             return [] if linear else [f"The teeth{self._of(one)} keep contact in all of the range."]
@@ -288,7 +288,7 @@ class BacklashTold:
         }
 
     def _teeth(self) -> dict[str, Any]:
-        """What is given; of the only mesh no name and no others."""
+        """Sentence on the data given; of the only mesh no name and no others."""
         told = asdict(self.teeth)
         if len(self.train.meshes) > 1:
             return told
