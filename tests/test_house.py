@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from validation.house import asks, documented
+
 PACKAGE = Path(__file__).parent.parent / "solidgear"
 GROUND = {"errors", "elements", "factoring", "frames", "display", "quantity", "springs"}
 
@@ -112,6 +114,12 @@ def test_beams_share_no_code_with_solids():
 def test_a_file_is_one_thing():
     files = PACKAGE.rglob("*.py")
     assert [str(p) for p in files if len(p.read_text().splitlines()) > LONGEST] == []
+
+
+def test_docstrings_begin_with_a_noun_or_a_verb():
+    trees = {p: ast.parse(p.read_text()) for p in PACKAGE.rglob("*.py")}
+    found = {f"{p}:{d.lineno}" for p, t in trees.items() for d in documented(t) if asks(d)}
+    assert found == set()
 
 
 def test_modules_are_imported_at_the_top_or_by_a_statement():

@@ -45,13 +45,13 @@ def lines_by_kind(path: Path) -> Counter[str]:
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.COMMENT and token.line.lstrip().startswith("#"):
             kinds[token.start[0] - 1] = "comment"
-    for node in _documented(ast.parse(text)):
+    for node in documented(ast.parse(text)):
         for k in range(node.lineno - 1, node.end_lineno or node.lineno):
             kinds[k] = "docstring"
     return Counter(kinds)
 
 
-def _documented(tree: ast.AST) -> Iterator[ast.expr]:
+def documented(tree: ast.AST) -> Iterator[ast.expr]:
     """Expressions that are docstrings."""
     holders = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     for node in ast.walk(tree):
@@ -59,6 +59,12 @@ def _documented(tree: ast.AST) -> Iterator[ast.expr]:
             first = node.body[0]
             assert isinstance(first, ast.Expr)
             yield first.value
+
+
+def asks(docstring: ast.expr) -> bool:
+    """True if a docstring begins with a question word and not with a noun or a verb."""
+    assert isinstance(docstring, ast.Constant)
+    return str(docstring.value).split(None, 1)[0].strip(",:").lower() in ASKING
 
 
 def room_of(path: Path, package: Path) -> str:
@@ -150,10 +156,9 @@ def measured(tree: Path) -> dict[str, object]:
     constants: Counter[str] = Counter()
     for path in files:
         rooms[room_of(path, package)] += lines_by_kind(path) + Counter(files=1)
-        for node in _documented(ast.parse(path.read_text(encoding="utf-8"))):
-            assert isinstance(node, ast.Constant)
+        for node in documented(ast.parse(path.read_text(encoding="utf-8"))):
             docstrings += 1
-            asking += str(node.value).split(None, 1)[0].strip(",:").lower() in ASKING
+            asking += asks(node)
         if room_of(path, package) not in UNTUNED:
             held = numbers_of(path)
             constants += Counter(names=len(held), numbers=sum(held.values()))
