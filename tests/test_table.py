@@ -88,3 +88,13 @@ def test_no_terminal_is_too_narrow_for_a_number(width):
         assert number in told
     if width >= 60:
         assert max(map(len, told.splitlines())) <= width
+
+
+@pytest.mark.parametrize("style", ["bare", "ruled", ""])
+def test_numbers_beside_each_other_never_run_together(style):
+    heads = [text("shafts"), text("jump up, Hz"), text("jump down, Hz")]
+    heads += [Column(f"quantity {k}, Hz") for k in range(5)]
+    row = ("input lumped, middle harmonic", "-", "-", "546.6", "2182.8", "545.4", "2179.5", "67.85")
+    told = in_terminal(Table("Jumps", heads, [row], style=style))
+    assert set(row[3:]) <= set(re.split(r"[\s│]+", told))
+    assert max(map(len, told.splitlines())) <= 80

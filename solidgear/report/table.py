@@ -260,7 +260,7 @@ TERMINAL: dict[str, dict[str, Any]] = {
 TERMINAL["matrix"] = TERMINAL["narrow"]
 #: right of a cell, left of it none, where a terminal has no room for more
 TIGHT = ((0, 1, 0, 0), (0, 0, 0, 0))
-#: characters that a column of texts has at least
+#: characters that a column of texts has at least, if one of them needs as many
 LEAST_TEXT = 12
 
 
@@ -274,7 +274,9 @@ def fitted(table: Table, console: Console, options: ConsoleOptions) -> RichTable
     columns = list(zip(table.columns, zip(*table.texts)))
     whole = [_least(column, cells, column.head.split("\n")) for column, cells in columns]
     broken = [_least(column, cells, column.head.split()) for column, cells in columns]
-    ways = [(shown.padding, whole), *((pad, broken) for pad in (shown.padding, *TIGHT))]
+    # numbers without a line between them would run together
+    tight = TIGHT if shown.box else TIGHT[:1]
+    ways = [(shown.padding, whole), *((pad, broken) for pad in (shown.padding, *tight))]
     for padding, widths in ways:
         shown.padding = padding
         for column, width in zip(shown.columns, widths):
@@ -296,23 +298,25 @@ def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
 
 def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
     """Characters of the widest cell or part of the head; of texts those of a word, or a few."""
+    parts = _widest([*heads, *cells])
+    if column.kind != TEXT:
+        return parts
+    words = [word for cell in cells for word in cell.split()]
+    return max(_widest([*heads, *words]), min(parts, LEAST_TEXT))
+
+
+def _widest(texts: Iterable[str]) -> int:
     from rich.cells import cell_len
 
-    words = [word for cell in cells for word in cell.split()] if column.kind == TEXT else cells
-    told = [*heads, *words]
-    widest = max((cell_len(in_ascii(one)) for one in told), default=0)
-    return max(widest, LEAST_TEXT) if column.kind == TEXT else widest
+    return max((cell_len(in_ascii(one)) for one in texts), default=0)
 
 
 def _widen_texts(table: Table, shown: RichTable, spare: int) -> None:
     """Share what is left of a line among columns of texts, none more than it needs."""
-    from rich.cells import cell_len
-
     left = []
     for k, (column, cells) in enumerate(zip(table.columns, zip(*table.texts))):
         if column.kind == TEXT:
-            needs = max((cell_len(in_ascii(cell)) for cell in cells), default=0)
-            left.append((needs - (shown.columns[k].width or 0), k))
+            left.append((_widest(cells) - (shown.columns[k].width or 0), k))
     for done, (needs, k) in enumerate(sorted(left)):
         more = max(min(needs, spare // (len(left) - done)), 0)
         shown.columns[k].width = (shown.columns[k].width or 0) + more
