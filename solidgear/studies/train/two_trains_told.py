@@ -145,16 +145,16 @@ def _at_rest(found: TwoTrains, units: Units) -> Iterator[str]:
     label = points[0].label
     where = label if label == points[1].label else f"{label} (A) and {points[1].label} (B)"
     yield f"Misalignment at {where}: {'; '.join(told)}."
-    opened = [
-        f"{m.name} of {one.letter} {units.number(m.open[0], m.unit, 3)} to "
-        f"{units.text(m.open[1], m.unit, 3)}"
-        for one in found.both
-        if one.loaded is not None
-        for m in one.loaded.misalignment
-        if m.open is not None
-    ]
+    opened: dict[str, list[str]] = {}
+    for one in found.both:
+        for m in one.loaded.misalignment if one.loaded else ():
+            if m.open is not None:
+                low, high = units.number(m.open[0], m.unit, 3), units.text(m.open[1], m.unit, 3)
+                opened.setdefault(f"{m.name} {low} to {high}", []).append(one.letter)
     if opened:
-        yield f"Data of bearings leave open, alike in both: {'; '.join(opened)}."
+        letters = [one.letter for one in found.both]
+        ranges = [r if of == letters else f"{r} ({of[0]})" for r, of in opened.items()]
+        yield f"Data of bearings leave open, alike in both: {'; '.join(ranges)}."
 
 
 def _sure(found: TwoTrains) -> str:
