@@ -384,7 +384,7 @@ def test_straddled_pinion():
 
 
 def test_a_train_is_told_from_a_shaft():
-    with pytest.raises(SceneError, match="describes a train of two shafts and not a shaft"):
+    with pytest.raises(SceneError, match="describes a train of shafts and not a shaft"):
         load(GEOMETRY / "axle_overhung.toml")
 
 

@@ -133,7 +133,7 @@ def _imported(name: str) -> Any:
 app = typer.Typer(
     cls=Door,
     no_args_is_help=True,
-    help="Shafts on their bearings, and two that mesh, as lumped model, beam, "
+    help="Shafts on their bearings, and trains of shafts that mesh, as lumped model, beam, "
     "axisymmetric-harmonic solid and full 3D solid, side by side.",
     epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
     "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "

@@ -16,6 +16,8 @@ from pathlib import Path
 import numpy as np
 
 SIZE = (1200, 700)
+#: height of a title over several frames
+HEADING = 44
 #: largest drawn displacement, as a share of the length of what is drawn
 SWING = 0.08
 #: share of a frame, across and up, that a shape may fill
@@ -71,6 +73,8 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
     down, across = _layout(len(frames), extremes, view)
     tile = [SIZE[0] // across, SIZE[1] // down]
+    # one title over several frames, which have no room for it
+    head = _heading(pv, job["title"]) if len(frames) > 1 else np.empty((0, SIZE[0], 3), np.uint8)
     picture = np.full((SIZE[1], SIZE[0], 3), 255, np.uint8)
     # A window a frame: smoothing of edges leaves all but one part of a divided window black.
     for k, (factor, caption) in enumerate(frames):
@@ -80,7 +84,7 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
         deformed = pv.PolyData(points + factor * displacement, cells)
         deformed["size"] = abs(factor) * size / size.max()
         body = _frame(pv, p, rest, deformed, lines, length, view, job["along"])
-        _words(p, "" if k else job["title"], caption, len(frames))
+        _words(p, "" if len(head) else job["title"], caption)
         if k == 0:
             _axes(p)
         if k == len(frames) - 1:
@@ -90,7 +94,7 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
         p.close()
         top, left = k // across * tile[1], k % across * tile[0]
         picture[top : top + tile[1], left : left + tile[0]] = drawn[..., :3]
-    Image.fromarray(picture).save(path)
+    Image.fromarray(np.concatenate([head, picture])).save(path)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:
@@ -165,15 +169,21 @@ def _frame(pv, p, rest, deformed, lines, length, view, along):
     return body
 
 
-def _words(p, title: str, caption: str, count: int) -> None:
-    """Title and caption of a frame; smaller, and what is in brackets below, where there are
-    several.
-    """
-    if count > 1:
-        title = title.replace(" (", "\n(")
-    for words, height, font in ((title, 0.92, 15), (caption, 0.86, 11)):
+def _heading(pv, title: str) -> np.ndarray:
+    """Pixels (height, width, 3) of a title over several frames."""
+    p = pv.Plotter(off_screen=True, window_size=[SIZE[0], HEADING], lighting="none")
+    p.set_background("white")
+    _text(p, title, 0.3, 13)
+    drawn = p.screenshot(return_img=True)
+    p.close()
+    return drawn[..., :3]
+
+
+def _words(p, title: str, caption: str) -> None:
+    """Title and caption of a frame, the caption smaller where it stands alone."""
+    for words, height, font in ((title, 0.92, 15), (caption, 0.86, 11 if title else 9)):
         if words:
-            _text(p, words, height, font if count == 1 else 9)
+            _text(p, words, height, font)
 
 
 def _text(p, words: str, height: float, font: int) -> None:

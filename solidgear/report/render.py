@@ -51,7 +51,7 @@ class RenderJob:
     frames : sequence of (float, str)
         Factors on the displacement and what is written over each, side by side.
     along : bool
-        One shaft along y, seen across its motion; else two shafts, seen from above.
+        One shaft along y, seen across its motion; else a train, seen from above.
     """
 
     surface: Surface

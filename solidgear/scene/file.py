@@ -143,7 +143,7 @@ def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
     """Resolve the tables of a scene file; what it names lies relative to `where`, its path."""
     if describes_train(raw):
         raise SceneError(
-            "describes a train of two shafts and not a shaft; run solidgear compare, check, "
+            "describes a train of shafts and not a shaft; run solidgear compare, check, "
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(where))
     try:
