@@ -32,6 +32,8 @@ RIGID = "rigid"
 LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
 #: body that lumped models come from unless one is named, and the judge of a system
 JUDGE = LADDER.judges[0]
+#: all models of a shaft, bodies in the sequence of the ladder
+MODELS = (*LADDER.bodies, RIGID, *LUMPED)
 
 
 def checked_rung(name: str) -> tuple[str, str]:
@@ -43,11 +45,10 @@ def checked_rung(name: str) -> tuple[str, str]:
         For a model that there is not.
     """
     kind, _, body = name.partition("/")
-    known = [*LADDER.bodies, RIGID, *LUMPED]
-    if kind not in known:
+    if kind not in MODELS:
         raise SolidgearError(
-            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
-            f"use one of {', '.join(known)}"
+            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, MODELS)}; "
+            f"use one of {', '.join(MODELS)}"
         )
     if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
         raise SolidgearError(
@@ -57,6 +58,12 @@ def checked_rung(name: str) -> tuple[str, str]:
     if kind in LADDER.bodies:
         return kind, ""
     return kind, body or JUDGE
+
+
+def ladder_place(name: str) -> tuple[int, int]:
+    """Place of a model among all, and of the body beneath it."""
+    kind, body = checked_rung(name)
+    return MODELS.index(kind), MODELS.index(body) if body else -1
 
 
 def told_mix(models: Mapping[str, str]) -> str:
