@@ -343,10 +343,6 @@ BAD = {
         ),
         "the loop cannot turn",
     ),
-    "harmonics": (
-        (("pressure_angle", "local_harmonics = [2]\npressure_angle"),),
-        "for a train of one mesh only",
-    ),
 }
 
 
