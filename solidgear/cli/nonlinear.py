@@ -154,10 +154,8 @@ def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:
-    """Models that the first are held against; a shaft of several gears is no lumped one."""
-    single = all(len(shaft.gears) == 1 for shaft in shop.train.shafts.values())
-    usual = ("lumped", "timoshenko") if single else ("timoshenko",)
-    return [(model,) * len(shop.train.shafts) for model in usual]
+    """Models that the first are held against."""
+    return [(model,) * len(shop.train.shafts) for model in ("lumped", "timoshenko")]
 
 
 def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:

@@ -172,11 +172,11 @@ def sweep_train(
     number("sweep", "jobs", jobs, least=1, whole=True)
     variants = train_variants(Path(train), design, point=point, every_point=every_point)
     if local_harmonics:
-        found = variants.files[OWN].get("mesh")
-        for mesh in (
-            [("mesh", k) for k in range(len(found))] if isinstance(found, list) else [("mesh",)]
-        ):
-            variants = variants.with_entry(OWN, (*mesh, "local_harmonics"), list(local_harmonics))
+        tables = variants.files[OWN].get("mesh")
+        places = [(k,) for k in range(len(tables))] if isinstance(tables, list) else [()]
+        for place in places:
+            keys = ("mesh", *place, "local_harmonics")
+            variants = variants.with_entry(OWN, keys, list(local_harmonics))
     if charted:
         chartable(variants)
     first = variants.first_sound()

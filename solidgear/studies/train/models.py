@@ -14,7 +14,6 @@ from solidgear.body import Body
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.ladder import build
-from solidgear.ladder.registry import LADDER
 from solidgear.reduction.craig_bampton import craig_bampton
 from solidgear.reduction.rubin import rubin
 from solidgear.scene import Scene
@@ -280,12 +279,7 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
-            if len(self.train.shafts[side].gears) > 1:
-                raise SolidgearError(
-                    f"a {kind} shaft is one point, and the {side} carries several gears; use one "
-                    f"of {', '.join(LADDER.bodies)}, {RIGID}"
-                )
-            part = lumped(under, kind, self.scenes[side])
+            part = lumped(under, kind, self.scenes[side], [*self.train.shafts[side].gears])
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
 
