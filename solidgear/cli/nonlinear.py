@@ -125,8 +125,7 @@ def nonlinear(
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
         mapped = study.over_force(found[0], forces, progress) if forces else ()
         runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
-        turns = abs(shop.train.turns[driver.shafts[0]])
-        lever = abs(shop.contacts[driver.name].pinion.lever) * turns
+        lever = study.torque_of(shop, driver.name, 1.0).torque
         told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
         if teeth.others:

@@ -301,7 +301,7 @@ class Workshop:
         """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
-        parts: dict[str, Part] = {"engine": rotors["engine"]}
+        parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
         for side, rung in self.mix(models).items():
             parts[side] = self.placed(side, self.part(side, rung))
         parts |= rotors
