@@ -240,10 +240,46 @@ def test_modes_say_what_is_driven(train, usual):
 
 def test_a_patch_is_one_pitch_of_the_seat(train):
     scene = train.pinion.scene
-    patch = patch_of(train, "pinion", scene, np.array([-0.05, 0.0, 0.0]))
+    patch = patch_of(train.only(), "pinion", scene, np.array([-0.05, 0.0, 0.0]))
     assert patch.arc == pytest.approx(2 * np.pi / 14)
     assert patch.axes[:, 0] == pytest.approx([-1.0, 0.0, 0.0], abs=1e-12)
     assert patch.axes[:, 1] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)  # from z towards x
+
+
+def test_two_gears_of_a_shaft_squeeze_it_together():
+    """A disc between both gears gives at each by the push on the other, as one solve of the whole
+    mesh of the harmonic says: turning the push of one by t turns its n waves by n t.
+    """
+    train = sg.load_train("geometry/gearbox_two_stage.toml")
+    meshes = [
+        mesh.with_changes(local_harmonics=asked)
+        for mesh, asked in zip(train.meshes, ((2,), (2, 3)))
+    ]
+    shop = Workshop(train.with_changes(meshes=tuple(meshes)), settings=LIGHT)
+    body, part = shop.shaft("middle", "harmonic").body, shop.part("middle", "harmonic")
+    own = own_waves(part)
+    assert list(own) == [2, 3]
+    patches, pushes, rows, moved = [], [], [], []
+    for pair, end in zip(shop.train.pairs, (1, 0)):
+        met = shop.contacts[pair.name]
+        vector = (met.pinion, met.gear)[end]
+        patch = patch_of(pair, "middle", shop.scenes["middle"], vector.point)
+        patches.append(patch)
+        pushes.append(patch.axes.T @ vector.normal)
+        rows.append(PatchMotion(shop.scenes["middle"], body, patch).rows(2))
+        moved.append(vector.normal @ part.ports[f"{TEETH} {'-'.join(pair.shafts)}"].rows[:3])
+    matrix = body.family(2).blocks[0].stiffness.tocsc()
+    give = np.vstack(rows) @ spla.spsolve(matrix, np.vstack(rows).T)
+    for i, j in ((0, 0), (0, 1), (1, 1)):
+        turned = 2 * (patches[i].angle - patches[j].angle)
+        even, odd = np.array([1, 0, 1]), np.array([0, 1, 0])
+        f = give[3 * i : 3 * i + 3, 3 * j : 3 * j + 3]
+        e, o = (pushes[i] * even, pushes[j] * even), (pushes[i] * odd, pushes[j] * odd)
+        exact = np.cos(turned) * (e[0] @ f @ e[1] + o[0] @ f @ o[1])
+        exact += np.sin(turned) * (e[0] @ f @ o[1] - o[0] @ f @ e[1])
+        found = moved[i][own[2]] / part.value[own[2]] @ moved[j][own[2]]
+        assert found == pytest.approx(exact, rel=1e-8)
+    assert moved[0][own[3]] == pytest.approx(0.0) and np.abs(moved[1][own[3]]).max() > 0
 
 
 def test_rigid_seats_have_no_waves(train):

@@ -14,6 +14,7 @@ from solidgear.studies.train.judge import JUDGE, judge_train
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.respond import Drive
+from solidgear.studies.train.shaft import LUMPED
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
 COARSE = {"harmonic": {"order": 2, "layers": 1}}
@@ -53,6 +54,12 @@ def test_total_mass_along_the_shaft_is_the_largest_error_left_in_the_lumped_mode
     assert bending.cause == "axial mass"
     assert whole.to_hz > bending.to_hz
     assert found.of("lumped-old", "lumped-old").cause == "bending mass"
+
+
+def test_what_has_as_many_unknowns_stands_in_the_sequence_of_the_ladder(verdict):
+    """Lumped models have one body beneath; how long each took changes from run to run."""
+    _, found = verdict
+    assert [m.mix[0] for m in found.mixes if m.mix[0] in LUMPED] == [*LUMPED]
 
 
 def test_the_cheapest_mix_holds_up_to_the_frequency_asked(verdict):

@@ -273,7 +273,7 @@ def test_torques_make_a_body_of_each_shaft_for_each_model_of_it(tmp_path):
 
 def test_harmonics_at_the_teeth_are_found_once_for_a_mesh_point(tmp_path, monkeypatch):
     made, teeth = [], models.local_teeth
-    monkeypatch.setattr(models, "local_teeth", lambda *of: made.append(of[1]) or teeth(*of))
+    monkeypatch.setattr(models, "local_teeth", lambda *of: made.append(of[0]) or teeth(*of))
     coarse = {(side, "harmonic"): {"order": 2, "layers": 0} for side in ("pinion", "gear")}
     how = {"pinion": "harmonic", "gear": "harmonic", "settings": coarse, "local_harmonics": (2,)}
     vary = ["pinion.pitch_radius=67 mm,66 mm", "mesh.stiffness=2e8 N/m,3e8 N/m"]

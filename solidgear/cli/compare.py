@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -202,9 +204,39 @@ def compare_two(
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
     elif trains[0]:
-        _two_trains(a, b, out, mix, mesh, run)
+        _two_trains(a, b, mix, mesh).show(out, run)
     else:
-        _two_shafts(a, b, out, run)
+        _two_shafts(a, b).show(out, run)
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """Two files of a kind: how they are solved, and what of them is told, written and shown."""
+
+    solve: Callable[[Callable[[str], None]], Any]
+    told: Any
+    write: Callable
+    title: Callable[[Any], str]
+    lines: Callable[..., tuple]
+
+    def show(self, out: Path, run: Shown) -> None:
+        """Solve both, write the folder, and print it."""
+        shown = units_named(run.units)
+        with held(out), run.progress() as progress:
+            found = self.solve(progress)
+            told, words = self.told.results(found), self.told.sentences(found, shown)
+            progress("report")
+            self.write(found, told, words, out, shown)
+        if run.as_json:
+            print(json.dumps(told, allow_nan=False))
+            return
+        say(
+            *(f"{one.label}, {self.title(one)}" for one in found.both),
+            *self.lines(found, told, map(in_ascii, words), shown),
+            *map(caution, found.cautions),
+            f"Report: {out / 'report.html'}",
+            soft_wrap=False,
+        )
 
 
 def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
@@ -223,55 +255,41 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
         say(sentence)
 
 
-def _two_trains(a: str, b: str, out: Path, mix: Pair, mesh: str | None, run: Shown) -> None:
+def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> _Beside:
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
         checked_rung(model)
-    shown, names = units_named(run.units), _names(a, b)
-    with held(out), run.progress() as progress:
-        found = two_trains(
-            shops, names, differences(a, b), *models.values(), mesh=mesh, progress=progress
-        )
-        told, words = two_trains_told.results(found), two_trains_told.sentences(found, shown)
-        progress("report")
-        write_two_trains(found, told, words, out, shown)
-    if run.as_json:
-        print(json.dumps(told, allow_nan=False))
-        return
-    say(
-        *(f"{one.label}, {one.workshop.train.called}" for one in found.both),
-        beside_tables.inputs(found, beside_tables.SHORT),
-        beside_tables.modes(found),
-        two_trains_tables.peaks(found, shown),
-        *map(in_ascii, words),
-        *told["unpublished_lines"],
-        *map(caution, found.cautions),
-        f"Report: {out / 'report.html'}",
-        soft_wrap=False,
+    return _Beside(
+        lambda progress: two_trains(
+            shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh, progress=progress
+        ),
+        two_trains_told,
+        write_two_trains,
+        lambda one: one.workshop.train.called,
+        lambda found, told, words, shown: (
+            beside_tables.inputs(found, beside_tables.SHORT),
+            beside_tables.modes(found),
+            two_trains_tables.peaks(found, shown),
+            *words,
+            *told["unpublished_lines"],
+        ),
     )
 
 
-def _two_shafts(a: str, b: str, out: Path, run: Shown) -> None:
+def _two_shafts(a: str, b: str) -> _Beside:
     scenes = [load(Path(path)) for path in (a, b)]
-    shown = units_named(run.units)
-    with held(out), run.progress() as progress:
-        found = two_shafts(scenes, _names(a, b), differences(a, b), progress)
-        told, words = two_shafts_told.results(found), two_shafts_told.sentences(found, shown)
-        progress("report")
-        write_two_shafts(found, told, words, out, shown)
-    if run.as_json:
-        print(json.dumps(told, allow_nan=False))
-        return
-    say(
-        *(f"{one.label}, {one.scene.title or one.scene.name}" for one in found.both),
-        *map(in_ascii, words),
-        beside_tables.inputs(found, beside_tables.SHORT),
-        numbers(found, shown),
-        beside_tables.modes(found),
-        *map(caution, found.cautions),
-        f"Report: {out / 'report.html'}",
-        soft_wrap=False,
+    return _Beside(
+        lambda progress: two_shafts(scenes, _names(a, b), differences(a, b), progress),
+        two_shafts_told,
+        write_two_shafts,
+        lambda one: one.scene.title or one.scene.name,
+        lambda found, told, words, shown: (
+            *words,
+            beside_tables.inputs(found, beside_tables.SHORT),
+            numbers(found, shown),
+            beside_tables.modes(found),
+        ),
     )
 
 

@@ -125,8 +125,7 @@ def nonlinear(
         swept = study.in_time(found[0], in_time, progress) if in_time else ()
         mapped = study.over_force(found[0], forces, progress) if forces else ()
         runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
-        turns = abs(shop.train.turns[driver.shafts[0]])
-        lever = abs(shop.contacts[driver.name].pinion.lever) * turns
+        lever = study.torque_of(shop, driver.name, 1.0).torque
         told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
         if teeth.others:
@@ -154,10 +153,8 @@ def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:
-    """Models that the first are held against; a shaft of several gears is no lumped one."""
-    single = all(len(shaft.gears) == 1 for shaft in shop.train.shafts.values())
-    usual = ("lumped", "timoshenko") if single else ("timoshenko",)
-    return [(model,) * len(shop.train.shafts) for model in usual]
+    """Models that the first are held against."""
+    return [(model,) * len(shop.train.shafts) for model in ("lumped", "timoshenko")]
 
 
 def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:

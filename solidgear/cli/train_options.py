@@ -51,7 +51,7 @@ class Reduced(Group):
         typer.Option(
             "--local-harmonics",
             help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
-            "2,3; by default as local_harmonics in the table mesh of the file says.",
+            "2,3; by default as local_harmonics of each mesh in the file says.",
         ),
     ] = None
     point: Annotated[
@@ -92,8 +92,8 @@ class Reduced(Group):
         if self.point is not None:
             loaded = at_point(loaded, self.point)
         if self.harmonics:
-            mesh = loaded.mesh.with_changes(local_harmonics=self.harmonics)
-            loaded = loaded.with_changes(mesh=mesh)
+            own = {"local_harmonics": self.harmonics}
+            loaded = loaded.with_changes(meshes=tuple(m.with_changes(**own) for m in loaded.meshes))
         try:
             return Workshop(loaded, self.reduction, self.kept, settings or {})
         except SceneError as error:  # what the mesh of a sound file cannot be

@@ -154,17 +154,17 @@ class Balance:
             if own.flexible.any():
                 at_rest = own.excess(s, np.zeros_like(v), self.factor, self.line(0.0))[0]
                 still, soft = self._parts(at_rest, s, line)
-            by = by + omega * _over_parts(read, excess.by_rate, slope)
+            by = by + omega * over_parts(read, excess.by_rate, slope)
             by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
             if line is not None:
                 drift = (line.drifting(s, v) - v) / omega
                 by_omega += read @ np.einsum("tij,tj->ti", excess.by_rate - own.damper, drift)
             added, by_added = self._leaps(s, v, line, omega)
             parts, by, by_omega = parts + added, by + by_added, by_omega + added / omega
-        changed = as_real(linear_change) + _applied(h[:, None, None] * change, parts)
-        changed = changed + _applied(receptance, by_omega)
-        moved = _applied(receptance, parts) + still @ own.flexible
-        taken = _applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
+        changed = as_real(linear_change) + applied(h[:, None, None] * change, parts)
+        changed = changed + applied(receptance, by_omega)
+        moved = applied(receptance, parts) + still @ own.flexible
+        taken = applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
         if own.flexible.any():
             taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
         jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
@@ -182,7 +182,7 @@ class Balance:
         error jumps as kinks pass from one interval to the next, and a branch has false folds.
         """
         make, _, read = self._series
-        parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
+        parts, by = read @ excess.value, over_parts(read, excess.by_stretch, make)
         for kink in kinks(self.remainder, s, line):
             gap, first = kink.gap, kink.crossed
             if not len(first):
@@ -276,7 +276,7 @@ class Balance:
         return float(size[-2:].max() / max(size.max(), np.finfo(float).tiny))
 
 
-def _over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.ndarray:
+def over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.ndarray:
     """(2H+1, m, 2H+1, m) coefficients of a force by those of what its tangent (T, m, m) is of."""
     m = tangent.shape[1]
     out = np.empty((len(read), m, make.shape[1], m))
@@ -285,7 +285,7 @@ def _over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.n
     return out
 
 
-def _applied(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:
+def applied(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:
     """Matrices (H+1, m, m) on coefficients (2H+1, m), or on columns of them (2H+1, m k)."""
     count, m = len(matrix) - 1, matrix.shape[1]
     columns = parts.reshape(len(parts), m, -1)

@@ -20,10 +20,10 @@ from solidgear.machine.threads import pinned
 from solidgear.nonlinear.balance import (
     ARRIVED,
     Residual,
-    _applied,
-    _over_parts,
+    applied,
     as_complex,
     as_real,
+    over_parts,
 )
 from solidgear.nonlinear.model import Remainder
 
@@ -150,16 +150,16 @@ class TwoTone:
         make, rate, read = self._series
         s, v = self.waves(motion)
         excess, held = own.excess(s, v, self.factor)
-        parts, by = read @ excess.value, _over_parts(read, excess.by_stretch, make)
+        parts, by = read @ excess.value, over_parts(read, excess.by_stretch, make)
         still, soft = parts, by
         if own.drags:
-            by = by + _over_parts(read, excess.by_rate, rate)
+            by = by + over_parts(read, excess.by_rate, rate)
         if own.drags and own.flexible.any():
             slowly, _ = own.excess(s, np.zeros_like(v), self.factor)
             still = read @ slowly.value
-            soft = _over_parts(read, slowly.by_stretch, make)
-        moved = _applied(self._moves, parts) + still @ own.flexible
-        taken = _applied(self._moves, by.reshape(len(parts), -1)).reshape(by.shape)
+            soft = over_parts(read, slowly.by_stretch, make)
+        moved = applied(self._moves, parts) + still @ own.flexible
+        taken = applied(self._moves, by.reshape(len(parts), -1)).reshape(by.shape)
         taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
         jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
         value = motion - self.linear - moved.ravel()

@@ -1,12 +1,12 @@
-r"""A shaft on its bearings reduced to the six motions of its lumped point (Guyan 1965).
+r"""A shaft on its bearings reduced to the six motions of each of its lumped points (Guyan 1965).
 
-The static shapes of unit motions d of the lumped point, nothing else loaded, are
+The static shapes of unit motions d of the lumped points, nothing else loaded, are
 
     [K  P'] [Phi]   [0]
     [P  0 ] [ L ] = [I],      K_ll = Phi'K Phi = -L,      M_ll = Phi'M Phi,
 
-with P the rows of the lumped point, K that of the shaft *with* its bearings.  A free rotation is
-one of the shapes; nothing has to hold it.  Of all masses on these six motions M_ll is the one that
+with P the rows of the lumped points, K that of the shaft *with* its bearings.  A free rotation is
+one of the shapes; nothing has to hold it.  Of all masses on these motions M_ll is the one that
 a shaft has that moves in its static shapes: an *effective* mass, in the axial direction too, where
 the end behind the bearing moves less than the head.
 
@@ -15,27 +15,27 @@ Seats follow as ``P_b Phi``, so that bearings stay outside, with their own losse
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.reduction.superelement import PortMotion, Superelement
 
 
 @dataclass(frozen=True, eq=False)
 class CondensedShaft:
-    """A part of six coordinates: the motion of the lumped point.
+    """A part whose coordinates are the motions of its l lumped points.
 
     Attributes
     ----------
-    mass : (6, 6) ndarray
-    strain : (r, 6) ndarray
+    mass : (6 l, 6 l) ndarray
+    strain : (r, 6 l) ndarray
         Of the shaft alone, without bearings.
     ports : mapping of str to PortMotion
-        All ports of the shaft, as they follow the lumped point statically.
+        All ports of the shaft, as they follow the lumped points statically.
     """
 
     mass: np.ndarray
@@ -48,9 +48,9 @@ class CondensedShaft:
 
 
 def condensed_shaft(
-    shaft: Superelement, supports: np.ndarray, held: tuple[str, ...], port: str
+    shaft: Superelement, supports: np.ndarray, held: tuple[str, ...], points: Sequence[str]
 ) -> CondensedShaft:
-    """Reduce a superelement on its supports to one port.
+    """Reduce a superelement on its supports to one port or a few.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ def condensed_shaft(
         Stiffness of all bearings together, in the order of ``held``.
     held : tuple of str
         Ports that the bearings are on.
-    port : str
-        The lumped point.
+    points : sequence of str
+        The lumped points.
 
     Raises
     ------
@@ -71,21 +71,21 @@ def condensed_shaft(
     elastic = value > 0
     # Coordinates of unit strain energy, so that the stiffness of the free shaft is one.
     scale = np.where(elastic, 1 / np.sqrt(np.where(elastic, value, 1.0)), 1.0)
-    seats, lumped = rows * scale, shaft.ports[port].rows * scale
+    seats, lumped = rows * scale, np.vstack([shaft.ports[name].rows for name in points]) * scale
     unit = np.sqrt(np.trace(seats.T @ supports @ seats) or 1.0)
     stiffness = np.diag(elastic.astype(float)) + seats.T @ supports @ seats
     size = np.linalg.norm(lumped, axis=1) / unit
-    n = len(value)
-    whole = np.zeros((n + 6, n + 6))
+    n, k = len(value), len(lumped)
+    whole = np.zeros((n + k, n + k))
     whole[:n, :n] = stiffness
     whole[n:, :n] = lumped / size[:, None]
     whole[:n, n:] = whole[n:, :n].T
-    right = np.vstack([np.zeros((n, 6)), np.diag(1 / size)])
+    right = np.vstack([np.zeros((n, k)), np.diag(1 / size)])
     try:
         found = sla.solve(whole, right, assume_a="sym")[:n]
     except (sla.LinAlgError, np.linalg.LinAlgError):
         raise SolidgearError(
-            f"the shaft is not held by the port {port!r} and its bearings together; "
+            f"the shaft is not held by {listed(points)} and its bearings together; "
             "a lumped model needs bearings that hold it"
         ) from None
     shapes = scale[:, None] * found

@@ -44,11 +44,12 @@ def with_waves(
     rows: Mapping[int, np.ndarray],
     name: str = "mesh.point",
     kept: int = KEPT,
+    fields: Mapping[int, np.ndarray] | None = None,
 ) -> Superelement:
     """A superelement with harmonics n >= 2, and a port that feels them.
 
-    Harmonics that it has already are taken as they are: patches that lie alike along the shaft, at
-    whatever angles, have their fields in common and each a port of its own.
+    Harmonics that it has already are taken as they are: patches at whatever angles have their fields
+    in common and each a port of its own.
 
     Parameters
     ----------
@@ -67,6 +68,9 @@ def with_waves(
         it turns as its carrier does.
     kept : int
         Free modes of each harmonic.
+    fields : mapping of int to (k, m) ndarray, optional
+        Mean motions of all patches that are to have ports, where they do not lie alike along the
+        shaft; those of this one by default.
 
     Raises
     ------
@@ -80,9 +84,10 @@ def with_waves(
         )
     angle = np.arctan2(axes[0, 0], axes[2, 0])
     blocks = list(part.blocks)
-    for n, own in rows.items():
+    fields = rows if fields is None else fields
+    for n in rows:
         if all(block.index != FURTHER + n for block in blocks):
-            value, shapes, truncation = _reduced(body.family(n), own, kept)
+            value, shapes, truncation = _reduced(body.family(n), fields[n], kept)
             still = np.zeros((6, len(part.ports), len(value)))
             for index in (FURTHER + n, SINE + n):
                 blocks.append(ReducedMotions(index, value, shapes, still, truncation))

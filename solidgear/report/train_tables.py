@@ -23,6 +23,10 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
         rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])
         spring = f"{units.text(own['spring'], 'N m/rad', 4)} at {own['at']}"
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
+        if own["share"] is not None:
+            rows.append(
+                [f"{name} share", f"{percent(own['share'], signed=False)} of the power", ""]
+            )
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
     rows += [

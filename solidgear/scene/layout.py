@@ -101,13 +101,14 @@ def _meshes(train: Train) -> Iterator[SceneError]:
             yield SceneError(
                 f"both gears are on the {one}; teeth mesh with another shaft", path=path
             )
-        if mesh.local_harmonics and len(train.meshes) > 1:
-            reason = "are there for a train of one mesh only; leave them out"
-            yield SceneError(reason, path=("mesh", k, "local_harmonics"))
 
 
 def _rotors(train: Train) -> Iterator[SceneError]:
     for name, rotor in train.rotors.items():
+        path = train.rotor_path(name)
+        if name != path[0] and (name in RESERVED or "." in name or not name.strip()):
+            reason = f"what turns cannot be called {name!r}; give it another name, without dots"
+            yield SceneError(reason, path=path)
         if rotor.shaft not in train.shafts:
             known = listed(train.shafts)
             said = (
@@ -115,7 +116,7 @@ def _rotors(train: Train) -> Iterator[SceneError]:
                 if not rotor.shaft
                 else (f"names no shaft{nearest(rotor.shaft, train.shafts)}")
             )
-            yield SceneError(f"{said}; known here: {known}", path=(name, "shaft"))
+            yield SceneError(f"{said}; known here: {known}", path=(*path, "shaft"))
 
 
 def _named_twice(train: Train) -> Iterator[SceneError]:
@@ -159,24 +160,30 @@ def with_flanks(
     return pinion, gear
 
 
-def _outward(train: Train, first: str) -> Iterator[tuple[str, int]]:
-    """Shafts as meshes lead from one to them, each with the mesh it is come by, -1 for the first."""
+def _outward(train: Train, first: str, without: int = -1) -> Iterator[tuple[str, int]]:
+    """Shafts as meshes lead from one to them, each with the mesh it is come by, -1 for the first; by
+    all meshes but one.
+    """
     queue, known = deque([(first, -1)]), {first}
     while queue:
         side, by = queue.popleft()
         yield side, by
         for k, mesh in enumerate(train.meshes):
             both = [word.partition(".")[0] for word in mesh.between]
-            if side in both:
+            if side in both and k != without:
                 other = both[1 - both.index(side)]
                 if other not in known:
                     known.add(other)
                     queue.append((other, k))
 
 
-def outward(train: Train, first: str) -> Iterator[tuple[str, Pair | None]]:
-    """Shafts as meshes lead from one to them, each with the pair it is come by, the first by none."""
-    for side, k in _outward(train, first):
+def outward(
+    train: Train, first: str, without: Pair | None = None
+) -> Iterator[tuple[str, Pair | None]]:
+    """Shafts as meshes lead from one to them, each with the pair it is come by, the first by none; by
+    all meshes but one.
+    """
+    for side, k in _outward(train, first, train.pairs.index(without) if without else -1):
         yield side, None if k < 0 else train.pairs[k]
 
 
@@ -191,17 +198,6 @@ def turns_of(train: Train) -> dict[str, float]:
         else:
             out[side] = out[pair.shafts[1]] * pair.ratio
     return out
-
-
-def path_between(train: Train, first: str, last: str) -> tuple[Pair, ...]:
-    """Pairs that lead from one shaft to another, in turn."""
-    by = dict(outward(train, first))
-    out: list[Pair] = []
-    side = last
-    while (pair := by[side]) is not None:
-        out.insert(0, pair)
-        side = pair.shafts[side == pair.shafts[0]]
-    return tuple(out)
 
 
 def _loops(train: Train) -> Iterator[SceneError]:

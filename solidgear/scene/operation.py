@@ -107,7 +107,9 @@ class OperatingPoint(Model):
         return (out[0], out[1], out[2])
 
     def torque_of(self, side: str, turns: Mapping[str, float]) -> float:
-        """Torque of a shaft without losses, N m, by the turns of all shafts in the same time."""
+        """Torque of a shaft without losses, N m, by the turns of all shafts in the same time over the
+        share of the power that each carries.
+        """
         return self.torque if side == self.of else self.torque * turns[self.of] / turns[side]
 
     def speed_of(self, side: str, turns: Mapping[str, float]) -> float | None:
@@ -130,6 +132,7 @@ Operation = Annotated[
 def operation_problems(
     points: Sequence[OperatingPoint],
     turns: Mapping[str, float],
+    torque_turns: Mapping[str, float],
     ends: tuple[str, str],
     ports: Mapping[str, Sequence[str]],
 ) -> Iterator[SceneError]:
@@ -137,8 +140,9 @@ def operation_problems(
 
     Parameters
     ----------
-    turns : mapping of str to float
-        Of the shafts that the torque passes, in the same time.
+    turns, torque_turns : mapping of str to float
+        Of all shafts in the same time, and of those that the torque passes over the share of the power
+        that each carries.
     ends : (str, str)
         Shafts where it comes in and goes out.
     ports : mapping of str to sequence of str
@@ -149,12 +153,12 @@ def operation_problems(
     SceneError
     """
     for k, point in enumerate(points):
-        if point.of not in turns:
-            reason = f"is no shaft that the torque passes; write one of {listed(turns)}"
-            hint = nearest(point.of, turns)
+        if point.of not in torque_turns:
+            reason = f"is no shaft that the torque passes; write one of {listed(torque_turns)}"
+            hint = nearest(point.of, torque_turns)
             yield SceneError(reason + hint, path=("operation", k, "of"))
             continue
-        yield from _against_teeth(point, turns, ends, k)
+        yield from _against_teeth(point, turns, torque_turns, ends, k)
         for i, force in enumerate(point.force):
             side, _, port = force.at.partition(".")
             if port not in ports.get(side, ()):
@@ -165,11 +169,15 @@ def operation_problems(
 
 
 def _against_teeth(
-    point: OperatingPoint, turns: Mapping[str, float], ends: tuple[str, str], k: int
+    point: OperatingPoint,
+    turns: Mapping[str, float],
+    torque_turns: Mapping[str, float],
+    ends: tuple[str, str],
+    k: int,
 ) -> Iterator[SceneError]:
     """Torque and speed of the other end that are not those of the teeth."""
     other = ends[0] if point.of == ends[1] else ends[1]
-    torque, speed = point.torque_of(other, turns), point.speed_of(other, turns)
+    torque, speed = point.torque_of(other, torque_turns), point.speed_of(other, turns)
     given, ratio = point.output_torque, turns[ends[0]] / turns[ends[1]]
     if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
         yield SceneError(

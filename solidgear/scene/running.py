@@ -31,13 +31,13 @@ def spring_problems(train: Train) -> Iterator[SceneError]:
             yield SceneError(
                 f"unknown port of the {rotor.shaft}'s shaft{nearest(word, known)}; "
                 f"known here: {listed(known)}",
-                path=(name, "spring", key),
+                path=(*train.rotor_path(name), "spring", key),
             )
         elif key == "from" and word in ports and word in ("start", "end"):
             yield SceneError(
                 f"is the {word} of the {rotor.shaft}'s shaft, and a station is called so as "
                 "well; give the station another name",
-                path=(name, "spring", key),
+                path=(*train.rotor_path(name), "spring", key),
             )
         elif key == "from":
             yield from _on_the_shaft(train, name, rotor.shaft)
@@ -48,7 +48,7 @@ def _on_the_shaft(train: Train, rotor: str, side: str) -> Iterator[SceneError]:
         train.shaft(side)
     except SceneError as error:
         reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
-        yield SceneError(reason, path=(rotor, "spring", "position"))
+        yield SceneError(reason, path=(*train.rotor_path(rotor), "spring", "position"))
 
 
 def running_problems(train: Train) -> Iterator[SceneError]:
@@ -60,18 +60,13 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """
     if not train.operation:
         return
-    if len(train.meshes) >= len(train.shafts):
-        reason = "how meshes in a loop share a torque is not told by their teeth; leave it out"
-        yield SceneError(reason, path=("operation",))
-        return
     ports = {side: [s.name for s in own.scene.stations] for side, own in train.shafts.items()}
-    turns = {side: train.turns[side] for pair in train.power for side in pair.shafts}
-    ends = train.rotors["engine"].shaft, train.rotors["load"].shaft
-    if not turns:
+    ends = train.reference, train.load.shaft
+    if not any(flow is None or flow for flow in train.flows.values()):
         reason = f"engine and load both turn with the {ends[0]}: no mesh carries their torque"
-        yield SceneError(reason, path=("load", "shaft"))
+        yield SceneError(reason, path=(*train.rotor_path(train.loads[0]), "shaft"))
         return
-    yield from operation_problems(train.operation, turns, ends, ports)
+    yield from operation_problems(train.operation, train.turns, train.torque_turns, ends, ports)
     for side, own in train.shafts.items():
         scene = own.scene
         held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]

@@ -19,13 +19,13 @@ from solidgear.scene.layout import (
     PerTurn,
     ends_of,
     layout_problems,
-    path_between,
     turns_of,
     with_flanks,
 )
 from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.power import carried_of, flows_of, share_problems
 from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
@@ -47,6 +47,8 @@ class Train(Model):
     meshes : tuple of Mesh
     rotors : dict of str to Rotor
         ``engine`` and ``load``, between which torque passes, and others.
+    engines, loads : tuple of str
+        Rotors that bring torque and that take it, where they are others than these two.
     losses : Losses
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
@@ -76,6 +78,8 @@ class Train(Model):
     shafts: dict[str, Shaft]
     meshes: tuple[Mesh, ...]
     rotors: dict[str, Rotor]
+    engines: tuple[str, ...] = ("engine",)
+    loads: tuple[str, ...] = ("load",)
     losses: Losses = Losses()
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
@@ -86,7 +90,8 @@ class Train(Model):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
         problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
-        problems += [*spring_problems(self), *running_problems(self)]
+        problems += [*spring_problems(self), *share_problems(self)]
+        problems += [] if problems else running_problems(self)
         if problems:
             raise SceneError.of(problems)
         return self
@@ -156,8 +161,8 @@ class Train(Model):
 
     @property
     def reference(self) -> str:
-        """Shaft that the engine turns with, to which speeds are told."""
-        return self.rotors["engine"].shaft
+        """Shaft that the first engine turns with, to which speeds are told."""
+        return self.engine.shaft
 
     @cached_property
     def turns(self) -> dict[str, float]:
@@ -196,6 +201,11 @@ class Train(Model):
         """Keys of a file under which a shaft stands."""
         return (side,) if self.short else ("shaft", side)
 
+    def rotor_path(self, name: str) -> tuple:
+        """Keys of a file under which an engine, a load or another rotor stands."""
+        kind = "engine" if name in self.engines else "load" if name in self.loads else "rotor"
+        return (kind,) if name == kind else (kind, name)
+
     def per_turn(self, pair: Pair) -> PerTurn:
         """Teeth of a mesh that pass in one turn of the engine's shaft."""
         return PerTurn(pair.pinion.teeth * self.turns[pair.shafts[0]], self.reference)
@@ -215,9 +225,23 @@ class Train(Model):
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
 
     @cached_property
-    def power(self) -> tuple[Pair, ...]:
-        """Meshes that torque passes from the engine to the load, in turn."""
-        return path_between(self, self.reference, self.rotors["load"].shaft)
+    def flows(self) -> dict[str, float | None]:
+        """Share of the power that every mesh passes from its first gear to its second, by the tree of
+        meshes; None where a loop divides it by stiffness.
+        """
+        return flows_of(self)
+
+    @cached_property
+    def carried(self) -> dict[str, float]:
+        """Share of the power by shaft that it passes; of one in a loop of meshes that of its own
+        engines and loads.
+        """
+        return carried_of(self)
+
+    @property
+    def torque_turns(self) -> dict[str, float]:
+        """Turns over shares of the power, to which torques are inverse, by shaft that it passes."""
+        return {side: self.turns[side] / share for side, share in self.carried.items()}
 
     def only(self) -> Pair:
         """The one pair of gears of a train that has no other.
@@ -250,18 +274,18 @@ class Train(Model):
 
     @property
     def engine(self) -> Rotor:
-        """Rotor through which torque comes in."""
-        return self.rotors["engine"]
+        """The first rotor through which torque comes in."""
+        return self.rotors[self.engines[0]]
 
     @property
     def load(self) -> Rotor:
-        """Rotor through which it goes out."""
-        return self.rotors["load"]
+        """The first rotor through which it goes out."""
+        return self.rotors[self.loads[0]]
 
     @property
     def ratio(self) -> float:
         """Turns of the engine's shaft in one turn of the load's."""
-        return self.turns[self.reference] / self.turns[self.rotors["load"].shaft]
+        return self.turns[self.reference] / self.turns[self.load.shaft]
 
     def member(self, side: str) -> Member:
         """A shaft by its name, and the first of its gears."""

@@ -14,6 +14,8 @@ from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
 
+from pydantic import model_validator
+
 from solidgear.errors import SceneError, near, show
 from solidgear.scene.file import load
 from solidgear.scene.gears import Member, Shaft
@@ -76,19 +78,33 @@ class _Tables(Model):
     title: str = ""
     name: str = "train"
     source: str = ""
-    engine: Rotor
-    load: Rotor
+    engine: dict[str, Rotor]
+    load: dict[str, Rotor]
     losses: Losses = Losses()
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """One engine or load, which needs no name, by what it is."""
+        one = {role: given[role] for role in SHORT if not _several(given.get(role, {"": {}}))}
+        return {**given, **{role: {role: own} for role, own in one.items() if own is not None}}
 
     def train(self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping) -> Train:
         """The train that they describe."""
         rest = {
             key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
         }
-        both = {"engine": self.engine, "load": self.load}
-        return Train(shafts=shafts, meshes=meshes, rotors={**both, **rotors}, **rest)
+        every: dict[str, Rotor] = {}
+        for kind, given in (("engine", self.engine), ("load", self.load), ("rotor", rotors)):
+            for name, rotor in given.items():
+                if name in every:
+                    reason = f"an engine or a load is called {name!r} as well; give it another name"
+                    raise SceneError(reason, path=(kind, name))
+                every[name] = rotor
+        ends = {"engines": tuple(self.engine), "loads": tuple(self.load)}
+        return Train(shafts=shafts, meshes=meshes, rotors=every, **ends, **rest)
 
 
 class ShortFile(_Tables):
@@ -100,13 +116,16 @@ class ShortFile(_Tables):
 
     def whole(self) -> Train:
         """The train."""
-        given = {
-            name: rotor if rotor.shaft else rotor.with_changes(shaft=SHORT[name])
-            for name, rotor in (("engine", self.engine), ("load", self.load))
+        own = {
+            kind: {
+                name: rotor if rotor.shaft else rotor.with_changes(shaft=side)
+                for name, rotor in getattr(self, kind).items()
+            }
+            for kind, side in SHORT.items()
         }
         shafts = {"pinion": self.pinion.shaft, "gear": self.gear.shaft}
         mesh = self.mesh.with_changes(between=tuple(shafts))
-        return self.train(shafts, (mesh,), given)
+        return self.with_changes(**own).train(shafts, (mesh,), {})
 
 
 class LongFile(_Tables):
@@ -141,15 +160,17 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
         _read_meshes(data, kind is LongFile, folder)
-        for rotor in SHORT:
-            problems.read(partial(_whole_rotor, raw, rotor))
+        for role in SHORT:
+            for name in [*raw[role]] if _several(raw.get(role)) else [""]:
+                problems.read(partial(_whole_rotor, raw, role, name))
         if kind is LongFile:
             problems.tell()
         told = {one.path for one in problems}
         try:
             train = kind(**data).whole()
         except SceneError as error:
-            problems += [one for one in error.problems if one.path not in told]
+            named = as_written(error, raw).problems
+            problems += [one for one in named if one.path not in told]
         problems.tell()
         return train
     except SceneError as error:
@@ -159,11 +180,21 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Problems of the one entry of a list told as those of a table, where a file has a table."""
-    for key in ("operation", "mesh"):
-        if isinstance(raw.get(key), Mapping):
-            error = _of_one_table(error, key)
+    """Problems of the one entry of a list told as those of a table, where a file has a table, and those
+    of the only engine or load as its own.
+    """
+    for key in ("operation", "mesh", *SHORT):
+        if isinstance(raw.get(key), Mapping) and not (key in SHORT and _several(raw[key])):
+            error = _of_one_table(error, key, key if key in SHORT else 0)
     return error
+
+
+def _several(table: Any) -> bool:
+    """Whether a table holds others by their names, and is none of an engine or a load itself."""
+    tables = isinstance(table, Mapping) and all(
+        isinstance(v, (Mapping, Rotor)) for v in table.values()
+    )
+    return tables and bool(table) and "spring" not in table
 
 
 def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, Shaft]:
@@ -212,10 +243,10 @@ def _read(problems: Gathered, reader: Callable[[], dict[str, Any]]) -> dict[str,
         return None
 
 
-def _of_one_table(error: SceneError, key: str) -> SceneError:
+def _of_one_table(error: SceneError, key: str, entry: str | int) -> SceneError:
     """Problems of the one entry of a list told as those of a table."""
     return SceneError.of(
-        one.located(None, path=(key, *one.path[2:])) if one.path[:2] == (key, 0) else one
+        one.located(None, path=(key, *one.path[2:])) if one.path[:2] == (key, entry) else one
         for one in error.problems
     )
 
@@ -230,9 +261,10 @@ def _with_scene(
     return {**table, "scene": shaft(path[-1], folder / name, alone)}
 
 
-def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
+def _whole_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
     """The spring is what is most often left out: say what it is for."""
-    table = raw.get(rotor)
+    path = (rotor, name) if name else (rotor,)
+    table = raw[rotor][name] if name else raw.get(rotor)
     if not isinstance(table, Mapping):
         reason = f"this table is missing; write [{rotor}] with its inertia, and [{rotor}.spring]"
         raise SceneError(reason, path=(rotor,))
@@ -240,9 +272,9 @@ def _whole_rotor(raw: Mapping[str, Any], rotor: str) -> None:
     misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # told as such
     if not isinstance(table.get("spring"), Mapping) and not misspelt:
         raise SceneError(
-            f"the torsional spring between the {rotor} and the {side}'s shaft is missing; write "
-            f"[{rotor}.spring] with stiffness and where it sits (at)",
-            path=(rotor, "spring"),
+            f"the torsional spring between the {name or rotor} and the {side}'s shaft is missing; "
+            f"write [{'.'.join(path)}.spring] with stiffness and where it sits (at)",
+            path=(*path, "spring"),
         )
 
 

@@ -73,12 +73,16 @@ class Rotor(Model):
         That it turns with.
     inertia : float
         About the shaft, kg m^2.
+    share : float or None
+        Of several engines or loads: what it brings or takes of the power, which is of the torque told
+        at one speed.
     status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     shaft: str = ""
     inertia: Inertia
     spring: TorsionSpringTable
+    share: Annotated[float, Field(gt=0, le=1)] | None = None
     status: Status = "assumed"
 
 

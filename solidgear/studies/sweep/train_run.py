@@ -131,7 +131,7 @@ def sweep_train(
     reduction, kept, settings
         As of :class:`solidgear.studies.train.models.Workshop`.
     local_harmonics : sequence of int
-        In place of those of the file.
+        Of every mesh, in place of those of the file.
     charted : bool
         Refuse at once what no curves can be drawn of.
     jobs : int
@@ -172,8 +172,11 @@ def sweep_train(
     number("sweep", "jobs", jobs, least=1, whole=True)
     variants = train_variants(Path(train), design, point=point, every_point=every_point)
     if local_harmonics:
-        alone = ("mesh", 0) if isinstance(variants.files[OWN].get("mesh"), list) else ("mesh",)
-        variants = variants.with_entry(OWN, (*alone, "local_harmonics"), list(local_harmonics))
+        tables = variants.files[OWN].get("mesh")
+        places = [(k,) for k in range(len(tables))] if isinstance(tables, list) else [()]
+        for place in places:
+            keys = ("mesh", *place, "local_harmonics")
+            variants = variants.with_entry(OWN, keys, list(local_harmonics))
     if charted:
         chartable(variants)
     first = variants.first_sound()

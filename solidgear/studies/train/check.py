@@ -171,8 +171,9 @@ def _system(shop: Workshop, limit: float) -> Iterator[str]:
 
 def _still(shop: Workshop, side: str, limit: float) -> Iterator[str]:
     """Modes of a light solid that averaged ports cannot drive."""
-    asked = shop.train.meshes[0].local_harmonics  # of several meshes there are none
-    found = undriven(shop.shaft(side, JUDGE).body, limit, asked)
+    pairs = [pair for pair in shop.train.pairs if side in pair.shafts]
+    asked = {n for pair in pairs for n in pair.mesh.local_harmonics}
+    found = undriven(shop.shaft(side, JUDGE).body, limit, tuple(asked))
     if found:
         told = ", ".join(f"n = {n} at {hz[0]:.0f} Hz" for n, hz in found.items())
         yield (

@@ -150,6 +150,7 @@ def described(workshop: Workshop) -> dict[str, Any]:
     for name, rotor in train.rotors.items():
         out[name] = {
             "inertia": rotor.inertia,
+            "share": rotor.share,
             "spring": rotor.spring.stiffness,
             "at": f"{rotor.shaft}.{train.spring_port(name)}",
         }

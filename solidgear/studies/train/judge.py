@@ -28,7 +28,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import driven, mode_names
 from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
 from solidgear.studies.train.respond import Drive, TrainResponse, respond
-from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung, told_mix
+from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung, ladder_place, told_mix
 from solidgear.studies.train.slips import slips
 
 #: models of one shaft that are mixed, cheapest first
@@ -133,7 +133,7 @@ class Verdict:
     Attributes
     ----------
     mixes : tuple of Departure
-        Cheapest first, by unknowns; the judge is the last.
+        Cheapest first, by unknowns and then in the sequence of the ladder; the judge is the last.
     judge_bar : float or None
         Largest relative error that the judge's meshes leave in its frequencies, by local problems;
         None where teeth drive families of two waves and more.
@@ -258,7 +258,8 @@ def judge_train(
     told = [_with_cause(found, mix) for mix in found]
     own = judge.departure(*all_solid)
     progress("how sure the judge's meshes are")
-    ordered = sorted(told, key=lambda m: (m.unknowns, m.seconds))
+    # wall seconds would order by noise what has the same body beneath
+    ordered = sorted(told, key=lambda m: (m.unknowns, [*map(ladder_place, m.mix)]))
     return Verdict(
         workshop.train.called,
         highest,

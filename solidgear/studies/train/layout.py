@@ -5,6 +5,7 @@ each mesh.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import combinations
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.layout import outward
 from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.power import shares_of
 from solidgear.scene.train import Train
 from solidgear.studies.train.contact import Contact, axes_of, contact
 
@@ -28,15 +30,16 @@ def contacts(train: Train, coast: bool | None = None) -> dict[str, Contact]:
     Raises
     ------
     SceneError
-        As :func:`solidgear.studies.train.contact.contact`, and for flanks of two meshes that turn the
-        shaft between them the same way, so that no torque passes.
+        As :func:`solidgear.studies.train.contact.contact`, for a loop of meshes that turns against
+        itself, and for flanks of two meshes that turn the shaft between them the same way, so that no
+        torque passes.
     """
     found = {pair.name: contact(pair, coast) for pair in train.pairs}
-    way = train.power
-    for before, after in zip(way, way[1:]):
-        side = next(side for side in before.shafts if side in after.shafts)
-        pushes = [force_on(pair, side, found[pair.name])[4] for pair in (before, after)]
-        if pushes[0] * pushes[1] > 0:
+    _, ways = _turning(train, found)
+    for before, after in combinations(train.pairs, 2):
+        between = [side for side in before.shafts if side in after.shafts]
+        if between and ways[before.name] * ways[after.name] < 0:
+            side = between[0]
             role = "pinion" if after.shafts[0] == side else "gear"
             raise SceneError(
                 f"the flanks of {before.name} and of {after.name} turn the {side} the same way, so "
@@ -44,6 +47,46 @@ def contacts(train: Train, coast: bool | None = None) -> dict[str, Contact]:
                 path=(*after.paths[role], "loaded_side"),
             )
     return found
+
+
+def _turning(
+    train: Train, found: Mapping[str, Contact]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Turns of all shafts about the axes of their own scenes in one of the engine's; and by mesh the
+    sign of that one, if teeth that push are to pass power from engines to loads, 0 where it is not
+    told.
+    """
+    turns: dict[str, float] = {}
+    for side, pair in outward(train, train.reference):
+        if pair is None:
+            turns[side] = 1.0
+            continue
+        other = next(s for s in pair.shafts if s != side)
+        own, there = (force_on(pair, s, found[pair.name])[4] for s in (side, other))
+        turns[side] = -turns[other] * there / own
+    out = {}
+    for k, pair in enumerate(train.pairs):
+        one, two = (force_on(pair, s, found[pair.name])[4] * turns[s] for s in pair.shafts)
+        if one * two > 0:
+            raise SceneError(
+                f"closes a loop in which the other meshes turn the {pair.shafts[1]} the other way: the "
+                "loop cannot turn; leave a mesh out, or put an idler into it",
+                path=("mesh", k, "between"),
+            )
+        out[pair.name] = -float(np.sign(one) * _away(train, pair))
+    return turns, out
+
+
+def _away(train: Train, pair: Pair) -> float:
+    """Sign of the power from the first gear to the second: in a loop away from engines, to loads."""
+    flow = train.flows[pair.name]
+    if flow is not None:
+        return float(np.sign(flow))
+    engines, loads = (
+        {train.rotors[name].shaft for name in names} for names in (train.engines, train.loads)
+    )
+    one, two = pair.shafts
+    return float(np.sign((one in engines) + (two in loads) - (two in engines) - (one in loads)))
 
 
 def force_on(pair: Pair, side: str, met: Contact) -> np.ndarray:
@@ -56,19 +99,28 @@ def force_on(pair: Pair, side: str, met: Contact) -> np.ndarray:
 def mesh_forces(
     train: Train, found: Mapping[str, Contact], point: OperatingPoint
 ) -> dict[str, float]:
-    """Forces of the teeth along their lines of action without losses, N, by mesh, each in balance with
-    the next on the shaft between them; zero of one that the torque does not pass.
+    """Forces of the teeth along their lines of action without losses, N, by mesh; zero of one that the
+    torque does not pass.  Meshes of a loop are not among them, for the teeth alone do not tell theirs.
     """
-    out = dict.fromkeys(found, 0.0)
-    reached = {point.of: abs(point.torque)}
-    for _ in train.power:
-        for pair in train.power:
-            for side, other in (pair.shafts, pair.shafts[::-1]):
-                if side in reached and other not in reached:
-                    near, far = (force_on(pair, s, found[pair.name])[4] for s in (side, other))
-                    out[pair.name] = float(reached[side] / abs(near))
-                    reached[other] = out[pair.name] * abs(far)
+    out, power = {}, abs(point.torque) * train.torque_turns[point.of]
+    for pair in train.pairs:
+        if (flow := train.flows[pair.name]) is not None:
+            side = pair.shafts[0]
+            lever = abs(force_on(pair, side, found[pair.name])[4])
+            out[pair.name] = float(abs(flow) * power / (lever * train.turns[side]))
     return out
+
+
+def rotor_torques(
+    train: Train, found: Mapping[str, Contact], point: OperatingPoint
+) -> dict[str, float]:
+    """Torques of engines and loads about the axes of their shafts' scenes, N m."""
+    turns, ways = _turning(train, found)
+    power = (
+        abs(point.torque) * train.torque_turns[point.of] * next(filter(None, ways.values()), 1.0)
+    )
+    shares = shares_of(train).items()
+    return {name: share * power / turns[train.rotors[name].shaft] for name, share in shares}
 
 
 def places(

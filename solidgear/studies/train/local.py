@@ -16,7 +16,7 @@ already; what they add to the compliance is told, so that it can be taken out.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,7 @@ from solidgear.models.harmonic.patch import Patch, PatchMotion
 from solidgear.reduction.superelement import Superelement
 from solidgear.reduction.waves import local_compliance, own_waves, with_waves
 from solidgear.scene import Scene
-from solidgear.scene.train import Train
+from solidgear.scene.gears import Pair
 from solidgear.solve.modes import modes
 from solidgear.system.parts import Part, Placed
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from solidgear.studies.train.models import Workshop
     from solidgear.system.system import System
 
-#: port of a part at its mesh point; no station can be called so, for names hold no dot
+#: port of a part at the point of the only mesh; no station can be called so, for names hold no dot
 TEETH = "mesh.point"
 #: waves around the axis that are looked for among those that nothing drives, at most
 MOST_WAVES = 16
@@ -45,31 +45,41 @@ LIGHT = 1.15
 FEW = 8
 
 
-def patch_of(train: Train, side: str, scene: Scene, point: np.ndarray) -> Patch:
+def mesh_port(pair: Pair) -> str:
+    """Port of a part at the mesh point of one of its gears."""
+    return TEETH + pair.label
+
+
+def patch_of(pair: Pair, side: str, scene: Scene, point: np.ndarray) -> Patch:
     """Patch of a shaft that teeth push on: one tooth pitch around the mesh point, over the seat of
-    the lumped point.
+    the gear's lumped point.
 
     Parameters
     ----------
     point : (3,) ndarray
         Mesh point from the lumped point, in the axes of the scene, m.
     """
-    seat = next(s for s in scene.stations if s.name == scene.port.name)
+    first = side == pair.shafts[0]
+    seat = next(s for s in scene.stations if s.name == pair.ports[not first])
     angle = float(np.arctan2(point[0], point[2]))
-    return Patch(seat.lo, seat.hi, angle, 2 * np.pi / train.member(side).teeth)
+    return Patch(seat.lo, seat.hi, angle, 2 * np.pi / (pair.pinion if first else pair.gear).teeth)
 
 
 def local_teeth(
-    train: Train, side: str, scene: Scene, part: Part, body: Body, point: np.ndarray
+    side: str,
+    scene: Scene,
+    part: Part,
+    body: Body,
+    meshes: Sequence[tuple[Pair, np.ndarray]],
 ) -> Superelement:
-    """A shaft with the harmonics that its teeth drive, and their port.
+    """A shaft with the harmonics that its teeth drive, and the port of each mesh.
 
     Parameters
     ----------
     scene : Scene
         Of the shaft.
-    point : (3,) ndarray
-        As :func:`patch_of`.
+    meshes : sequence of (Pair, (3,) ndarray)
+        Its meshes that ask for harmonics, and their points as of :func:`patch_of`.
 
     Raises
     ------
@@ -83,10 +93,20 @@ def local_teeth(
             f"[mesh] local_harmonics: the seat {rigid[0]} of the {side}'s shaft is tied rigidly "
             "and holds all waves around it; use attachment average or section"
         )
-    patch = patch_of(train, side, scene, point)
-    motion = PatchMotion(scene, body, patch)
-    rows = {n: motion.rows(n) for n in sorted(train.mesh.local_harmonics)}
-    return with_waves(part, body, scene.port.name, point, patch.axes, rows, TEETH)
+    seats: dict[tuple[str, int], np.ndarray] = {}
+    made = []
+    for pair, point in meshes:
+        patch, port = patch_of(pair, side, scene, point), pair.ports[side != pair.shafts[0]]
+        motion = PatchMotion(scene, body, patch)
+        rows = {n: motion.rows(n) for n in sorted(pair.mesh.local_harmonics)}
+        seats |= {(port, n): own for n, own in rows.items()}
+        made.append((port, point, patch.axes, rows, mesh_port(pair)))
+    # gears of one shaft squeeze it together: fields of all seats that drive a harmonic
+    every = {n for _, n in seats}
+    fields = {n: np.vstack([own for (_, m), own in seats.items() if m == n]) for n in every}
+    for port, point, axes, rows, name in made:
+        part = with_waves(part, body, port, point, axes, rows, name, fields=fields)
+    return part
 
 
 def reduced(part: Part) -> Superelement | None:
@@ -101,39 +121,39 @@ def waves_of(part: Part) -> dict[int, np.ndarray]:
     return {} if inner is None else own_waves(inner)
 
 
-def local_give(workshop: Workshop, system: System) -> dict[str, float]:
-    """Compliance of the harmonics at the mesh point under a constant mesh force, m/N, by shaft
-    that has any.
+def local_give(workshop: Workshop, system: System, pair: Pair) -> dict[str, float]:
+    """Compliance of the harmonics at the point of a mesh under a constant force of its teeth, m/N, by
+    shaft that has any.
     """
     give = {}
-    pair = workshop.train.only()
     ends = workshop.teeth(pair, system.parts)
     for side, (_, vector) in zip(pair.shafts, ends):
         part = reduced(system.parts[side])
-        if part is not None and TEETH in part.ports:
-            normal = vector.normal
-            give[side] = local_compliance(part, TEETH, normal)
+        if part is not None and mesh_port(pair) in part.ports:
+            give[side] = local_compliance(part, mesh_port(pair), vector.normal)
     return give
 
 
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
-    """Share of the harmonics at the mesh point, in words; empty without any."""
-    asked = workshop.train.meshes[0].local_harmonics  # of several meshes there are none
-    if not asked:
-        return ()
-    give = local_give(workshop, system)
-    listed = ", ".join(map(str, sorted(asked)))
+    """Share of the harmonics at every mesh point, in words; empty without any."""
+    pairs = [pair for pair in workshop.train.pairs if pair.mesh.local_harmonics]
+    return tuple(_told(workshop, system, pair) for pair in pairs)
+
+
+def _told(workshop: Workshop, system: System, pair: Pair) -> str:
+    give, of = local_give(workshop, system, pair), pair.label
+    listed = ", ".join(map(str, sorted(pair.mesh.local_harmonics)))
     if not give:
         return (
-            f"Local harmonics {listed} are asked for, and neither shaft is a harmonic solid: "
-            "they are left out.",
+            f"Local harmonics {listed} are asked for{' of' * bool(of)}{of}, and neither shaft is a "
+            "harmonic solid: they are left out."
         )
-    share = 100 * sum(give.values()) * workshop.contact.stiffness
+    share = 100 * sum(give.values()) * workshop.contacts[pair.name].stiffness
     told = ", ".join(f"{side} {value:.2e} m/N" for side, value in give.items())
     return (
-        f"Local mesh point: harmonics n = {listed} on one tooth pitch of the seat; they give way "
+        f"Local mesh point{of}: harmonics n = {listed} on one tooth pitch of the seat; they give way "
         f"by {told}, {share:.2g} % of the compliance of the mesh, which a stiffness found on whole "
-        "elastic gears holds already.",
+        "elastic gears holds already."
     )
 
 

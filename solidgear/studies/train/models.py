@@ -14,7 +14,6 @@ from solidgear.body import Body
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.ladder import build
-from solidgear.ladder.registry import LADDER
 from solidgear.reduction.craig_bampton import craig_bampton
 from solidgear.reduction.rubin import rubin
 from solidgear.scene import Scene
@@ -22,7 +21,7 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.layout import contacts, places
-from solidgear.studies.train.local import TEETH, local_teeth
+from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
@@ -280,12 +279,7 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
-            if len(self.train.shafts[side].gears) > 1:
-                raise SolidgearError(
-                    f"a {kind} shaft is one point, and the {side} carries several gears; use one "
-                    f"of {', '.join(LADDER.bodies)}, {RIGID}"
-                )
-            part = lumped(under, kind, self.scenes[side])
+            part = lumped(under, kind, self.scenes[side], [*self.train.shafts[side].gears])
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
 
@@ -307,7 +301,7 @@ class Workshop:
         """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
-        parts: dict[str, Part] = {"engine": rotors["engine"]}
+        parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
         for side, rung in self.mix(models).items():
             parts[side] = self.placed(side, self.part(side, rung))
         parts |= rotors
@@ -335,16 +329,22 @@ class Workshop:
 
     def part(self, side: str, rung: str) -> Part:
         """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
-        meshes = self.train.meshes
-        if rung != JUDGE or not any(mesh.local_harmonics for mesh in meshes):
-            return self.shaft(side, rung).part
-        pair = self.train.only()
-        own, point = self.shaft(side, rung), self._vector(pair, side).point
-        key = tuple(pair.mesh.local_harmonics), self.train.member(side).teeth, tuple(point.tolist())
+        own = self.shaft(side, rung)
+        meshes = [
+            (pair, self._vector(pair, side).point)
+            for pair in self.train.pairs
+            if rung == JUDGE and side in pair.shafts and pair.mesh.local_harmonics
+        ]
+        if not meshes:
+            return own.part
+        key = tuple(
+            (pair.name, pair.mesh.local_harmonics, pair.pinion.teeth, pair.ratio, *point.tolist())
+            for pair, point in meshes
+        )
         if key not in own.local:
             start = perf_counter()
-            made = local_teeth(self.train, side, self.scenes[side], own.part, own.body, point)
-            own.local.clear()  # of a mesh point elsewhere
+            made = local_teeth(side, self.scenes[side], own.part, own.body, meshes)
+            own.local.clear()  # of mesh points elsewhere
             own.local[key] = made
             self._local_seconds += perf_counter() - start
         return own.local[key]
@@ -354,8 +354,8 @@ class Workshop:
         out = []
         for side, port in zip(pair.shafts, pair.ports):
             vector = self._vector(pair, side)
-            if TEETH in parts[side].ports:
-                out.append((f"{side}.{TEETH}", MeshVector(vector.normal, np.zeros(3))))
+            if (name := mesh_port(pair)) in parts[side].ports:
+                out.append((f"{side}.{name}", MeshVector(vector.normal, np.zeros(3))))
             else:
                 out.append((f"{side}.{port}", vector))
         return out

@@ -30,7 +30,7 @@ from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
-from solidgear.studies.train.operation import torques
+from solidgear.studies.train.operation import SHAFT, divided, torques
 from solidgear.system.law import Gap
 from solidgear.system.links import RowSpring
 from solidgear.system.system import System
@@ -66,7 +66,7 @@ def teeth_of(
     ------
     SolidgearError
         If there is no backlash or no mean force, the transmission error is a table over frequency,
-        meshes share a torque by their stiffness, or another mesh varies over its own cycle.
+        teeth of a loop would have to pull, or another mesh varies over its own cycle.
     """
     train = workshop.train
     pair, point = train.named_mesh(mesh), train.point
@@ -82,9 +82,10 @@ def teeth_of(
                 'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
                 '--mean-force, such as "5 kN"'
             )
-        forces, source = mesh_forces(train, workshop.contacts, point), point.label
+        forces, source = _forces(workshop, point), point.label
     else:
-        forces = _in_ratio(workshop, pair.name, mean_force)
+        unit = _forces(workshop, torque_of(workshop, pair.name, 1.0))
+        forces = {name: mean_force * one for name, one in unit.items()}
     gaps = {one.name: one.mesh.backlash for one in train.pairs if one.mesh.backlash}
     for name in (pair.name, *gaps):
         if not forces[name] > 0:
@@ -122,14 +123,8 @@ def teeth_of(
 
 
 def _refuse_several(workshop: Workshop, driver: Pair) -> None:
-    """Refuse meshes whose mean forces hang on their stiffness, and cycles of two meshes at once."""
-    train = workshop.train
-    if len(train.meshes) >= len(train.shafts):
-        raise SolidgearError(
-            f"{train.name} has a loop of meshes, which share the torque by their stiffness; teeth "
-            "with backlash are there for trains without a loop"
-        )
-    for pair in train.pairs:
+    """Refuse cycles of two meshes at once."""
+    for pair in workshop.train.pairs:
         varies = pair.mesh.stiffness_cycle or pair.mesh.line_cycle
         if varies is not None and pair.name != driver.name:
             raise SolidgearError(
@@ -180,7 +175,7 @@ def backlash_model(
         links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
         system = System(system.parts, links)
         force *= float(turning.mean[AXIAL] / workshop.contacts[name].pinion.vector[AXIAL])
-    load = torques(workshop, _in_ratio(workshop, name, force))
+    load = torques(workshop, torque_of(workshop, name, force))
     system = parting(system, teeth, damped)
     refuse_unresolved(workshop, system, highest_hz)
     sways = {}
@@ -198,13 +193,23 @@ def backlash_model(
     )
 
 
-def _in_ratio(workshop: Workshop, mesh: str, force: float) -> dict[str, float]:
-    """Forces of all meshes under a torque that brings a force to one, N."""
-    train = workshop.train
-    unit = mesh_forces(train, workshop.contacts, OperatingPoint(torque=1.0, of=train.reference))
-    if not unit[mesh]:
+def _forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Forces of all meshes at an operating point, N; those of a loop as Timoshenko shafts divide them."""
+    known = mesh_forces(workshop.train, workshop.contacts, point)
+    if None in workshop.train.flows.values():
+        system = workshop.system(SHAFT)
+        held = system.static(system.load(torques(workshop, point)))
+        known |= divided(workshop, system, held, point.label)
+    return {pair.name: known[pair.name] for pair in workshop.train.pairs}
+
+
+def torque_of(workshop: Workshop, mesh: str, force: float) -> OperatingPoint:
+    """The torque of the engine's shaft that brings a force to a mesh, N."""
+    unit = OperatingPoint(torque=1.0, of=workshop.train.reference)
+    own = _forces(workshop, unit)[mesh]
+    if not own:
         raise SolidgearError(f"no torque passes the {mesh} between engine and load")
-    return {name: force * (one / unit[mesh]) for name, one in unit.items()}
+    return unit.with_changes(torque=force / own)
 
 
 def mesh_of(system: System, name: str) -> RowSpring:

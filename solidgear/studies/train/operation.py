@@ -13,7 +13,7 @@ tangential and the spiral part of a tooth force round and leaves the part of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,16 +26,16 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
-from solidgear.studies.train.layout import force_on, mesh_forces
+from solidgear.studies.train.layout import mesh_forces, rotor_torques
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.own_loads import refuse_own_loads, scene_load
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
+from solidgear.system.links import RowSpring
 from solidgear.system.port_forces import port_forces
 from solidgear.system.system import System
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"
-#: a [load] of a scene that is off the mesh force by less, of it, is that force written down
-SAME_LOAD = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +192,7 @@ class Operating:
         except SolidgearError as error:
             raise SolidgearError(f"at {point.label}: {error}") from None
         found = _engine_still(found, held.system, shop.train)
+        forces |= divided(shop, held.system, found.coordinates, point.label)
         notes += list(_told(found, held.system, point))
         models = shop.mix(self.models)
         own = models, forces, found, held.system, self.made, loads
@@ -201,7 +202,7 @@ class Operating:
         self, shop: Workshop, point: OperatingPoint, forces: dict[str, float]
     ) -> tuple[dict[str, np.ndarray], list[str]]:
         """Loads at ports beside the mesh forces, which the torques of engine and load bring about."""
-        loads, notes = torques(shop, forces), []
+        loads, notes = torques(shop, point), []
         for outside in point.force:
             loads[outside.at] = loads.get(outside.at, np.zeros(6)) + outside.six
         for side, scene in shop.scenes.items():
@@ -213,85 +214,42 @@ class Operating:
         return loads, notes
 
 
-def torques(workshop: Workshop, forces: Mapping[str, float]) -> dict[str, np.ndarray]:
-    """(6,) torques of engine and load that hold the mesh forces."""
-    train, out = workshop.train, {}
-    for name, pair in (("engine", train.power[0]), ("load", train.power[-1])):
-        push = force_on(pair, train.rotors[name].shaft, workshop.contacts[pair.name])
-        out[name] = np.array([0, 0, 0, 0, -forces[pair.name] * push[4], 0.0])
+def torques(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
+    """(6,) torques of engines and loads."""
+    found = rotor_torques(workshop.train, workshop.contacts, point)
+    return {name: torque * np.eye(6)[4] for name, torque in found.items()}
+
+
+def divided(
+    workshop: Workshop, system: System, coordinates: np.ndarray, where: str
+) -> dict[str, float]:
+    """Forces of meshes that a loop makes share the torque by their stiffness, N, by mesh; their teeth
+    all touch where nothing is loaded.
+
+    Raises
+    ------
+    SolidgearError
+        For teeth that would have to pull.
+    """
+    out = {}
+    for name in (name for name, flow in workshop.train.flows.items() if flow is None):
+        mesh = system.links[name]
+        assert isinstance(mesh, RowSpring)
+        stretch = float((mesh.stretch(*map(system.port, mesh.ends)) @ coordinates)[0])
+        out[name] = -mesh.stiffness * stretch
+        if not out[name] > 0:
+            raise SolidgearError(
+                f"at {where}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "
+                "that the loop of meshes carries its torque: name the other flank of its gears, or "
+                "another torque"
+            )
     return out
-
-
-def refuse_own_loads(train: Train, side: str) -> None:
-    """Refuse bearings whose load is told by themselves where a torque brings it.
-
-    Raises
-    ------
-    SceneError
-    """
-    for bearing in train.shafts[side].scene.bearings:
-        data = bearing.catalogue
-        if data is None:
-            continue
-        for key in ("load", "displacement"):
-            if getattr(data, key) is not None:
-                reason = (
-                    f"bearing {bearing.name} has a {key} of its own, and in a train with an "
-                    "[operation] the torque brings its load: leave it out"
-                )
-                raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
-
-
-def scene_load(
-    workshop: Workshop, side: str, forces: Mapping[str, float]
-) -> tuple[np.ndarray | None, list[str]]:
-    """Load (6,) that the [load] of a shaft's scene adds to the mesh force, and what is to be said.
-
-    Raises
-    ------
-    SceneError
-        If it is neither the mesh force nor said to be added or replaced.
-    """
-    train, scene = workshop.train, workshop.scenes[side]
-    if scene.load is None:
-        return None, []
-    own, word = np.array(scene.load.six), train.shafts[side].scene_load
-    if word == "added":
-        return own, [f"the [load] of the {side}'s scene is added to the mesh force"]
-    if word == "replaced":
-        return None, []
-    flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
-    wanted = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
-    wanted.append(_force_on(workshop, side, forces))
-    if any(np.linalg.norm(own[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in wanted):
-        return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
-    raise SceneError(
-        f"the [load] of the {side}'s scene is ({_newtons(own[:3])}) N at its lumped point, and the "
-        f"mesh force is ({_newtons(wanted[0])}) N: leave [load] out of the scene, or write "
-        f'scene_load = "replaced" under [{".".join(train.shaft_path(side))}], or "added" where it '
-        "acts beside the teeth",
-        path=(*train.shaft_path(side), "scene_load"),
-    )
-
-
-def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
-    """(3,) force of all teeth on a shaft, in the axes of its scene, N."""
-    each = [
-        forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
-        for pair in workshop.train.pairs
-        if side in pair.shafts
-    ]
-    return sum(each[1:], each[0])
-
-
-def _newtons(force: np.ndarray) -> str:
-    return ", ".join(f"{v:.0f}" for v in force)
 
 
 def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
     """The same with the train turned until the port of the engine's spring has no rotation."""
     turning = _rotation(system, [*train.shafts])
-    row = system.motion(f"{train.reference}.{train.spring_port('engine')}")[4]
+    row = system.motion(f"{train.reference}.{train.spring_port(train.engines[0])}")[4]
     moved = float(row @ turning)
     if moved == 0.0:
         return found

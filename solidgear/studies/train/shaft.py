@@ -4,7 +4,7 @@ A model of a shaft is that of a body (``euler``, ``timoshenko``, ``harmonic``, `
 or ``lumped``: six degrees of freedom at the lumped point, condensed from a body that may be named
 (``lumped/euler``), with one of these masses:
 
-- ``lumped``: Guyan's, of all six motions;
+- ``lumped``: Guyan's, of all six motions, and of all lumped points of a shaft with several gears;
 - ``lumped-bending``: Guyan's in bending, the total mass along the shaft (Hua 2010, equation 55);
 - ``lumped-matched``: the mode-matched pair in bending, the total mass along the shaft;
 - ``lumped-old``: total mass and inertia.
@@ -12,14 +12,14 @@ or ``lumped``: six degrees of freedom at the lumped point, condensed from a body
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from solidgear.body import Body, as_supports
-from solidgear.errors import SolidgearError, nearest, show
+from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.frames import shift
 from solidgear.ladder.registry import LADDER
 from solidgear.reduction.condensed import condensed_shaft
@@ -32,6 +32,8 @@ RIGID = "rigid"
 LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
 #: body that lumped models come from unless one is named, and the judge of a system
 JUDGE = LADDER.judges[0]
+#: all models of a shaft, bodies in the sequence of the ladder
+MODELS = (*LADDER.bodies, RIGID, *LUMPED)
 
 
 def checked_rung(name: str) -> tuple[str, str]:
@@ -43,11 +45,10 @@ def checked_rung(name: str) -> tuple[str, str]:
         For a model that there is not.
     """
     kind, _, body = name.partition("/")
-    known = [*LADDER.bodies, RIGID, *LUMPED]
-    if kind not in known:
+    if kind not in MODELS:
         raise SolidgearError(
-            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, known)}; "
-            f"use one of {', '.join(known)}"
+            f"model {show(name, 40)} of a shaft is unknown{nearest(kind, MODELS)}; "
+            f"use one of {', '.join(MODELS)}"
         )
     if body and (kind not in (*LUMPED, RIGID) or body not in LADDER.bodies):
         raise SolidgearError(
@@ -57,6 +58,12 @@ def checked_rung(name: str) -> tuple[str, str]:
     if kind in LADDER.bodies:
         return kind, ""
     return kind, body or JUDGE
+
+
+def ladder_place(name: str) -> tuple[int, int]:
+    """Place of a model among all, and of the body beneath it."""
+    kind, body = checked_rung(name)
+    return MODELS.index(kind), MODELS.index(body) if body else -1
 
 
 def told_mix(models: Mapping[str, str]) -> str:
@@ -94,20 +101,25 @@ class ShaftModel:
         return self.body.mass_matrix()
 
 
-def lumped(under: ShaftModel, kind: str, scene: Scene) -> Part:
-    """A shaft condensed to its main lumped point, by one of the lumped models.
+def lumped(under: ShaftModel, kind: str, scene: Scene, gears: Sequence[str]) -> Part:
+    """A shaft condensed to the lumped points of its gears, by one of the lumped models.
 
     Raises
     ------
     SolidgearError
-        If it has no mode-matched masses.
+        If it has no mode-matched masses, or several gears and a mass that is the whole one at a point.
     """
     shaft = under.part
     supports, port = as_supports(scene), scene.port.name
     assert isinstance(shaft, Superelement)
-    whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, port)
+    whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, gears)
     if kind == "lumped":
         return whole
+    if len(gears) > 1:
+        raise SolidgearError(
+            f"a {kind} shaft has its whole mass at one point, and the {under.side} carries several "
+            f"gears, which share it in no one way; use lumped, or one of {listed(LADDER.bodies)}"
+        )
     rigid = _mass_about(under.body, scene.port.y)
     if kind == "lumped-old":
         return whole.with_mass(np.diag(np.diag(rigid)))

@@ -1,0 +1,89 @@
+"""Power of a train: what share of it comes in and goes out where, and passes each mesh and shaft.
+
+A mesh that alone holds two parts of the train together passes what one of them takes.  Meshes of a
+loop divide it by their stiffness, and have no share here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import fsum
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SceneError
+from solidgear.scene.layout import outward
+from solidgear.scene.operation import TYPED
+
+if TYPE_CHECKING:
+    from solidgear.scene.train import Train
+
+#: of the power; less is rounding
+NONE = 1e-12
+
+
+def shares_of(train: Train) -> dict[str, float]:
+    """Share of the power that every engine brings, and of every load what it takes, below zero."""
+    out: dict[str, float] = {}
+    for sign, names in ((1.0, train.engines), (-1.0, train.loads)):
+        given = [train.rotors[name].share or 1.0 for name in names]
+        out |= {name: sign * share / fsum(given) for name, share in zip(names, given)}
+    return out
+
+
+def flows_of(train: Train) -> dict[str, float | None]:
+    """Share of the power that every mesh passes from its first gear to its second; None in a loop."""
+    brought = dict.fromkeys(train.shafts, 0.0)
+    for name, share in shares_of(train).items():
+        brought[train.rotors[name].shaft] += share
+    out: dict[str, float | None] = {}
+    for pair in train.pairs:
+        first, second = pair.shafts
+        behind = {side for side, _ in outward(train, first, without=pair)}
+        flow = fsum(brought[side] for side in behind)
+        out[pair.name] = None if second in behind else flow * (abs(flow) > NONE)
+    return out
+
+
+def carried_of(train: Train) -> dict[str, float]:
+    """Share of the power that passes every shaft; none of one that it does not pass, and of one in a
+    loop that of its own engines and loads.
+    """
+    out = {}
+    for side in train.shafts:
+        ways = [
+            share for name, share in shares_of(train).items() if train.rotors[name].shaft == side
+        ]
+        for pair in train.pairs:
+            if side in pair.shafts:
+                ways.append((train.flows[pair.name] or 0.0) * (1 if side == pair.shafts[1] else -1))
+        most = max(fsum(w for w in ways if w > 0), -fsum(w for w in ways if w < 0))
+        if most > NONE:
+            out[side] = most
+    return out
+
+
+def share_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of how a torque divides among engines or loads.
+
+    Yields
+    ------
+    SceneError
+    """
+    for kind, names in (("engine", train.engines), ("load", train.loads)):
+        given = [train.rotors[name].share for name in names]
+        path = (*train.rotor_path(names[0]), "share")
+        if len(names) > 1 and None in given:
+            lacking = train.rotor_path(names[given.index(None)])
+            reason = (
+                f"this key is missing; {kind}s share the power: give each its share, such as 0.5"
+            )
+            yield SceneError(reason, path=(*lacking, "share"))
+        elif any(given) and abs(fsum(share or 0.0 for share in given) - 1) > TYPED:
+            total = fsum(share or 0.0 for share in given)
+            yield SceneError(
+                f"the shares of all {kind}s sum to {total:.6g}; they must sum to 1", path=path
+            )
+    for name, rotor in train.rotors.items():
+        if rotor.share is not None and name not in (*train.engines, *train.loads):
+            reason = "is of engines and loads, which torque passes; leave it out"
+            yield SceneError(reason, path=(*train.rotor_path(name), "share"))
