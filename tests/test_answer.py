@@ -65,8 +65,7 @@ MESHES = Listed()
 #: an overhung head and a plain shaft; the others differ in their seats and bores
 FEW = [
     SCENES[0],
-    pytest.param(SCENES[1], marks=pytest.mark.long),
-    *(pytest.param(n, marks=pytest.mark.slow) for n in SCENES[2:]),
+    *(pytest.param(n, marks=pytest.mark.slow) for n in SCENES[1:]),
 ]
 
 

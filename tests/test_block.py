@@ -93,7 +93,7 @@ def test_a_coarse_block_vibrates_a_little_faster_than_the_exact_one(block):
     assert found == pytest.approx(by_polynomials(10)[:6], rel=0.02)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_modes_of_a_block_lie_above_the_exact_ones_by_no_more_than_their_bars(block):
     settled = settle(block, 5e-3, "modes")
     found = sg.modes(settled.body, block, n=10).modes

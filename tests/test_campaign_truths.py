@@ -133,7 +133,7 @@ def test_settling_doubts_what_does_not():
     assert settle(1.0, 1.0, 1.0, 1.0, 1.0, noise=1e-5) == (1.0, 1e-5)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_spectral_reference_is_as_good_as_it_says(monkeypatch):
     monkeypatch.setattr(spectral_levels, "LEVELS", ((2, 2), (3, 3)))
     scene = stepped("rigid")
@@ -169,7 +169,7 @@ def test_a_shaft_stands_on_its_axial_springs():
     assert found["C_yy"].uncertainty < 1e-8
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_two_discretisations_that_share_nothing_agree():
     """All three attachments on one shaft: the harmonic solid as it comes is good to 1e-4."""
     scene = stepped()

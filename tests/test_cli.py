@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -393,14 +394,11 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "umfpack", "superlu")
 
 
-@pytest.mark.parametrize(
-    "module", ["solidgear", pytest.param("solidgear.cli", marks=pytest.mark.long)]
-)
-def test_module_runs_as_a_program(tmp_path, module):
-    done = python("-m", module, "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
+def test_modules_run_as_programs(tmp_path):
+    done = python("-m", "solidgear", "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
-    done = python("-m", module, "stiffness", "nowhere.toml", cwd=tmp_path)
+    done = python("-m", "solidgear.cli", "stiffness", "nowhere.toml", cwd=tmp_path)
     assert (
         done.returncode == 1
         and done.stdout == ""
@@ -409,10 +407,21 @@ def test_module_runs_as_a_program(tmp_path, module):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_importing_the_command_line_is_cheap():
-    code = "import solidgear.cli, sys; print(sorted({'numpy', 'scipy', 'skfem', 'gmsh', 'pydantic', 'matplotlib', 'pyvista'} & set(sys.modules)))"
+def test_the_command_line_and_the_help_of_a_command_import_nothing_heavy():
+    heavy = {"numpy", "scipy", "skfem", "gmsh", "matplotlib", "pyvista", "solidgear.scene"}
+    code = (
+        "import atexit, sys; from solidgear.cli.app import app; "
+        f"atexit.register(lambda: print(sorted({heavy} & set(sys.modules)))); app(['modes', '-h'])"
+    )
     done = python("-c", code)
-    assert done.stdout.strip() == "[]", done.stderr
+    assert "--max-frequency" in done.stdout and done.stdout.endswith("\n[]\n"), done.stderr
+
+
+@pytest.mark.parametrize("name", ["modes", "sweep", "response"])
+def test_help_without_the_work_is_that_of_the_command_itself(run, monkeypatch, name):
+    alone = run(name, "--help").out
+    monkeypatch.setattr(sys.modules["solidgear.cli.app"], "options_alone", nullcontext)
+    assert run(name, "--help").out == alone and "--json" in alone
 
 
 def test_an_answer_imports_nothing_that_it_does_not_use():

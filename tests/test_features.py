@@ -114,7 +114,7 @@ def mirrored_whole(made: FeaturedMesh) -> FeaturedMesh:
     )
 
 
-@pytest.mark.parametrize("angle", [pytest.param(0.0, marks=pytest.mark.long), math.pi / 2])
+@pytest.mark.parametrize("angle", [pytest.param(0.0, marks=pytest.mark.slow), math.pi / 2])
 def test_two_halves_equal_the_whole(angle):
     """The same elements mirrored and joined: compliance and frequencies to rounding."""
     scene = shaft(KEY.with_changes(angle=angle))

@@ -45,8 +45,8 @@ def wanted(scene):
 
 MARKS = {
     "bolts between bolts": pytest.mark.slow,
-    "bolts": pytest.mark.long,
-    "rigid seats": pytest.mark.long,
+    "bolts": pytest.mark.slow,
+    "rigid seats": pytest.mark.slow,
 }
 
 

@@ -51,7 +51,7 @@ def usual():
         pytest.param(
             {"out_of_core": True, "precision": "single"},
             "pardiso",
-            marks=[PARDISO, pytest.mark.long],
+            marks=[PARDISO, pytest.mark.slow],
         ),
     ],
 )
@@ -141,7 +141,7 @@ def test_what_is_counted_of_memory_falls_as_asked():
 
 
 @PARDISO
-@pytest.mark.long
+@pytest.mark.slow
 def test_in_files_a_large_factor_takes_less_than_with_half_the_digits():
     scene = SCENES["pinion_overhung"].with_attachment("rigid")
     body = sg.build(scene, "solid", refinement=0.85)

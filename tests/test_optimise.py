@@ -47,7 +47,7 @@ def test_an_optimum_inside_a_range_is_found_and_one_at_its_end_is_told(span):
     assert any("at the end of its range" in sentence for sentence in found.sentences)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_no_gain_is_claimed_within_the_bars():
     found = sg.optimise(SHAFT, ["segment.right.diameter=59.9 mm:60.1 mm"], "max C_zz", tol=0.1)
     assert found.gain.verdict == "not resolved"

@@ -207,7 +207,7 @@ def written(body, path, digits=9):
         ("msh", 9),
         pytest.param("inp", 9, marks=pytest.mark.slow),
         pytest.param("vtu", 9, marks=pytest.mark.slow),
-        pytest.param("bdf", 8, marks=pytest.mark.long),
+        pytest.param("bdf", 8, marks=pytest.mark.slow),
     ],
 )
 def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):
@@ -222,8 +222,7 @@ def test_a_mesh_file_gives_the_same_numbers(ending, digits, shipped, tmp_path):
     )
 
 
-@pytest.mark.parametrize("element", ["hex20", "hex8"])
-@pytest.mark.long
+@pytest.mark.parametrize("element", [pytest.param("hex20", marks=pytest.mark.slow), "hex8"])
 def test_other_elements_of_a_mesh_file(element, stepped, tmp_path):
     """The same as the in-memory mesh, whose seats are whole faces."""
     (tmp_path / "part.step").write_bytes(stepped)

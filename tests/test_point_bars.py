@@ -121,7 +121,7 @@ def light_truth(scene):
 
 
 @pytest.mark.parametrize(
-    "seed", [21, pytest.param(7, marks=pytest.mark.long), pytest.param(13, marks=pytest.mark.slow)]
+    "seed", [21, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (7, 13))]
 )
 def test_bars_hold_on_random_shafts_with_two_points(seed):
     """Against orders 5 and more on graded corners; seeds of a light reference, of three kinds."""

@@ -58,8 +58,8 @@ addEventListener("load", () => {
 
 
 @pytest.fixture(scope="module")
-def page():
-    return render_page(fixture_results())
+def page(made_up_charts):
+    return render_page(fixture_results(), drawn=made_up_charts)
 
 
 @pytest.fixture(scope="module")

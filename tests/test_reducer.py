@@ -37,7 +37,7 @@ def closed_and_turned(design, model):
 
 
 @pytest.mark.parametrize(
-    "model", ["rigid", "timoshenko", pytest.param("harmonic", marks=pytest.mark.long)]
+    "model", ["rigid", "timoshenko", pytest.param("harmonic", marks=pytest.mark.slow)]
 )
 def test_a_turn_of_the_carrier_is_the_closed_form_whatever_the_shaft(design, model):
     closed, turned = closed_and_turned(design, model)

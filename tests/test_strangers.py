@@ -166,7 +166,7 @@ def test_check_is_never_the_opposite_of_compare(name, compared, checked):
     "name",
     [
         "input_shaft",
-        pytest.param("hypoid_pinion", marks=pytest.mark.long),
+        pytest.param("hypoid_pinion", marks=pytest.mark.slow),
         pytest.param("motor_rotor", marks=pytest.mark.slow),
     ],
 )

@@ -103,7 +103,7 @@ def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
     assert 704.4 < up < 727.0 and 671.8 < down < up
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_sweeps_in_time_agree_with_the_branch(solids):
     assert max(abs(one.off) for one in in_time(solids, 4)) < 1e-3
 

@@ -192,10 +192,11 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     assert "sg-turn" in text and text.count('"triangles"') == 2 and "gear bending 1" in text
     # 250 N/um: 250e6 / 4.4482216152605 * 0.0254 lbf/in
     assert "1\u00a0428\u00a0000 lbf/in" in text and "78.7402 µin" in text
-    refused = command(*told, "--units", "us")
-    assert refused.exit_code == 1 and "add --turn model.html" in str(refused.exception)
-    nothing = command(*told[:3], "lumped", "--turn", str(tmp_path / "no.html"))
+    light = [*told[:3], "lumped", "--gear", "lumped"]
+    nothing = command(*light, "--turn", str(tmp_path / "no.html"))
     assert nothing.exit_code == 1
+    refused = command(*light, "--units", "us")
+    assert refused.exit_code == 1 and "add --turn model.html" in str(refused.exception)
     assert "lumped of the pinion has no shape" in str(nothing.exception)
     assert not (tmp_path / "no.html").exists()
 

@@ -7,12 +7,14 @@ import inspect
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 from typer.core import TyperGroup
 
+from solidgear.cli.options_alone import options_alone
 from solidgear.machine.memory import one_command
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from rich.status import Status
 
 R = TypeVar("R")
+HELP = ("-h", "--help")
 
 #: line of the help of each command
 COMMANDS = {
@@ -110,7 +113,10 @@ class Door(TyperGroup):
     def resolve_command(self, ctx, args):
         """The command itself, in place of the one that has only name and help."""
         name, known, rest = super().resolve_command(ctx, args)
-        return name, _imported(name) if name else known, rest
+        if not name:
+            return name, known, rest
+        with options_alone() if rest and rest[-1] in HELP else nullcontext():
+            return name, _imported(name), rest
 
     def invoke(self, ctx):
         """Run a command; typer would swallow Ctrl-C without a word."""
@@ -139,7 +145,7 @@ app = typer.Typer(
     "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "
     "bars; 130 interrupted. "
     "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": [*HELP]},
     pretty_exceptions_enable=False,
 )
 for _name, _words in COMMANDS.items():

@@ -108,13 +108,13 @@ class Chart:
         """The chart as an SVG, without a ground; identifiers in it begin with a name."""
         return _compact(_drawing_library().vegalite_to_svg(self.spec()), name)
 
-    def write(self, file: Path) -> Path:
-        """Write a picture.
+    def write(self, file: Path, *beside: Path) -> Path:
+        """Write a picture, drawn once for all files it goes to.
 
         Parameters
         ----------
-        file : Path
-            Its ending, ``.png`` or ``.svg``, says what it becomes.
+        file, *beside : Path
+            Their endings, ``.png`` or ``.svg``, say what they become.
 
         Raises
         ------
@@ -122,18 +122,20 @@ class Chart:
             For another ending, or a file that cannot be written.
         """
         library = _drawing_library()
-        spec = {**self.spec(), "background": "#ffffff", "padding": 12}
-        if check_ending(file) == ".png":
-            data = library.vegalite_to_png(spec, scale=FINENESS)
-        else:
-            data = _compact(library.vegalite_to_svg(spec), "part-").encode()
-        try:
-            with whole(file) as half:
-                half.write_bytes(data)
-        except OSError as error:
-            raise SolidgearError(
-                f"{file}: cannot be written ({error.strerror or error})"
-            ) from error
+        endings = {one: check_ending(one) for one in (file, *beside)}
+        svg = library.vegalite_to_svg({**self.spec(), "background": "#ffffff", "padding": 12})
+        for one, ending in endings.items():
+            if ending == ".png":
+                data = library.svg_to_png(svg, scale=FINENESS)
+            else:
+                data = _compact(svg, "part-").encode()
+            try:
+                with whole(one) as half:
+                    half.write_bytes(data)
+            except OSError as error:
+                raise SolidgearError(
+                    f"{one}: cannot be written ({error.strerror or error})"
+                ) from error
         return file
 
 

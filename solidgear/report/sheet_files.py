@@ -81,5 +81,8 @@ def write_json(path: Path, data: Mapping[str, Any]) -> None:
 def write_charts(stem: Path, make: Make) -> list[Path]:
     """A chart as PNG and SVG beside each other."""
     chart = make(WIDE)
+    if chart is None:
+        return []
     files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
-    return [chart.write(file) for file in files] if chart else []
+    chart.write(*files)
+    return files
