@@ -4,6 +4,7 @@ teeth with backlash beside their steady motions.
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import wofz
 
 from solidgear.errors import SolidgearError
@@ -106,6 +107,50 @@ def test_a_run_through_contacts_is_the_same_by_exact_pieces_and_integrated(branc
     assert exact.least.min() < 1.0
     np.testing.assert_allclose(exact.state, other.state, atol=2e-7)
     np.testing.assert_allclose(exact.swing, other.swing, rtol=1e-3)  # looks at other instants
+
+
+def test_a_run_of_two_links_is_that_of_the_equations_written_out():
+    """Two masses in a row on teeth that both part, by a general integrator that knows none of this."""
+    half, mean, begin, end, ramp = (1.0, 0.5), 0.06, 0.4, 1.8, 3e-3
+    first = RowSpring("one", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, half[0]))
+    second = RowSpring("two", [0, 0, 1, 0, 0, 0], 1.0, to="one", law=Gap(1.0, half[1]))
+    own = remainder(
+        System({name: Inertia(1.0, "z") for name in ("one", "two")}, {"a": first, "b": second}),
+        load=np.array([0.0, mean]),
+        errors={"a": [ERROR]},
+        loss=dict.fromkeys("ab", 2 * ZETA),
+        kind="viscous",
+        matched_hz=1 / (2 * np.pi),
+    )
+    found = run_up(own, begin, end, ramp)
+
+    def teeth(s, b):
+        return np.where(s > b, s - b, np.where(s < -b, s + b, 0.0))
+
+    def stretches(t, y):
+        angle = begin * t + ramp * t**2 / 2
+        error, rate = ERROR * np.cos(angle), -ERROR * np.sin(angle) * (begin + ramp * t)
+        return (y[0] - error, y[1] - y[0]), (y[2] - rate, y[3] - y[2])
+
+    def slope(t, y):
+        s, v = stretches(t, y)
+        one, two = (teeth(a, b) + 2 * ZETA * c for a, b, c in zip(s, half, v))
+        return [y[2], y[3], two - one, mean - two]
+
+    turn = 2 * np.pi * np.arange(len(found.omega) + 1)
+    times = 2 * turn / (begin + np.sqrt(begin**2 + 2 * ramp * turn))
+    # at rest where springs without gaps would hold the mean: the teeth are apart
+    still = [mean, 2 * mean, 0.0, 0.0]
+    way = solve_ivp(slope, (0, times[-1]), still, "LSODA", dense_output=True, rtol=1e-9, atol=1e-11)
+    assert found.least.min() < half[0] and found.others[0].least.min() < half[1]
+    for k, one in enumerate((found, *found.others)):
+        swing = []
+        for a, b in zip(times, times[1:]):
+            t = np.linspace(a, b, 300)
+            force = teeth(stretches(t, way.sol(t))[0][k], half[k])
+            swing.append(np.ptp(force) / 2)
+        # looks at other instants of a cycle, fewer of which are near its ends
+        np.testing.assert_allclose(one.swing, swing, rtol=5e-3, atol=1e-5)
 
 
 @pytest.mark.parametrize(

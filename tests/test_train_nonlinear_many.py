@@ -151,7 +151,7 @@ def test_a_line_of_action_of_the_second_stage_that_stays_changes_nothing(shop):
         np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-9, atol=1e-9 * np.abs(a).max())
 
 
-def test_what_several_meshes_cannot_have_is_refused(shop, run):
+def test_what_several_meshes_cannot_have_is_refused(shop):
     at = np.linspace(0.0, 2 * np.pi / 18, 5)
     table = {"angle": at.tolist(), "stiffness": [4.5e8] * 5}
     varied = toothed(shop, {"backlash": "20 um"}, {"stiffness_cycle": table})
@@ -160,6 +160,3 @@ def test_what_several_meshes_cannot_have_is_refused(shop, run):
     assert teeth_of(varied, mesh="middle-output").half_gap == 0.0
     with pytest.raises(SolidgearError, match="no backlash is given"):
         teeth_of(shop)
-    words = ["nonlinear", GEOMETRY / "gearbox_two_stage.toml", "--backlash", "20 um"]
-    code, out, err = run(*words, "--run-up", "400")
-    assert code == 1 and out == "" and "--run-up is there for a train of one mesh" in err

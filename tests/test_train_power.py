@@ -7,7 +7,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError
+from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.motion import settled
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.nonlinear import backlash_model, teeth_of
 from solidgear.studies.train.operation import Operating
 from tests.test_train_many import BEARING, PRESSURE, SHAFTS, scene_text, written
 
@@ -204,3 +207,23 @@ BAD = {
 def test_what_cannot_divide_is_refused_by_the_keys_of_the_file(tmp_path, change, reason):
     with pytest.raises(SceneError, match=reason):
         sg.load_train(written(tmp_path, change))
+
+
+def test_teeth_of_a_loop_part_as_in_motion_in_time(tmp_path):
+    """Both paths carry their share of the mean; only the laws and the modes are shared with what
+    integrates.  Harmonics are followed to 1e-4 of the largest stretch, which is more of a small force.
+    """
+    gap = ("transmission_error = 1e-6\n", 'transmission_error = 1e-5\nbacklash = "40 um"\n')
+    shop = Workshop(looped(tmp_path, BEARING, gap))
+    teeth = teeth_of(shop, 300.0)
+    made = backlash_model(shop, ["timoshenko"], teeth, 2500.0)
+    carried = made.mean * np.diag(made.stiffness)
+    np.testing.assert_allclose(carried, [one.mean_force for one in teeth.every], rtol=1e-9)
+    branch = follow(made, 2 * np.pi * 835, 2 * np.pi * 880, step=0.05)
+    at = 2 * np.pi * 845.0
+    point = branch.at(at)[0]
+    steady = settled(made, at, steady=1e-4, state=point.state())
+    assert (steady.stretch.min(axis=0) < 20e-6).any() and steady.cycle == 1
+    np.testing.assert_allclose(
+        np.ptp(steady.force, axis=0), np.ptp(point.forces(), axis=0), rtol=4e-3
+    )

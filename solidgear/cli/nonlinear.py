@@ -79,7 +79,7 @@ def nonlinear(
         list[float] | None,
         typer.Option(
             "--run-up",
-            help="Run through the range in time at so many rpm/s of the pinion; below 0 down.",
+            help="Run through the range in time at so many rpm/s of the engine's shaft; below 0 down.",
         ),
     ] = None,
     contact_loss: Annotated[
@@ -113,8 +113,6 @@ def nonlinear(
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
     low, high = study.ends(shop, reduced.max_frequency, min_frequency)
-    if run_up and teeth.others:
-        raise SolidgearError("--run-up is there for a train of one mesh; leave it out")
     passing = shop.train.per_turn(driver)
     ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:

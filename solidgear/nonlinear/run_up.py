@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import factorial
 
 import numpy as np
@@ -38,6 +38,8 @@ class RunUp:
         Its stretch, m.
     state : (2r,) ndarray
         At the end.
+    others : tuple of RunUp
+        The same of the other links with a law.
     """
 
     omega: np.ndarray
@@ -46,6 +48,7 @@ class RunUp:
     least: np.ndarray
     most: np.ndarray
     state: np.ndarray
+    others: tuple[RunUp, ...] = ()
 
     @property
     def swing(self) -> np.ndarray:
@@ -110,18 +113,17 @@ def run_up(
     angle = times * (begin + omega) / 2
     factor = remainder.factor(angle) if remainder.varies else None
     line = remainder.line(angle, 0.0)
-    force = remainder.forces(s, np.zeros_like(s), factor, line).value[:, 0]
-    along = s[:, 0] if line is None else line.along(remainder.laws[0][1], s)
+    forces = remainder.forces(s, np.zeros_like(s), factor, line).value
     first = np.searchsorted(angle, 2 * np.pi * np.arange(cycles) - 1e-9)
-    turn = 2 * np.pi * (np.arange(cycles) + 0.5)
-    return RunUp(
-        np.sqrt(begin**2 + 2 * slope * turn),
-        np.minimum.reduceat(force, first),
-        np.maximum.reduceat(force, first),
-        np.minimum.reduceat(along, first),
-        np.maximum.reduceat(along, first),
-        modal,
-    )
+    speed = np.sqrt(begin**2 + 4 * np.pi * slope * (np.arange(cycles) + 0.5))
+    runs = []
+    for _, at in remainder.laws:
+        along = line.along(at, s) if line is not None and at in line.links else s[:, at.start]
+        force = forces[:, at.start]
+        least, most = np.minimum.reduceat(along, first), np.maximum.reduceat(along, first)
+        ends = np.minimum.reduceat(force, first), np.maximum.reduceat(force, first)
+        runs.append(RunUp(speed, *ends, least, most, modal))
+    return replace(runs[0], others=tuple(runs[1:]))
 
 
 def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, told):

@@ -108,6 +108,11 @@ def runs(found: Any) -> dict[str, Table]:
             "largest mesh force [N]": one.run.highest,
             "steady dynamic mesh force [N]": one.steady_force,
         }
+        for other in one.every[1:]:
+            there |= {
+                f"{other.found.teeth.mesh} dynamic force [N]": other.force,
+                f"{other.found.teeth.mesh} largest force [N]": other.run.highest,
+            }
         rows = np.column_stack(list(there.values())).tolist()
         rpm = 60 * abs(one.ramp) / found.teeth_a_turn
         stem = f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")

@@ -211,16 +211,16 @@ class BacklashTold:
     def _run(self) -> list[str]:
         """Each run through the range, beside the steady motions."""
         lines = []
-        for one in self.runs:
+        for one in (own for run in self.runs for own in run.every):
             at, size = one.loudest
-            steady_at, steady = self.judge.loudest
-            way = "up" if one.ramp > 0 else "down"
-            band, parted = self.train.ask.tolerance, "the teeth keep contact"
+            steady_at, steady = one.found.loudest
+            way, of = "up" if one.ramp > 0 else "down", self._of(one.found)
+            band, parted = self.train.ask.tolerance, f"the teeth{of} keep contact"
             if one.lost:
                 share = 100 * float(np.mean(one.apart))
-                parted = f"the teeth part in {share:.2g} %, from {self._range(one.lost)}"
+                parted = f"the teeth{of} part in {share:.3g} %, from {self._range(one.lost)}"
             lines.append(
-                f"Run {way} at {self._rpm(abs(one.ramp)):.6g} rpm/s: largest dynamic mesh force "
+                f"Run {way} at {self._rpm(abs(one.ramp)):.6g} rpm/s: largest dynamic mesh force{of} "
                 f"{size:.0f} N at {self._at(at)}; stable motions of one mesh period "
                 f"reach {steady:.0f} N at {self._at(steady_at)}."
             )
@@ -295,10 +295,17 @@ class BacklashTold:
         return {key: value for key, value in told.items() if key not in ("mesh", "others")}
 
     def _ran(self, one: SpeedRun) -> dict[str, Any]:
-        at, size = one.loudest
+        others = [{"mesh": o.found.teeth.mesh, **self._ran_mesh(o)} for o in one.every[1:]]
         return {
             "mesh_frequency_hz_each_second": one.ramp,
             "cycles": len(one.force),
+            **self._ran_mesh(one),
+            **({"other_meshes": others} if others else {}),
+        }
+
+    def _ran_mesh(self, one: SpeedRun) -> dict[str, Any]:
+        at, size = one.loudest
+        return {
             "largest": {"frequency_hz": at, "force": size},
             "parts": asdict(one.lost) if one.lost else None,
             "share_that_parts": float(np.mean(one.apart)),

@@ -15,7 +15,7 @@ from solidgear.studies.train.backlash import Backlash, Range
 
 @dataclass(frozen=True, eq=False)
 class SpeedRun:
-    """A run through the range of a branch.
+    """A run through the range of a branch, told of one mesh.
 
     Attributes
     ----------
@@ -26,6 +26,12 @@ class SpeedRun:
     ramp: float
     run: RunUp = field(repr=False)
     found: Backlash = field(repr=False)
+
+    @property
+    def every(self) -> tuple[SpeedRun, ...]:
+        """The same told of each mesh with a law, that which drives the train first."""
+        meshes = zip((self.run, *self.run.others), self.found.every)
+        return tuple(SpeedRun(self.ramp, run, found) for run, found in meshes)
 
     @cached_property
     def frequency_hz(self) -> np.ndarray:
