@@ -28,6 +28,7 @@ from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
 from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
+from solidgear.scene.train_housing import TrainHousing, housing_problems
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
 
@@ -48,6 +49,8 @@ class Train(Model):
     rotors : dict of str to Rotor
         ``engine`` and ``load``, between which torque passes, and others.
     losses : Losses
+    housing : TrainHousing or None
+        Under the bearings of its shafts, which without one stand on ground.
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
     ask : TrainAsk
@@ -77,6 +80,7 @@ class Train(Model):
     meshes: tuple[Mesh, ...]
     rotors: dict[str, Rotor]
     losses: Losses = Losses()
+    housing: TrainHousing | None = None
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
@@ -86,7 +90,7 @@ class Train(Model):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
         problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
-        problems += [*spring_problems(self), *running_problems(self)]
+        problems += [*spring_problems(self), *running_problems(self), *housing_problems(self)]
         if problems:
             raise SceneError.of(problems)
         return self
@@ -158,6 +162,13 @@ class Train(Model):
     def reference(self) -> str:
         """Shaft that the engine turns with, to which speeds are told."""
         return self.rotors["engine"].shaft
+
+    @property
+    def housed(self) -> tuple[str, ...]:
+        """Shafts whose bearings stand in its housing."""
+        if self.housing is None:
+            return ()
+        return tuple(s for s in self.housing.carries or self.shafts if s in self.shafts)
 
     @cached_property
     def turns(self) -> dict[str, float]:
@@ -322,6 +333,9 @@ class Train(Model):
             out[f"{name}.inertia"] = rotor.status
             out[f"{name}.spring.stiffness"] = rotor.spring.status
         out["losses"] = self.losses.status
+        if self.housing is not None:
+            out["housing"] = self.housing.status
+            out |= {f"mount {name}": own.status for name, own in self.housing.mounted.items()}
         for side, shaft in self.shafts.items():
             for end, (_, head) in self.heads(side).items():
                 out[end] = head.status

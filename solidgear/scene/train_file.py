@@ -21,6 +21,7 @@ from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SHORT, SIDES, Train
+from solidgear.scene.train_housing import TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Gathered, Model
 
@@ -79,6 +80,7 @@ class _Tables(Model):
     engine: Rotor
     load: Rotor
     losses: Losses = Losses()
+    housing: TrainHousing | None = None
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 

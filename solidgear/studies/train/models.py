@@ -20,7 +20,9 @@ from solidgear.reduction.rubin import rubin
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.housing import mounts_of, part_of, standing_in
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import TEETH, local_teeth
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
@@ -280,6 +282,11 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
+            if side in self.train.housed:
+                raise SolidgearError(
+                    f"a {kind} shaft has its bearings condensed to ground, and those of the {side} "
+                    f"stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
+                )
             if len(self.train.shafts[side].gears) > 1:
                 raise SolidgearError(
                     f"a {kind} shaft is one point, and the {side} carries several gears; use one "
@@ -303,7 +310,8 @@ class Workshop:
         -------
         System
             Parts ``engine``, the shafts, ``load`` and other rotors; links ``engine spring``, ``load
-            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings.
+            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings; with a
+            housing the part ``housing`` and links such as ``mount 1``.
         """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
@@ -312,6 +320,8 @@ class Workshop:
             parts[side] = self.placed(side, self.part(side, rung))
         parts |= rotors
         links: dict[str, Link] = {}
+        if train.housing is not None:
+            parts[HOUSING], links = part_of(train.housing), mounts_of(train.housing)
         for side in train.shafts:
             links |= self._ground(side, bearings)
             for name, rotor in train.rotors_of(side).items():
@@ -326,12 +336,12 @@ class Workshop:
         return System(parts, links)
 
     def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
-        """Links of a shaft to ground, and masses on its ports."""
+        """Links of a shaft to ground or to the housing, and masses on its ports."""
         scene = self.scenes[side]
         if not bearings:
             free = [b.with_changes(matrix=np.zeros((6, 6)), hold=None) for b in scene.bearings]
             scene = scene.with_changes(bearings=tuple(free), housing=None, housing_axial=None)
-        return grounded(side, scene)
+        return standing_in(self.train, side, grounded(side, scene))
 
     def part(self, side: str, rung: str) -> Part:
         """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
@@ -376,6 +386,8 @@ class Workshop:
         for side in train.shafts:
             out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
+        if train.housing is not None:
+            out |= {f"mount {name}": own.loss for name, own in train.housing.mounted.items()}
         return out | {pair.name: loss.mesh for pair in train.pairs}
 
     def seconds(self, *models: str) -> float:

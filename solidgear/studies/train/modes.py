@@ -8,7 +8,9 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.housing import loose_ways, seat_motion
 from solidgear.studies.train.local import local_lines, undriven, waves_of
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
@@ -286,12 +288,16 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    if count == 1 and len(turning) == len(system.parts):
+    parts = [part for part in system.parts if part != HOUSING or HOUSING in turning]
+    if count == 1 and turning == parts:
         return ()
     if count == 1:
-        still = [part for part in system.parts if part not in turning]
+        still = [part for part in parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
     loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
+    if HOUSING in turning:
+        ways = " ".join(loose_ways(system))
+        loose.insert(0, f"no mount holds the housing in {ways}, and what stands in it moves along")
     where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
     return (f"{count} motions are free, where a train has one: {where}.",)
 
@@ -299,6 +305,7 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
 def _loose(workshop: Workshop, system: System, side: str) -> list[str]:
     """Directions in which the bearings do not hold a shaft, its rotation apart."""
     port = workshop.scenes[side].port.name
-    size = np.abs(system.motion(f"{side}.{port}") @ system.free).max(axis=1)
+    own = seat_motion(workshop.train, system, side, port)
+    size = np.abs(own @ system.free).max(axis=1)
     names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
     return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"] * bool(names)

@@ -22,7 +22,7 @@ def strain_shares(
     -------
     dict of str to (k,) ndarray
         ``engine spring``, ``pinion shaft``, ``pinion bearings`` (with their housing), ``mesh``,
-        ``gear bearings``, ``gear shaft``, ``load spring``; those that are never strained left out.
+        ``gear bearings``, ``gear shaft``, ``load spring``, ``mounts``; those that are never strained left out.
 
     Examples
     --------
@@ -46,6 +46,8 @@ def strain_shares(
 
 def _place(name: str, shafts: Sequence[str]) -> str:
     """Place that a part or a link belongs to."""
+    if name.startswith("mount "):
+        return "mounts"
     side, dot, _ = name.partition(".")
     if dot:
         return f"{side} bearings"
