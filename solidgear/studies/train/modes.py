@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.strain import mounts_together
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -222,9 +223,9 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     omega, _ = system.elastic
     found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
     refuse_unresolved(workshop, system, limit)
-    names = mode_names(workshop, system, found)
+    names, moved = mode_names(workshop, system, found), driven(system, found)
+    found = replace(found, energy=mounts_together(found.energy))
     most = found.dominant()
-    moved = driven(system, found)
     elastic = len(found.frequency_hz) - found.rigid
     bars = mesh_bars(workshop, system, rungs, elastic)
     sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()

@@ -32,6 +32,7 @@ def strain_shares(
     {'pinion shaft': 0.25, 'pinion bearings': 0.5, 'mesh': 0.25}
     """
     first, *others = shafts
+    energy = mounts_together(energy)
     order = ["engine spring", f"{first} shaft", f"{first} bearings"]
     order += [name for name in energy if name.startswith("mesh")]
     for side in others:
@@ -44,10 +45,15 @@ def strain_shares(
     return {name: out[name] for name in [*order, *out] if name in out and out[name].any()}
 
 
+def mounts_together(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Strain energy of modes with that of all mounts of a housing under ``mounts``."""
+    out = {name: share for name, share in energy.items() if not name.startswith("mount ")}
+    mounts = [share for name, share in energy.items() if name.startswith("mount ")]
+    return out | ({"mounts": np.sum(mounts, axis=0)} if mounts else {})
+
+
 def _place(name: str, shafts: Sequence[str]) -> str:
     """Place that a part or a link belongs to."""
-    if name.startswith("mount "):
-        return "mounts"
     side, dot, _ = name.partition(".")
     if dot:
         return f"{side} bearings"

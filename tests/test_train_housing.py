@@ -1,0 +1,230 @@
+"""The housing of a train, against matrices and balances written by hand."""
+
+import json
+from math import cos, pi, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.studies.train.deflection import deflection
+from solidgear.studies.train.meshes import mesh_bars
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.operation import Operating
+from solidgear.studies.train.receptance import receptance
+from solidgear.studies.train.respond import Drive
+from tests.command import command
+from tests.test_train_many import BEARING, DENSITY, MESHES, SHAFTS, by_hand, hertz, written
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+RIGID = "rigid/timoshenko"
+MASS, CENTRE = 85.0, np.array([-0.1, 0.12, 0.04])
+INERTIA = np.array([[3.1, 0.2, 0.0], [0.2, 2.2, -0.1], [0.0, -0.1, 2.9]])
+SPRING, MOUNTS = (4e6, 3e6, 6e6), ((-0.3, 0.0, -0.15), (0.2, 0.05, -0.15), (0.0, 0.3, -0.1))
+
+
+def housing(mass=MASS, inertia=INERTIA, spring=SPRING, mounts=MOUNTS, centre=CENTRE, **more):
+    named = dict(zip(("kxx", "kyy", "kzz"), spring))
+    return {
+        "mass": mass,
+        "inertia": np.asarray(inertia).tolist(),
+        "centre": [*centre],
+        "mount": [{"position": place, "stiffness": named} for place in mounts],
+        **more,
+    }
+
+
+@pytest.fixture(scope="module")
+def bare(tmp_path_factory):
+    return sg.load_train(written(tmp_path_factory.mktemp("housed")))
+
+
+@pytest.fixture(scope="module")
+def train(bare):
+    return bare.with_changes(housing=housing())
+
+
+@pytest.fixture(scope="module")
+def shop(train):
+    return Workshop(train)
+
+
+def housed_by_hand():
+    """K and M of rigid shafts, rotors and a rigid housing, six motions of it at its centre of mass
+    behind all others; only what the shafts and teeth do without bearings is that of another test.
+    """
+    k, m, _ = by_hand([0.0] * 6)
+    size = len(k) + 6
+    k, m = (np.pad(one, (0, 6)) for one in (k.real, m))
+    origin = {"input": np.zeros(3)}
+    for (one, at), (other, there), teeth, radius, _, azimuth, *_ in MESHES:
+        away = radius * (1 + teeth[1] / teeth[0]) * np.array([-cos(azimuth), 0, np.sin(azimuth)])
+        along = SHAFTS[one][2][at] - SHAFTS[other][2][there]
+        origin[other] = origin[one] + away + [0, along, 0]
+
+    def moved(at, arm):
+        out, (x, y, z) = np.zeros((6, size)), arm
+        out[:, at : at + 6] = np.eye(6)
+        out[:3, at + 3 : at + 6] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
+        return out
+
+    for n, (name, (_, bearings, _)) in enumerate(SHAFTS.items()):
+        for place in bearings:
+            seat = np.array([0, place, 0])
+            across = moved(6 * n, seat) - moved(size - 6, origin[name] + seat - CENTRE)
+            k += across.T @ np.diag(BEARING) @ across
+    for place in MOUNTS:
+        foot = moved(size - 6, place - CENTRE)[:3]
+        k += foot.T @ np.diag(SPRING) @ foot
+    m[-6:-3, -6:-3], m[-3:, -3:] = MASS * np.eye(3), INERTIA
+    return k, m
+
+
+def test_rigid_shafts_and_their_housing_move_like_matrices_written_by_hand(shop):
+    found = shop.system(RIGID).modes(25)
+    exact = hertz(*housed_by_hand())
+    assert found.rigid == 1 and len(exact) == 26
+    assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "still", [{"spring": (1e18,) * 3}, {"mass": 1e14, "inertia": np.eye(3) * 1e13}]
+)
+def test_a_housing_that_cannot_move_is_none(bare, still):
+    models, n = ("euler", "rigid/euler", "rigid/euler"), 9
+    usual = Workshop(bare).system(*models).modes(n).frequency_hz[1:]
+    found = Workshop(bare.with_changes(housing=housing(**still))).system(*models).modes(n + 6)
+    elastic = found.frequency_hz[found.frequency_hz > 1.0]
+    assert elastic[:n] == pytest.approx(usual, rel=1e-6)
+
+
+def test_on_bearings_that_do_not_hold_a_housing_has_the_modes_of_a_mass_on_its_mounts(bare):
+    """Four mounts about the centre of mass; bearings of 1e-6 N/m change 1e-12 of a stiffness."""
+    mass, (ix, iy, iz), (kx, ky, kz) = 40.0, (0.7, 0.5, 0.6), (8e5, 9e5, 2e6)
+    a, b = 0.12, 0.2
+    corners = [(x + CENTRE[0], y + CENTRE[1], CENTRE[2]) for x in (-a, a) for y in (-b, b)]
+    box = housing(mass, (ix, iy, iz), (kx, ky, kz), corners)
+    shop = Workshop(bare.with_changes(housing=box))
+    names = [f"{side}.b{k}" for side in SHAFTS for k in (0, 1)]
+    soft = np.diag([1e-6, 1e-6, 1e-6, 1e-8, 0.0, 1e-8])
+    found = shop.with_bearings(dict.fromkeys(names, soft)).system(RIGID).modes(25).frequency_hz
+    turns = kz * b**2 / ix, kz * a**2 / iy, (kx * b**2 + ky * a**2) / iz
+    exact = [sqrt(4 * k) / (2 * pi) for k in (kx / mass, ky / mass, kz / mass, *turns)]
+    assert [found[np.argmin(abs(found - hz))] for hz in exact] == pytest.approx(exact, rel=1e-9)
+
+
+def test_without_mounts_six_motions_more_are_free_and_told_and_loads_at_rest_are_refused(bare):
+    shop = Workshop(bare.with_changes(housing=housing(mounts=())))
+    found = train_modes(shop, RIGID, max_frequency=2000.0)
+    assert found.rigid == 7 and [m.frequency_hz for m in found.modes[:8]].count(0.0) == 7
+    assert "7 motions are free" in found.free[0] and "bearings" not in found.free[0]
+    assert "no mount holds the housing in x y z thx thy thz" in found.free[0]
+    point = bare.with_changes(operation=({"torque": 100.0},)).operation[0]
+    with pytest.raises(SolidgearError, match="nothing holds the housing in thy .* no mount does"):
+        Operating(shop, RIGID).at(point)
+
+
+def test_mounts_carry_the_difference_of_both_torques_and_the_weight(train):
+    loaded = train.with_changes(operation=({"torque": 100.0, "weight": "-z"},))
+    found = deflection(Workshop(loaded), loaded.operation[0], "euler")
+    load = {n: np.array([one.value for one in six]) for n, six in found.mounts.items()}
+    force = sum(six[:3] for six in load.values())
+    moment = sum(np.cross(at, six[:3]) for at, six in zip(MOUNTS, load.values()))
+    volumes = [length * pi * d**2 / 4 for own, *_ in SHAFTS.values() for length, d in own]
+    weight = 9.80665 * (MASS + DENSITY * sum(volumes))
+    assert force == pytest.approx([0, 0, -weight], rel=1e-10, abs=1e-10 * weight)
+    unloaded = train.with_changes(operation=({"torque": 1e-9, "weight": "-z"},))
+    own = deflection(Workshop(unloaded), unloaded.operation[0], "euler").mounts.values()
+    moment -= sum(np.cross(p, [m.value for m in six[:3]]) for p, six in zip(MOUNTS, own))
+    # the left flank's load turns the input about +y, against the engine; two meshes turn it back
+    torque = -100.0 * (1 - 57 / 20 * 55 / 18)
+    assert moment == pytest.approx([0, torque, 0], abs=1e-10 * abs(torque))
+
+
+def test_what_bearings_mounts_and_inertia_do_to_the_housing_is_in_balance_at_every_frequency(shop):
+    """Losses included: force for force on the housing, by what the response tells."""
+    hz = np.array([8.0, 35.0, 240.0, 900.0])
+    told = Drive(shop, "euler").columns(hz)
+    for dof in "xyz":
+        bearings = [v for n, v in told.items() if " bearing " in n and n.endswith(f" {dof} [N]")]
+        mounts = [told[f"mount {n} {dof} [N]"] for n in "123"]
+        inertia = MASS * told[f"housing centre acceleration {dof} [m/s²]"]
+        assert len(bearings) == 6
+        left = sum(bearings) + sum(mounts) + inertia
+        assert np.abs(left).max() < 1e-8 * np.abs(bearings).max()
+        assert inertia == pytest.approx(
+            -MASS * (2 * pi * hz) ** 2 * told[f"housing centre {dof} [m]"], rel=1e-12
+        )
+
+
+def test_a_force_on_the_cover_moves_a_gear_as_one_on_the_gear_moves_the_cover(bare):
+    shop = Workshop(bare.with_changes(housing=housing(points={"cover": (0.0, 0.2, 0.3)})))
+    ends, hz = (("housing.cover", "z"), ("output.gear", "x")), np.array([30.0, 500.0])
+    there, back = (
+        receptance(shop, "euler", from_=a, to=b, frequency_hz=hz).value
+        for a, b in (ends, ends[::-1])
+    )
+    assert there == pytest.approx(back, rel=1e-9) and np.abs(there).min() > 0
+
+
+def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
+    """Beams of the other shafts are what they are, so that the pinion's solid alone may fall."""
+    models = {"input": "harmonic", "middle": "euler", "output": "euler"}
+    shops = [
+        Workshop(train, kept=8, settings={"harmonic": how})
+        for how in ({"order": 2, "layers": 1}, {"order": 4})
+    ]
+    coarse, fine = (s.system(*models.values()).modes(16).frequency_hz[1:] for s in shops)
+    bars = mesh_bars(shops[0], shops[0].system(*models.values()), models, 16)
+    error = 1 - fine / coarse  # solved to some 1e-11
+    assert (error > -1e-10).all() and (error < bars + 1e-10).all()
+    assert error.max() > 0.5 * bars.max()
+
+
+def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(shop):
+    with pytest.raises(SolidgearError, match="lumped shaft .* stand in a housing; use one of"):
+        shop.system("lumped")
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        ({"mass": 0.0}, r"housing.mass.*greater than zero"),
+        ({"inertia": [1.0, 2.0]}, r"housing.inertia.*three moments"),
+        ({"inertia": [1.0, -2.0, 1.5]}, r"housing.inertia.*-2 kg m\^2"),
+        ({"inertia": [1.0, 1.0, 3.0]}, "no body has one that is larger than the other two"),
+        ({"inertia": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]}, "not symmetric"),
+        ({"carries": ["inptu"]}, r"carries.*no shaft 'inptu'; did you mean"),
+        ({"spring": (0.0, 0.0, 0.0)}, "stiffness.*holds nothing"),
+        ({"points": {"centre": (0, 0, 0)}}, "points.centre.*cannot name it"),
+    ],
+)
+def test_a_housing_that_cannot_be_is_refused_in_a_sentence(bare, change, said):
+    with pytest.raises(SceneError, match=said) as refused:
+        bare.with_changes(housing=housing(**change))
+    assert len({one.reason for one in refused.value.problems}) == 1
+
+
+def test_a_shaft_that_stands_in_a_housing_of_its_own_and_in_that_of_the_train_is_refused():
+    train = sg.load_train(GEOMETRY / "axle_overhung.toml")
+    with pytest.raises(SceneError, match=r"gear.scene.*\[housing\] of its own"):
+        train.with_changes(housing=housing())
+    assert train.with_changes(housing=housing(carries=["pinion"])).housed == ("pinion",)
+
+
+def test_the_shipped_train_tells_its_housing_by_name(tmp_path):
+    path = str(GEOMETRY / "gearbox_housed.toml")
+    mix = ["--pinion", "rigid/timoshenko", "--gear", "rigid/timoshenko"]
+    modes = json.loads(
+        command("system-modes", path, *mix, "--max-frequency", "150", "--json").stdout
+    )
+    names = [mode["name"] for mode in modes["modes"]]
+    assert sum(name.startswith("housing ") for name in names) >= 5
+    run = command("response", path, *mix, "--max-frequency", "150", "--out", str(tmp_path))
+    page = (tmp_path / "response.html").read_text()
+    assert not run.exit_code and "mount rear left force" in page and "housing, rigid" in page
+    head = (tmp_path / "response.csv").read_text().partition("\n")[0]
+    assert "housing cover acceleration z [m/s²]" in head
