@@ -144,10 +144,15 @@ def test_mounts_carry_the_difference_of_both_torques_and_the_weight(train):
     assert moment == pytest.approx([0, torque, 0], abs=1e-10 * abs(torque))
 
 
-def test_what_bearings_mounts_and_inertia_do_to_the_housing_is_in_balance_at_every_frequency(shop):
+def test_what_bearings_mounts_and_inertia_do_to_the_housing_is_in_balance_at_every_frequency(train):
     """Losses included: force for force on the housing, by what the response tells."""
+    first, *others = train.housing.mounts
+    mounts, foot = (first.with_changes(loss=0.25), *others), {"foot": MOUNTS[0]}
+    box = train.housing.with_changes(mounts=mounts, points=foot)
     hz = np.array([8.0, 35.0, 240.0, 900.0])
-    told = Drive(shop, "euler").columns(hz)
+    told = Drive(Workshop(train.with_changes(housing=box)), "euler").columns(hz)
+    spring = told["mount 1 z [N]"] / told["housing foot z [m]"]
+    assert spring == pytest.approx(np.full(4, SPRING[2] * (1 + 0.25j)), rel=1e-8)
     for dof in "xyz":
         bearings = [v for n, v in told.items() if " bearing " in n and n.endswith(f" {dof} [N]")]
         mounts = [told[f"mount {n} {dof} [N]"] for n in "123"]
