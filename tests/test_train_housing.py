@@ -52,42 +52,155 @@ def shop(train):
     return Workshop(train)
 
 
-def housed_by_hand():
-    """K and M of rigid shafts, rotors and a rigid housing, six motions of it at its centre of mass
-    behind all others; only what the shafts and teeth do without bearings is that of another test.
-    """
-    k, m, _ = by_hand([0.0] * 6)
-    size = len(k) + 6
-    k, m = (np.pad(one, (0, 6)) for one in (k.real, m))
+def places_by_hand():
+    """Of every bearing in the axes of the train."""
     origin = {"input": np.zeros(3)}
     for (one, at), (other, there), teeth, radius, _, azimuth, *_ in MESHES:
         away = radius * (1 + teeth[1] / teeth[0]) * np.array([-cos(azimuth), 0, np.sin(azimuth)])
         along = SHAFTS[one][2][at] - SHAFTS[other][2][there]
         origin[other] = origin[one] + away + [0, along, 0]
+    return {
+        f"{name}.b{k}": origin[name] + [0, y, 0]
+        for name, (_, bearings, _) in SHAFTS.items()
+        for k, y in enumerate(bearings)
+    }
 
-    def moved(at, arm):
-        out, (x, y, z) = np.zeros((6, size)), arm
-        out[:, at : at + 6] = np.eye(6)
-        out[:3, at + 3 : at + 6] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
-        return out
 
-    for n, (name, (_, bearings, _)) in enumerate(SHAFTS.items()):
-        for place in bearings:
-            seat = np.array([0, place, 0])
-            across = moved(6 * n, seat) - moved(size - 6, origin[name] + seat - CENTRE)
-            k += across.T @ np.diag(BEARING) @ across
-    for place in MOUNTS:
-        foot = moved(size - 6, place - CENTRE)[:3]
-        k += foot.T @ np.diag(SPRING) @ foot
-    m[-6:-3, -6:-3], m[-3:, -3:] = MASS * np.eye(3), INERTIA
+def carried(arm):
+    """(6, 6) motion at the end of an arm."""
+    out, (x, y, z) = np.eye(6), arm
+    out[:3, 3:] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
+    return out
+
+
+def housed_by_hand(mass, stiffness, motion):
+    """K and M of rigid shafts and rotors with a housing of (n, n) matrices behind them, whose
+    `motion` of a point, with its place, is (6, n); only what shafts and teeth do without bearings
+    is that of another test.
+    """
+    k, m, _ = by_hand([0.0] * 6)
+    n, box = len(k), len(mass)
+    k, m = (np.pad(one, (0, box)) for one in (k.real, m))
+    for name, place in places_by_hand().items():
+        side, end = name.split(".b")
+        at, across = 6 * [*SHAFTS].index(side), np.zeros((6, n + box))
+        across[:, at : at + 6] = carried([0, SHAFTS[side][1][int(end)], 0])
+        across[:, n:] = -motion(name, place)
+        k += across.T @ np.diag(BEARING) @ across
+    k[n:, n:] += stiffness
+    for number, place in enumerate(MOUNTS, start=1):
+        foot = motion(f"foot {number}", np.array(place))[:3]
+        k[n:, n:] += foot.T @ np.diag(SPRING) @ foot
+    m[n:, n:] = mass
     return k, m
 
 
 def test_rigid_shafts_and_their_housing_move_like_matrices_written_by_hand(shop):
     found = shop.system(RIGID).modes(25)
-    exact = hertz(*housed_by_hand())
+    mass = np.diag([MASS, MASS, MASS, 0, 0, 0])
+    mass[3:, 3:] = INERTIA
+    own = housed_by_hand(mass, np.zeros((6, 6)), lambda name, place: carried(place - CENTRE))
+    exact = hertz(*own)
     assert found.rigid == 1 and len(exact) == 26
     assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
+
+
+def lumps(stiff=1.0):
+    """Mass and stiffness of an elastic housing: lumps at all its points, each on a spring to the
+    first, and a mode that moves with them; its points and where they are.
+    """
+    feet = {f"foot {number}": np.array(place) for number, place in enumerate(MOUNTS, start=1)}
+    places = {**places_by_hand(), **feet, "cover": np.array([0.0, 0.2, 0.3])}
+    size = 6 * len(places) + 1
+    mass, stiffness, (first, *_) = np.zeros((size, size)), np.zeros((size, size)), places.values()
+    for n, place in enumerate(places.values()):
+        at, across = slice(6 * n, 6 * n + 6), np.zeros((6, size))
+        mass[at, at] = np.diag([7.0 + n, 7.0 + n, 7.0 + n, 0.03, 0.02, 0.04])
+        across[:, at] += np.eye(6)
+        across[:, :6] -= carried(place - first)
+        spring = stiff * (1 + n) * np.diag([2e8, 1e8, 3e8, 1e6, 2e6, 1e6])
+        stiffness += across.T @ spring @ across
+    mass[-1, -1], stiffness[-1, -1] = 1.0, stiff * (2 * pi * 400) ** 2
+    mass[-1, :3] = mass[:3, -1] = 0.5, -1.0, 0.8
+    return mass, stiffness, places
+
+
+def elastic(folder, mass, stiffness, places):
+    """A train file with such a housing."""
+    arrays = {"mass": mass, "stiffness": stiffness, "points": [*places]}
+    np.savez(folder / "box.npz", positions=[*places.values()], **arrays)
+    text = '[housing]\nmatrices = "box.npz"\n'
+    keys = ", ".join(f"{key} = {value}" for key, value in zip(("kxx", "kyy", "kzz"), SPRING))
+    for number in range(1, len(MOUNTS) + 1):
+        text += f'[[housing.mount]]\nat = "foot {number}"\nstiffness = {{{keys}}}\n'
+    train = written(folder)
+    train.write_text(train.read_text() + text)
+    return train
+
+
+def test_a_housing_of_matrices_moves_like_them(tmp_path):
+    mass, stiffness, places = lumps()
+    names = [*places]
+
+    def motion(name, place):
+        rows, at = np.zeros((6, len(mass))), 6 * names.index(name)
+        rows[:, at : at + 6] = carried(place - places[name])
+        return rows
+
+    exact = hertz(*housed_by_hand(mass, stiffness, motion))
+    # the same body with one point 2 mm from its bearing, which an arm then reaches
+    beside, at = np.eye(len(mass)), 6 * names.index("middle.b1")
+    beside[at : at + 6, at : at + 6] = carried([0, -0.002, 0])
+    there = {**places, "middle.b1": places["middle.b1"] + [0, 0.002, 0]}
+    own = (beside.T @ one @ beside for one in (mass, stiffness))
+    shop = Workshop(sg.load_train(elastic(tmp_path, *own, there)))
+    found = shop.system(RIGID).modes(len(exact) - 1)
+    assert found.rigid == 1
+    assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
+    assert "'middle.b1' of the housing lies 2 mm from that bearing" in shop.cautions[0]
+    modes = train_modes(shop, RIGID, max_frequency=1500.0).modes
+    assert any("housing elastic" in mode.name for mode in modes)
+
+
+def test_a_stiff_housing_of_matrices_is_a_rigid_one(tmp_path, bare):
+    """Springs inside it a million times as stiff, so that some 1e-6 of what bearings give is left."""
+    elastic_one = sg.load_train(elastic(tmp_path, *lumps(1e6)))
+    box = elastic_one.housing
+    feet = tuple(
+        mount.with_changes(at=None, position=place) for mount, place in zip(box.mounts, MOUNTS)
+    )
+    rigid = box.with_changes(matrices=None, mounts=feet)
+    shops = [Workshop(bare.with_changes(housing=one)) for one in (box, rigid)]
+    found, exact = (shop.system("euler").modes(12).frequency_hz[1:] for shop in shops)
+    assert found == pytest.approx(exact, rel=1e-5)
+    point = bare.with_changes(operation=({"torque": 100.0, "weight": "-z"},)).operation[0]
+    one, other = (deflection(shop, point, "euler") for shop in shops)
+    for key in ("1", "2", "3"):
+        loads = [[m.value for m in own.mounts[key]] for own in (one, other)]
+        assert loads[0] == pytest.approx(loads[1], rel=1e-4, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    "change, said",
+    [
+        (lambda m, k, p: (m, k + np.eye(len(k)) * 1e6, p), "resists rigid motions like a mode at"),
+        (lambda m, k, p: (m, k * 0, p), "more than six motions free"),
+        (lambda m, k, p: (m - np.eye(len(m)) * 8, k, p), "mass is not positive definite"),
+        (lambda m, k, p: (m[1:, 1:], k, p), "do not fit"),
+        (lambda m, k, p: (m, np.triu(k), p), "stiffness is not symmetric"),
+        (
+            lambda m, k, p: (m, k, {n.replace("output.b1", "out"): v for n, v in p.items()}),
+            "no point 'output.b1'",
+        ),
+        (
+            lambda m, k, p: (m, k, {n.replace("foot 2", "toe"): v for n, v in p.items()}),
+            "at.*no point of the housing",
+        ),
+    ],
+)
+def test_matrices_of_no_free_housing_are_refused_in_a_sentence(tmp_path, change, said):
+    with pytest.raises(SceneError, match=said):
+        sg.load_train(elastic(tmp_path, *change(*lumps())))
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from math import degrees
 from typing import Any
 
 from solidgear.report.table import NUMBER, Cell, Column, Table, quantity, text, word
-from solidgear.report.units import ENGINEERING, GROUP, Units
+from solidgear.report.units import ENGINEERING, GROUP, Units, engineering
 from solidgear.report.words import DASH, grouped, hertz, percent, seconds, whole
 
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
@@ -46,13 +46,15 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
         return f"at ({', '.join(units.given(v, 'm') for v in point)}) {units.unit('m')}"
 
     alone = ", ".join(f"{hz:.1f}" for hz in box["alone_hz"])
-    carries = f"{box['mass']:g} kg {place(box['centre'])}, carries {', '.join(box['carries'])}"
+    carries = f"{box['mass']:.4g} kg {place(box['centre'])}, carries {', '.join(box['carries'])}"
     rows = [
-        ["housing, rigid", carries, "housing"],
+        ["housing, elastic" if box["elastic"] else "housing, rigid", carries, "housing"],
         ["housing alone on its mounts", f"{alone} Hz", ""],
     ]
     for name, mount in box["mounts"].items():
-        springs = ", ".join(f"{key} {value:.4g}" for key, value in mount["stiffness"].items())
+        springs = ", ".join(
+            f"{key} {engineering(value, 4)}" for key, value in mount["stiffness"].items()
+        )
         told = f"{place(mount['position'])}, SI: {springs}, loss factor {mount['loss']:g}"
         rows.append([f"mount {name}", told, f"mount {name}"])
     return rows

@@ -17,11 +17,12 @@ from typing import Any
 from solidgear.errors import SceneError, near, show
 from solidgear.scene.file import load
 from solidgear.scene.gears import Member, Shaft
+from solidgear.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SHORT, SIDES, Train
-from solidgear.scene.train_housing import TrainHousing
+from solidgear.scene.train_housing import HOUSING, TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Gathered, Model
 
@@ -143,6 +144,8 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
         _read_meshes(data, kind is LongFile, folder)
+        if isinstance(box := raw.get(HOUSING), Mapping) and "matrices" in box:
+            data[HOUSING] = _with_matrices(box, folder)
         for rotor in SHORT:
             problems.read(partial(_whole_rotor, raw, rotor))
         if kind is LongFile:
@@ -255,6 +258,16 @@ def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str
         reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
         raise SceneError(reason, path=(*path, "contact_cells"))
     return {**rest, "contact_cells": read_cells(folder / name)}
+
+
+def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    for key in ("mass", "inertia", "centre", "points"):
+        if key in table:
+            raise SceneError("follows from matrices; leave one of the two out", path=(HOUSING, key))
+    if not isinstance(name := table["matrices"], str):
+        reason = "names an .npz file with " + ", ".join(ARRAYS)
+        raise SceneError(reason, path=(HOUSING, "matrices"))
+    return {**table, "matrices": read_matrices(folder / name)}
 
 
 def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:

@@ -54,15 +54,15 @@ class Seats:
         Of the bearings along the shaft, m.
     housing : float or Housing or None
         Between all of them and ground, or what they stand in.
-    stands_in : str or None
-        Port of another part that all outer rings move rigidly with; ground without it.
+    stands_in : tuple of str
+        Ports of another part that the outer rings move rigidly with; ground without any.
     """
 
     part: str
     bearings: tuple[Mounted, ...]
     places: tuple[float, ...]
     housing: float | Housing | None = None
-    stands_in: str | None = None
+    stands_in: tuple[str, ...] = ()
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -128,8 +128,9 @@ class OnBearings:
         """(6, N) motion of every seat against what its bearing stands in, by its port."""
         out: dict[str, np.ndarray] = {}
         for own in self.seats:
-            around = [] if own.stands_in is None else [self.system.port(own.stands_in)]
-            out |= {end: apart(self.system.port(end), *around) for end in own.ends}
+            around = [[self.system.port(below)] for below in own.stands_in]
+            for end, below in zip(own.ends, around or [[]] * len(own.ends)):
+                out[end] = apart(self.system.port(end), *below)
         return out
 
     @cached_property
@@ -194,7 +195,7 @@ class OnBearings:
         """Sentence on loads that neither bearings nor each other balance."""
         motion = self.system.free @ left
         ends = [end for own in self.seats for end in own.ends]
-        under = [*dict.fromkeys(own.stands_in for own in self.seats if own.stands_in)]
+        under = [*dict.fromkeys(below for own in self.seats for below in own.stands_in)]
         moved = np.array([self.system.motion(end) @ motion for end in (*under, *ends)])
         moved[:, 3:] *= self._length
         if under and np.abs(moved[: len(under)]).max() > 1e-6 * np.abs(moved).max():

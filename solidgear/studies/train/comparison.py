@@ -169,7 +169,7 @@ def _housing(train: Train) -> dict[str, Any]:
     assert own is not None
     mounts = {
         name: {
-            "position": one.position,
+            "position": own.foot(name),
             "stiffness": stiffness_entries(one.stiffness),
             "loss": one.loss,
         }
@@ -181,7 +181,8 @@ def _housing(train: Train) -> dict[str, Any]:
         "centre": own.centre,
         "carries": train.housed,
         "mounts": mounts,
-        "points": own.points,
+        "points": {name: own.known[name] for name in own.told[1:]},
+        "elastic": own.matrices is not None,
         "alone_hz": alone_hz(own).tolist(),
     }
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.frames import DOF_NAMES
+from solidgear.reduction.superelement import PortMotion
+from solidgear.scene import Scene
+from solidgear.scene.housing_matrices import HousingMatrices
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import CENTRE, HOUSING, TrainHousing
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
@@ -19,14 +22,47 @@ from solidgear.system.system import System
 if TYPE_CHECKING:
     from solidgear.studies.train.respond import Drive
 
-#: port of the housing that its bearings stand in, wherever they are: it is rigid
+#: port at its centre of mass
 BOX = f"{HOUSING}.{CENTRE}"
-WAYS = [f"along {x}" for x in "xyz"] + [f"about {x}" for x in "xyz"]
+#: names of its motions
+WAYS = [f"along {x}" for x in "xyz"] + [f"about {x}" for x in "xyz"] + ["elastic"]
 ACCELERATION = "m/s²"
+#: distance of a point from its bearing that is told, m
+ASTRAY = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticHousing:
+    """A part of the motions of points and of modes."""
+
+    matrices: HousingMatrices
+
+    @property
+    def mass(self) -> np.ndarray:
+        """(n, n)."""
+        return self.matrices.mass
+
+    @property
+    def strain(self) -> np.ndarray:
+        """(n - 6, n)."""
+        return self.matrices.elastic[1]
+
+    @property
+    def ports(self) -> Mapping[str, PortMotion]:
+        """Its points, and the mean motion of all of it at the centre of mass."""
+        own, axes = self.matrices, np.eye(3)
+        rows = np.eye(len(own.mass))
+        points = {
+            name: PortMotion(rows[6 * k : 6 * k + 6], place, axes)
+            for k, (name, place) in enumerate(own.positions.items())
+        }
+        return {CENTRE: PortMotion(own.mean, own.centre, axes), **points}
 
 
 def part_of(housing: TrainHousing) -> Part:
     """The housing as a part, in the axes of the train."""
+    if housing.matrices is not None:
+        return ElasticHousing(housing.matrices)
     body = RigidBody(housing.mass_matrix, housing.places)
     return Placed(body, origin=np.array(housing.centre))
 
@@ -34,9 +70,23 @@ def part_of(housing: TrainHousing) -> Part:
 def mounts_of(housing: TrainHousing) -> dict[str, Link]:
     """Its springs to ground, each called ``mount NAME``."""
     return {
-        f"mount {name}": BearingSpring(f"{HOUSING}.{name}", np.array(mount.stiffness))
+        f"mount {name}": BearingSpring(f"{HOUSING}.{housing.feet[name]}", np.array(mount.stiffness))
         for name, mount in housing.mounted.items()
     }
+
+
+def losses_of(housing: TrainHousing) -> dict[str, float]:
+    """Loss factors of mounts, and of an elastic housing."""
+    own = {f"mount {name}": mount.loss for name, mount in housing.mounted.items()}
+    return own if housing.matrices is None else {HOUSING: housing.loss, **own}
+
+
+def under(train: Train, side: str, bearing: str) -> str | None:
+    """Port of the housing that a bearing stands in; None of one that stands on ground."""
+    if train.housing is None or side not in train.housed:
+        return None
+    # wherever a bearing stands, a rigid housing moves it by the motion of its centre of mass
+    return BOX if train.housing.matrices is None else f"{HOUSING}.{side}.{bearing}"
 
 
 def standing_in(train: Train, side: str, links: dict[str, Link]) -> dict[str, Link]:
@@ -44,23 +94,27 @@ def standing_in(train: Train, side: str, links: dict[str, Link]) -> dict[str, Li
     if side not in train.housed:
         return links
     return {
-        name: replace(link, to=BOX) if isinstance(link, BearingSpring) else link
+        name: replace(link, to=under(train, side, link.at.removeprefix(f"{side}.")))
+        if isinstance(link, BearingSpring)
+        else link
         for name, link in links.items()
     }
 
 
 def seat_motion(train: Train, system: System, side: str, bearing: str) -> np.ndarray:
     """(6, N) motion of a bearing's inner ring against what it stands in."""
-    around = [system.port(BOX)] if side in train.housed else []
+    below = under(train, side, bearing)
+    around = [system.port(below)] if below is not None else []
     return apart(system.port(f"{side}.{bearing}"), *around)
 
 
 def mount_rows(train: Train, system: System) -> dict[str, np.ndarray]:
     """(6, N) rows of the load of the housing on every mount, by its name."""
-    mounted = train.housing.mounted.items() if train.housing else ()
+    if (box := train.housing) is None:
+        return {}
     return {
-        name: np.array(mount.stiffness) @ system.motion(f"{HOUSING}.{name}")
-        for name, mount in mounted
+        name: np.array(mount.stiffness) @ system.motion(f"{HOUSING}.{box.feet[name]}")
+        for name, mount in box.mounted.items()
     }
 
 
@@ -74,7 +128,7 @@ def columns_of(drive: Drive, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
     if train.housing is None:
         return out
     loads = mount_rows(train, system)
-    places = [CENTRE, *train.housing.points]
+    places = train.housing.told
     rows = [*loads.values(), *(system.motion(f"{HOUSING}.{place}") for place in places)]
     found = np.split(drive.motion(frequency_hz, np.vstack(rows)), len(rows), axis=1)
     for name, load in zip(loads, found):
@@ -106,7 +160,8 @@ def _together(values: np.ndarray) -> np.ndarray:
 
 
 def shares_of(system: System, own: np.ndarray, shapes: np.ndarray) -> dict[str, np.ndarray]:
-    """Kinetic energy of the housing in every mode, under the way in which most of it moves.
+    """Kinetic energy of the housing in every mode, under the way in which most of it moves; elastic
+    where that of its mean motion is less than half of it.
 
     Parameters
     ----------
@@ -114,9 +169,17 @@ def shares_of(system: System, own: np.ndarray, shapes: np.ndarray) -> dict[str, 
         Its kinetic energy.
     shapes : (N, k) ndarray
     """
-    mass = np.diag(system.parts[HOUSING].mass)
-    way = np.argmax(mass[:, None] * (system.motion(BOX) @ shapes) ** 2, axis=0)
+    rigid = rigid_mass(system.parts[HOUSING])
+    moved = system.motion(BOX) @ shapes
+    mean = (moved * (rigid @ moved)).sum(axis=0)
+    way = np.argmax(np.diag(rigid)[:, None] * moved**2, axis=0)
+    way = np.where(mean < own / 2, len(WAYS) - 1, way)
     return {f"{HOUSING} {name}": np.where(way == k, own, 0.0) for k, name in enumerate(WAYS)}
+
+
+def rigid_mass(part: Part) -> np.ndarray:
+    """(6, 6) of the housing about its centre of mass."""
+    return part.matrices.rigid_mass if isinstance(part, ElasticHousing) else part.mass
 
 
 def alone_hz(housing: TrainHousing) -> np.ndarray:
@@ -130,12 +193,44 @@ def facts_of(train: Train) -> Iterator[str]:
     housing = train.housing
     if housing is None:
         return
-    hz = alone_hz(housing)
-    told = ", ".join(f"{one:.1f}" for one in hz)
+    alone = ", ".join(f"{hz:.1f}" for hz in alone_hz(housing))
+    kind = "a rigid housing"
+    if (own := housing.matrices) is not None:
+        first = own.elastic[0][0] / (2 * np.pi)
+        kind = f"an elastic housing (free, its first mode is at {first:.1f} Hz)"
     yield (
-        f"a rigid housing of {housing.mass:g} kg carries the bearings of {', '.join(train.housed)} on "
-        f"{len(housing.mounts)} mounts; alone on them it has its modes at {told} Hz"
+        f"{kind} of {housing.mass:.4g} kg carries the bearings of {', '.join(train.housed)} on "
+        f"{len(housing.mounts)} mounts; alone on them it has modes at {alone} Hz"
     )
+    if own is not None:
+        yield "what the matrices of the housing leave out is in no bar and no bound"
+
+
+def astray(
+    train: Train, scenes: Mapping[str, Scene], places: Mapping[str, tuple[np.ndarray, np.ndarray]]
+) -> list[str]:
+    """Sentences on points of an elastic housing that are not where the bearings in it stand.
+
+    Parameters
+    ----------
+    places : mapping of str to ((3, 3) ndarray, (3,) ndarray)
+        Turn and origin of every shaft's scene in the axes of the train.
+    """
+    own = train.housing.matrices if train.housing is not None else None
+    out = []
+    for side in train.housed if own is not None else ():
+        turn, origin = places[side]
+        for bearing in scenes[side].bearings:
+            name = f"{side}.{bearing.name}"
+            if own is None or name not in own.positions:  # a station that carries nothing
+                continue
+            off = np.linalg.norm(own.positions[name] - origin - turn[:, 1] * bearing.y)
+            if off > ASTRAY:
+                out.append(
+                    f"point {name!r} of the housing lies {1e3 * off:.3g} mm from that bearing, which "
+                    "it is taken to carry over that distance rigidly"
+                )
+    return out
 
 
 def loose_ways(system: System) -> list[str]:

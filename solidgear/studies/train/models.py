@@ -22,7 +22,7 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
-from solidgear.studies.train.housing import mounts_of, part_of, standing_in
+from solidgear.studies.train.housing import astray, losses_of, mounts_of, part_of, standing_in
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import TEETH, local_teeth
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
@@ -254,12 +254,13 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Data of the meshes that do not fit together but can be solved, in words."""
-        return tuple(
+        """Data of meshes and housing that do not fit together but can be solved, in words."""
+        told = (
             f"{name}: {text}" if len(self.contacts) > 1 else text
             for name, met in self.contacts.items()
             for text in met.cautions
         )
+        return (*told, *astray(self.train, self.scenes, self.places))
 
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
@@ -387,7 +388,7 @@ class Workshop:
             out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
         if train.housing is not None:
-            out |= {f"mount {name}": own.loss for name, own in train.housing.mounted.items()}
+            out |= losses_of(train.housing)
         return out | {pair.name: loss.mesh for pair in train.pairs}
 
     def seconds(self, *models: str) -> float:

@@ -26,7 +26,7 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
-from solidgear.studies.train.housing import BOX
+from solidgear.studies.train.housing import under
 from solidgear.studies.train.layout import force_on, mesh_forces
 from solidgear.studies.train.models import Workshop
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
@@ -145,11 +145,12 @@ class Operating:
     @cached_property
     def _seats(self) -> tuple[Seats, ...]:
         scenes = self.workshop.scenes.items()
-        within = dict.fromkeys(self.workshop.train.housed, BOX)
-        return tuple(
-            replace(seats_of(side, scene, self.made), stands_in=within.get(side))
-            for side, scene in scenes
-        )
+        train, out = self.workshop.train, []
+        for side, scene in scenes:
+            own = seats_of(side, scene, self.made)
+            below = (under(train, side, one.port) for one in own.bearings)
+            out.append(replace(own, stands_in=tuple(port for port in below if port is not None)))
+        return tuple(out)
 
     @cached_property
     def _flanks(self) -> dict[bool, OnBearings]:
