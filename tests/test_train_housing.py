@@ -10,10 +10,12 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.studies.train.deflection import deflection
+from solidgear.studies.train.judge import _Judge
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.operation import Operating
+from solidgear.studies.train.pairing import seen_modes
 from solidgear.studies.train.receptance import receptance
 from solidgear.studies.train.respond import Drive
 from tests.command import command
@@ -227,6 +229,10 @@ def test_on_bearings_that_do_not_hold_a_housing_has_the_modes_of_a_mass_on_its_m
     turns = kz * b**2 / ix, kz * a**2 / iy, (kx * b**2 + ky * a**2) / iz
     exact = [sqrt(4 * k) / (2 * pi) for k in (kx / mass, ky / mass, kz / mass, *turns)]
     assert [found[np.argmin(abs(found - hz))] for hz in exact] == pytest.approx(exact, rel=1e-9)
+    system = shop.with_bearings(dict.fromkeys(names, soft)).system(RIGID)
+    modes, seen = seen_modes(shop, system, max(exact) + 1)
+    near = [np.argmin(abs(modes.frequency_hz[modes.rigid :] - hz)) for hz in exact]
+    assert np.linalg.norm(seen[:, near], axis=0).min() > 0.1  # a mode is paired by what it moves
 
 
 def test_without_mounts_six_motions_more_are_free_and_told_and_loads_at_rest_are_refused(bare):
@@ -300,6 +306,16 @@ def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
     error = 1 - fine / coarse  # solved to some 1e-11
     assert (error > -1e-10).all() and (error < bars + 1e-10).all()
     assert error.max() > 0.5 * bars.max()
+
+
+def test_mixes_are_judged_where_a_housing_stands_on_nothing(bare):
+    """Seven motions at 0 Hz take no part: equal models leave no band."""
+    coarse = {"harmonic": {"order": 2, "layers": 1}}
+    free = bare.with_changes(housing=housing(mounts=()))
+    judge = _Judge(Workshop(free, kept=8, settings=coarse), 800.0)
+    assert judge.found.rigid == 7
+    assert judge.departure("harmonic").to_hz == np.inf
+    assert judge.departure("rigid/harmonic").mode in judge.names[7:]
 
 
 def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(shop):
