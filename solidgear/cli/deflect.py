@@ -80,6 +80,7 @@ def _train(
         tables.misalignment(found, shown),
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
+        *tables.housing(judge, shown),
         *over,
         found.verdict(),
         *judge.notes,
@@ -92,7 +93,7 @@ def _train(
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",
-            [tables.misalignment(found, shown), *over],
+            [tables.misalignment(found, shown), *over, *tables.housing(judge, shown)],
             [*judge.notes, *found.cautions],
             shown,
         )

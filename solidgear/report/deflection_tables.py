@@ -120,6 +120,33 @@ def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
     return Table("Displacements", columns, rows, note)
 
 
+def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
+    """Load on every mount of the housing of a train, and how the housing moves; none without one.
+
+    Parameters
+    ----------
+    found : TrainDeflection
+    """
+    if not found.mounts:
+        return []
+
+    most = [max(abs(six[k].value) for six in found.mounts.values()) for k in range(6)]
+
+    def one(k: int, row: tuple[str, Sequence[Any]]) -> float:
+        value = row[1][k].value
+        return value if abs(value) > ROUNDING * max(most[3 * (k // 3) :][:3]) else 0.0
+
+    name, six = word("mount", lambda row: row[0]), enumerate(zip(DOFS, LOAD_OF))
+    carried = [quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in six]
+    note = "Load of the housing on each mount, in the axes of the first shaft's scene."
+    moved = [("centre of mass", [m.value for m in found.displacement["housing"]])]
+    place = word("place", lambda row: row[0])
+    return [
+        Table("Mount loads", [name, *carried], [*found.mounts.items()], note),
+        Table("Motion of the housing", [place, *_six(units, lambda row: row[1])], moved),
+    ]
+
+
 def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
     """Motion of one place by every model.
 

@@ -17,7 +17,7 @@ from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import Make
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Column, Table
-from solidgear.report.train_chart import receptance_chart, response_chart
+from solidgear.report.train_chart import columns_chart, receptance_chart, response_chart
 from solidgear.report.units import ENGINEERING, Units, units_named
 
 
@@ -48,6 +48,9 @@ def write_response(
     }
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
     told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, first.label)]
+    if beside := train_tables.housing_columns(first):
+        charts["housing"] = partial(columns_chart, responses, beside, teeth, shown)
+        told.append(train_tables.housing(first, shown))
     if orders is not None:
         tables["orders"] = crossings(orders, of)
         charts["orders"] = partial(order_chart, orders, title, teeth, shown)

@@ -19,7 +19,8 @@ from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sheet_files import write_charts, write_json
 from solidgear.report.sketch_page import sketch_svg
-from solidgear.report.train_chart import response_chart
+from solidgear.report.table import Table
+from solidgear.report.train_chart import columns_chart, response_chart
 from solidgear.report.train_files import crossings, over_frequency
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.report.words import capital, seconds
@@ -76,6 +77,8 @@ def write_train(
         ),
         "orders": partial(order_chart, orders, driven, teeth, chosen),
     }
+    if beside := train_tables.housing_columns(responses[0]):
+        charts["housing"] = partial(columns_chart, responses[:1], beside, teeth, chosen)
     with begun(out) as folder:
         files = ["report.html", "response.csv", "orders.csv"]
         files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
@@ -88,7 +91,8 @@ def write_train(
         results = {**results, **(draw(folder) if draw else {"pictures": {}, "left_out": []})}
         files += results["pictures"].values()
         write_json(folder / "results.json", {**results, "files": files})
-        page = _page(results, charts, folder, chosen, viewer, teeth)
+        moved = train_tables.housing(responses[0], chosen)
+        page = _page(results, charts, folder, chosen, viewer, teeth, moved)
         with whole(folder / "report.html") as half:
             half.write_text(page, encoding="utf-8")
         return folder / "report.html"
@@ -101,6 +105,7 @@ def _page(
     units: Units,
     viewer: str,
     teeth: float,
+    housing: Table,
 ) -> str:
     from markupsafe import Markup
 
@@ -132,6 +137,7 @@ def _page(
             units,
             f"{every} shafts solid",
         ),
+        housing=housing,
         modes=train_tables.modes(results["modes"], f"Natural frequencies, {every} shafts solid"),
         crossings=train_tables.crossings(results["crossings"], units, train_tables.turned(teeth)),
         bearings={

@@ -49,6 +49,10 @@ WORDS = {
         "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
         "contact over the cycle, and the orders of the largest force."
     ),
+    "housing": (
+        "Loads on the mounts of the housing and accelerations of its points, each of all three "
+        "directions together."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "

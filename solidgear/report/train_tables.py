@@ -7,7 +7,7 @@ from math import degrees
 from typing import Any
 
 from solidgear.report.table import NUMBER, Cell, Column, Table, quantity, text, word
-from solidgear.report.units import ENGINEERING, GROUP, Units
+from solidgear.report.units import ENGINEERING, GROUP, Units, engineering
 from solidgear.report.words import DASH, grouped, hertz, percent, seconds, whole
 
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
@@ -29,6 +29,7 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
             )
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
+    rows += _housing(train["housing"], units) if "housing" in train else []
     rows += [
         [f"{side}'s material", _materials(train[side]["scene"], units), ""]
         for side in train["shafts"]
@@ -40,6 +41,55 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
     ]
     note = "Status says where a value comes from: published, measured, identified or assumed."
     return Table(title, columns, rows, note, style="facts")
+
+
+def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
+    """Rows of the housing and its mounts."""
+
+    def place(point: Sequence[float]) -> str:
+        return f"at ({', '.join(units.given(v, 'm') for v in point)}) {units.unit('m')}"
+
+    alone = ", ".join(f"{hz:.1f}" for hz in box["alone_hz"])
+    carries = f"{box['mass']:.4g} kg {place(box['centre'])}, carries {', '.join(box['carries'])}"
+    rows = [
+        ["housing, elastic" if box["elastic"] else "housing, rigid", carries, "housing"],
+        ["housing alone on its mounts", f"{alone} Hz", ""],
+    ]
+    for name, mount in box["mounts"].items():
+        springs = ", ".join(
+            f"{key} {engineering(value, 4)}" for key, value in mount["stiffness"].items()
+        )
+        told = f"{place(mount['position'])}, SI: {springs}, loss factor {mount['loss']:g}"
+        rows.append([f"mount {name}", told, f"mount {name}"])
+    return rows
+
+
+def housing_columns(response: Any) -> list[tuple[str, str]]:
+    """Columns of a response that tell what its housing does, and what each is called."""
+    return [
+        (column, column.partition(" [")[0])
+        for column in response.columns
+        if column.startswith("mount ")
+        and " force [" in column
+        or column.startswith("housing ")
+        and " acceleration [" in column
+    ]
+
+
+def housing(response: Any, units: Units = ENGINEERING) -> Table:
+    """Largest loads of mounts and accelerations of the housing over a response."""
+    rows = []
+    for column, name in housing_columns(response):
+        size = abs(response.columns[column])
+        si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
+        rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
+    columns = [
+        text("of the housing", lambda row: row[0]),
+        text("largest", lambda row: row[1]),
+        Column("Hz", lambda row: row[2], hertz),
+    ]
+    note = "All three directions together: the root of the sum of squares of their amplitudes."
+    return Table("Loads of mounts and accelerations", columns, rows, note)
 
 
 def material_words(material: Mapping[str, Any], units: Units) -> str:

@@ -31,7 +31,7 @@ ONE_OR_MORE = ("port", "operation")
 #: keys of words about numbers, which are none
 WORDS = ("title", "source", "note", "status", "scene")
 #: keys that name a file whose numbers count, and not its name alone
-FILES = ("contact_cells", "step", "mesh")
+FILES = ("contact_cells", "step", "mesh", "matrices")
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ from solidgear.scene.operation import OperatingPoint, Operation
 from solidgear.scene.power import carried_of, flows_of, share_problems
 from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
+from solidgear.scene.train_housing import TrainHousing, housing_problems
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
 
@@ -50,6 +51,8 @@ class Train(Model):
     engines, loads : tuple of str
         Rotors that bring torque and that take it, where they are others than these two.
     losses : Losses
+    housing : TrainHousing or None
+        Under the bearings of its shafts, which without one stand on ground.
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
     ask : TrainAsk
@@ -81,6 +84,7 @@ class Train(Model):
     engines: tuple[str, ...] = ("engine",)
     loads: tuple[str, ...] = ("load",)
     losses: Losses = Losses()
+    housing: TrainHousing | None = None
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
@@ -90,7 +94,7 @@ class Train(Model):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
         problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
-        problems += [*spring_problems(self), *share_problems(self)]
+        problems += [*spring_problems(self), *share_problems(self), *housing_problems(self)]
         problems += [] if problems else running_problems(self)
         if problems:
             raise SceneError.of(problems)
@@ -163,6 +167,13 @@ class Train(Model):
     def reference(self) -> str:
         """Shaft that the first engine turns with, to which speeds are told."""
         return self.engine.shaft
+
+    @property
+    def housed(self) -> tuple[str, ...]:
+        """Shafts whose bearings stand in its housing."""
+        if self.housing is None:
+            return ()
+        return tuple(s for s in self.housing.carries or self.shafts if s in self.shafts)
 
     @cached_property
     def turns(self) -> dict[str, float]:
@@ -346,6 +357,9 @@ class Train(Model):
             out[f"{name}.inertia"] = rotor.status
             out[f"{name}.spring.stiffness"] = rotor.spring.status
         out["losses"] = self.losses.status
+        if self.housing is not None:
+            out["housing"] = self.housing.status
+            out |= {f"mount {name}": own.status for name, own in self.housing.mounted.items()}
         for side, shaft in self.shafts.items():
             for end, (_, head) in self.heads(side).items():
                 out[end] = head.status

@@ -19,10 +19,12 @@ from pydantic import model_validator
 from solidgear.errors import SceneError, near, show
 from solidgear.scene.file import load
 from solidgear.scene.gears import Member, Shaft
+from solidgear.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SHORT, SIDES, Train
+from solidgear.scene.train_housing import HOUSING, TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Gathered, Model
 
@@ -81,6 +83,7 @@ class _Tables(Model):
     engine: dict[str, Rotor]
     load: dict[str, Rotor]
     losses: Losses = Losses()
+    housing: TrainHousing | None = None
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
@@ -160,6 +163,8 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
         _read_meshes(data, kind is LongFile, folder)
+        if isinstance(box := raw.get(HOUSING), Mapping) and "matrices" in box:
+            data[HOUSING] = _with_matrices(box, folder)
         for role in SHORT:
             for name in [*raw[role]] if _several(raw.get(role)) else [""]:
                 problems.read(partial(_whole_rotor, raw, role, name))
@@ -190,7 +195,7 @@ def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
 
 
 def _several(table: Any) -> bool:
-    """Whether a table holds others by their names, and is none of an engine or a load itself."""
+    """True if a table holds others by their names, and is none of an engine or a load itself."""
     tables = isinstance(table, Mapping) and all(
         isinstance(v, (Mapping, Rotor)) for v in table.values()
     )
@@ -285,6 +290,16 @@ def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str
         reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
         raise SceneError(reason, path=(*path, "contact_cells"))
     return {**rest, "contact_cells": read_cells(folder / name)}
+
+
+def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    for key in ("mass", "inertia", "centre", "points"):
+        if key in table:
+            raise SceneError("follows from matrices; leave one of the two out", path=(HOUSING, key))
+    if not isinstance(name := table["matrices"], str):
+        reason = "names an .npz file with " + ", ".join(ARRAYS)
+        raise SceneError(reason, path=(HOUSING, "matrices"))
+    return {**table, "matrices": read_matrices(folder / name)}
 
 
 def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:

@@ -35,6 +35,7 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.machine.threads import pinned
 from solidgear.scene.housing import Housing
+from solidgear.system.links import apart
 from solidgear.system.system import System
 
 #: work of loads on a free motion, relative to what they could do, that is rounding
@@ -52,13 +53,16 @@ class Seats:
     places : tuple of float
         Of the bearings along the shaft, m.
     housing : float or Housing or None
-        Between all of them and ground.
+        Between all of them and ground, or what they stand in.
+    stands_in : tuple of str
+        Ports of another part that the outer rings move rigidly with; ground without any.
     """
 
     part: str
     bearings: tuple[Mounted, ...]
     places: tuple[float, ...]
     housing: float | Housing | None = None
+    stands_in: tuple[str, ...] = ()
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -120,9 +124,19 @@ class OnBearings:
     seats: tuple[Seats, ...]
 
     @cached_property
+    def _across(self) -> dict[str, np.ndarray]:
+        """(6, N) motion of every seat against what its bearing stands in, by its port."""
+        out: dict[str, np.ndarray] = {}
+        for own in self.seats:
+            around = [[self.system.port(below)] for below in own.stands_in]
+            for end, below in zip(own.ends, around or [[]] * len(own.ends)):
+                out[end] = apart(self.system.port(end), *below)
+        return out
+
+    @cached_property
     def _rows(self) -> np.ndarray:
-        """(5 b, N) motions of all seats."""
-        rows = [self.system.motion(end)[list(FIVE)] for own in self.seats for end in own.ends]
+        """(5 b, N) the same without rotations about the axes."""
+        rows = [across[list(FIVE)] for across in self._across.values()]
         return np.vstack([np.zeros((0, self.system.size)), *rows])
 
     @cached_property
@@ -181,8 +195,14 @@ class OnBearings:
         """Sentence on loads that neither bearings nor each other balance."""
         motion = self.system.free @ left
         ends = [end for own in self.seats for end in own.ends]
-        moved = np.array([self.system.motion(end) @ motion for end in ends])
+        under = [*dict.fromkeys(below for own in self.seats for below in own.stands_in)]
+        moved = np.array([self.system.motion(end) @ motion for end in (*under, *ends)])
         moved[:, 3:] *= self._length
+        if under and np.abs(moved[: len(under)]).max() > 1e-6 * np.abs(moved).max():
+            part = under[0].partition(".")[0]
+            way = DOF_NAMES[int(np.argmax(np.abs(moved[0])))]
+            return f"nothing holds the {part} in {way} under these loads: no mount does"
+        moved = moved[len(under) :]
         k, component = np.unravel_index(int(np.argmax(np.abs(moved))), moved.shape)
         return (
             f"nothing holds {ends[k].partition('.')[0]} in {DOF_NAMES[component]} under these "
@@ -238,7 +258,7 @@ class OnBearings:
         relative, carried = self.balance.carried(at)
         total = load.copy()
         for end, own in zip(ends, carried):
-            total -= self.system.motion(end).T @ own
+            total -= self._across[end].T @ own
         omega, shapes = self.system.elastic
         elastic = shapes @ (self._elastic(total) / omega)
         missing = (self.balance.places(at) - self._rows @ elastic) / self._size

@@ -77,11 +77,15 @@ class BearingSpring:
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
         """Root of the stiffness times the motion of one end relative to the other."""
-        here, *others = ends
-        motion = here.rows
-        for other in others:
-            motion = motion - other.seen_from(here)
-        return Supports(("spring",), self.stiffness).root.T @ motion
+        return Supports(("spring",), self.stiffness).root.T @ apart(*ends)
+
+
+def apart(here: PortMotion, *others: PortMotion) -> np.ndarray:
+    """(6, N) motion of a port against others, carried to it rigidly."""
+    motion = here.rows
+    for other in others:
+        motion = motion - other.seen_from(here)
+    return motion
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,7 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
+from solidgear.studies.train.housing import facts_of
 from solidgear.studies.train.local import undriven
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import (
@@ -78,7 +79,7 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
         out[side] = check_scene(scene, probe.body, probe)
         light.take(side, JUDGE, probe.solution(JUDGE).body)
     faults: list[str] = []
-    facts = [*_facts(workshop, limit)]
+    facts = [*_facts(workshop, limit), *facts_of(train)]
     facts += [line for met in workshop.contacts.values() for line in wrench_lines(met)]
     # those of the shafts are told with their guards
     cautions = [*workshop.cautions, *slips_of_meshes(workshop), *_losses(train)]

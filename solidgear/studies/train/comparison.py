@@ -10,7 +10,10 @@ from typing import Any
 
 from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
+from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.gears import Pair
+from solidgear.scene.train import Train
+from solidgear.studies.train.housing import alone_hz
 from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
 from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
@@ -154,9 +157,35 @@ def described(workshop: Workshop) -> dict[str, Any]:
             "spring": rotor.spring.stiffness,
             "at": f"{rotor.shaft}.{train.spring_port(name)}",
         }
+    if train.housing is not None:
+        out["housing"] = _housing(train)
     for side, shaft in train.shafts.items():
         out[side] = {"turns": train.turns[side], "scene": shaft.scene.as_dict()}
     return out
+
+
+def _housing(train: Train) -> dict[str, Any]:
+    """The housing as plain data, in SI."""
+    own = train.housing
+    assert own is not None
+    mounts = {
+        name: {
+            "position": own.foot(name),
+            "stiffness": stiffness_entries(one.stiffness),
+            "loss": one.loss,
+        }
+        for name, one in own.mounted.items()
+    }
+    return {
+        "mass": own.mass,
+        "inertia": own.inertia,
+        "centre": own.centre,
+        "carries": train.housed,
+        "mounts": mounts,
+        "points": {name: own.known[name] for name in own.told[1:]},
+        "elastic": own.matrices is not None,
+        "alone_hz": alone_hz(own).tolist(),
+    }
 
 
 def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:

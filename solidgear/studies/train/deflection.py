@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.frames import DOF_NAMES
 from solidgear.judge.deviations import WITHIN, gap_verdict
 from solidgear.machine.threads import pinned
 from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
+from solidgear.studies.train.components import FORCE_UNITS
+from solidgear.studies.train.housing import BOX, mount_rows
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
@@ -22,6 +26,7 @@ from solidgear.studies.train.static_bars import StaticBars
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
+MOVED = ("m moved",) * 3 + ("rad moved",) * 3
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,10 @@ class TrainDeflection:
         N, along the line of action, by mesh.
     displacement : dict of str to tuple of Measured
         Of every lumped point, by its shaft, or of one with several gears by shaft and point, six
-        components; rotations about the axis are against the port of the engine's spring.
+        components; rotations about the axis are against the port of the engine's spring. With a
+        housing also of its centre of mass, in the axes of the train.
+    mounts : dict of str to tuple of Measured
+        Load (6) of the housing on each mount, N and N m.
     seconds : float
         To settle, once bodies are there.
     """
@@ -71,6 +79,7 @@ class TrainDeflection:
     shafts: tuple[ShaftDeflection, ...]
     notes: tuple[str, ...]
     seconds: float
+    mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
 
     @property
     def mesh_force(self) -> float:
@@ -85,19 +94,22 @@ class TrainDeflection:
 
     def as_dict(self) -> dict:
         """Plain data in SI that JSON can hold."""
-        return {
+        told = {
             "point": self.point.model_dump(mode="json"),
             **self.models,
             "mesh_force": self.mesh_force,
             "mesh_forces": self.mesh_forces,
             "misalignment": {m.name: _plain(m) for m in self.misalignment},
-            "displacement": {
-                side: {m.name: _plain(m) for m in six} for side, six in self.displacement.items()
-            },
+            "displacement": _each(self.displacement),
             "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
             "notes": list(self.notes),
             "seconds": self.seconds,
         }
+        return told | ({"mounts": _each(self.mounts)} if self.mounts else {})
+
+
+def _each(places: dict[str, tuple[Measured, ...]]) -> dict:
+    return {place: {m.name: _plain(m) for m in six} for place, six in places.items()}
 
 
 def _plain(one: Measured) -> dict:
@@ -310,7 +322,14 @@ def _told(
     for side, shaft in workshop.train.shafts.items():
         for port in shaft.gears:
             end = f"{side}.{port}"
-            moved[side if len(shaft.gears) == 1 else end] = _six(end, state, bars)
+            told_as = side if len(shaft.gears) == 1 else end
+            moved[told_as] = _six(f"of {end}", MOVED, system.motion(end), state, bars)
+    if workshop.train.housing is not None:
+        moved[HOUSING] = _six("of its centre", MOVED, system.motion(BOX), state, bars)
+    mounts = {
+        name: _six("on it", FORCE_UNITS, rows, state, bars)
+        for name, rows in mount_rows(workshop.train, system).items()
+    }
     return TrainDeflection(
         point,
         state.models,
@@ -320,6 +339,7 @@ def _told(
         shafts,
         tuple(notes),
         seconds,
+        mounts,
     )
 
 
@@ -338,14 +358,13 @@ def with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
     return replace(found, misalignment=tuple(told))
 
 
-def _six(end: str, state: OperatingState, bars: StaticBars) -> tuple[Measured, ...]:
-    """Motion of a lumped point."""
-    names = ("x", "y", "z", "thx", "thy", "thz")
-    units = ("m moved",) * 3 + ("rad moved",) * 3
-    rows = state.system.motion(end)
+def _six(
+    meaning: str, units: Sequence[str], rows: np.ndarray, state: OperatingState, bars: StaticBars
+) -> tuple[Measured, ...]:
+    """Motion of a place or load on one, six components."""
     return tuple(
-        Measured(name, unit, f"of {end}", float(row @ state.coordinates), bars.of(row))
-        for name, unit, row in zip(names, units, rows)
+        Measured(name, unit, meaning, float(row @ state.coordinates), bars.of(row))
+        for name, unit, row in zip(DOF_NAMES, units, rows)
     )
 
 

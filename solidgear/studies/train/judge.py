@@ -332,7 +332,7 @@ class _Judge:
         self.system = workshop.system(JUDGE)
         self.found, self.seen = seen_modes(workshop, self.system, highest)
         self.names = mode_names(workshop, self.system, self.found)
-        self.driven = driven(self.system, self.found)[1:]
+        self.driven = driven(self.system, self.found)[self.found.rigid :]
         drives = [Drive(workshop, JUDGE, mesh=pair.name) for pair in workshop.train.pairs]
         self.drives = [(drive, drive.grid(highest)) for drive in drives]
         solid, grid = (JUDGE,) * len(workshop.scenes), self.drives[0][1]
@@ -350,10 +350,10 @@ class _Judge:
     def _first_mode(self, *models: str):
         system = self.workshop.system(*models)
         other, seen = seen_modes(self.workshop, system, self.highest * BEYOND)
-        its_hz = other.frequency_hz[1:]
-        pair = partners(self.found.frequency_hz[1:], self.seen, its_hz, seen)
-        for k, hz in enumerate(self.found.frequency_hz[1:]):
-            name = self.names[k + 1]
+        its_hz, own_hz = (found.frequency_hz[found.rigid :] for found in (other, self.found))
+        pair = partners(own_hz, self.seen, its_hz, seen)
+        for k, hz in enumerate(own_hz):
+            name = self.names[self.found.rigid + k]
             if not self.driven[k]:  # moves no port: nothing could tell it from another
                 continue
             if k not in pair:

@@ -14,12 +14,15 @@ from solidgear.body import Body
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.ladder import build
+from solidgear.ladder.registry import LADDER
 from solidgear.reduction.craig_bampton import craig_bampton
 from solidgear.reduction.rubin import rubin
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.housing import astray, losses_of, mounts_of, part_of, standing_in
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
@@ -251,12 +254,13 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Data of the meshes that do not fit together but can be solved, in words."""
-        return tuple(
+        """Data of meshes and housing that do not fit together but can be solved, in words."""
+        told = (
             f"{name}: {text}" if len(self.contacts) > 1 else text
             for name, met in self.contacts.items()
             for text in met.cautions
         )
+        return (*told, *astray(self.train, self.scenes, self.places))
 
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
@@ -279,6 +283,11 @@ class Workshop:
         if kind == RIGID:
             part = RigidBody.of(under.body)
         else:
+            if side in self.train.housed:
+                raise SolidgearError(
+                    f"a {kind} shaft has its bearings condensed to ground, and those of the {side} "
+                    f"stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
+                )
             part = lumped(under, kind, self.scenes[side], [*self.train.shafts[side].gears])
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
@@ -297,7 +306,8 @@ class Workshop:
         -------
         System
             Parts ``engine``, the shafts, ``load`` and other rotors; links ``engine spring``, ``load
-            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings.
+            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings; with a
+            housing the part ``housing`` and links such as ``mount 1``.
         """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
@@ -306,6 +316,8 @@ class Workshop:
             parts[side] = self.placed(side, self.part(side, rung))
         parts |= rotors
         links: dict[str, Link] = {}
+        if train.housing is not None:
+            parts[HOUSING], links = part_of(train.housing), mounts_of(train.housing)
         for side in train.shafts:
             links |= self._ground(side, bearings)
             for name, rotor in train.rotors_of(side).items():
@@ -320,12 +332,12 @@ class Workshop:
         return System(parts, links)
 
     def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
-        """Links of a shaft to ground, and masses on its ports."""
+        """Links of a shaft to ground or to the housing, and masses on its ports."""
         scene = self.scenes[side]
         if not bearings:
             free = [b.with_changes(matrix=np.zeros((6, 6)), hold=None) for b in scene.bearings]
             scene = scene.with_changes(bearings=tuple(free), housing=None, housing_axial=None)
-        return grounded(side, scene)
+        return standing_in(self.train, side, grounded(side, scene))
 
     def part(self, side: str, rung: str) -> Part:
         """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
@@ -376,6 +388,8 @@ class Workshop:
         for side in train.shafts:
             out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
+        if train.housing is not None:
+            out |= losses_of(train.housing)
         return out | {pair.name: loss.mesh for pair in train.pairs}
 
     def seconds(self, *models: str) -> float:

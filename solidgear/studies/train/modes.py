@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.housing import loose_ways, seat_motion
 from solidgear.studies.train.local import local_lines, undriven, waves_of
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.strain import mounts_together
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -220,9 +223,9 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     omega, _ = system.elastic
     found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
     refuse_unresolved(workshop, system, limit)
-    names = mode_names(workshop, system, found)
+    names, moved = mode_names(workshop, system, found), driven(system, found)
+    found = replace(found, energy=mounts_together(found.energy))
     most = found.dominant()
-    moved = driven(system, found)
     elastic = len(found.frequency_hz) - found.rigid
     bars = mesh_bars(workshop, system, rungs, elastic)
     sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()
@@ -286,12 +289,16 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    if count == 1 and len(turning) == len(system.parts):
+    parts = [part for part in system.parts if part != HOUSING or HOUSING in turning]
+    if count == 1 and turning == parts:
         return ()
     if count == 1:
-        still = [part for part in system.parts if part not in turning]
+        still = [part for part in parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
     loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
+    if HOUSING in turning:
+        ways = " ".join(loose_ways(system))
+        loose.insert(0, f"no mount holds the housing in {ways}, and what stands in it moves along")
     where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
     return (f"{count} motions are free, where a train has one: {where}.",)
 
@@ -299,6 +306,7 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
 def _loose(workshop: Workshop, system: System, side: str) -> list[str]:
     """Directions in which the bearings do not hold a shaft, its rotation apart."""
     port = workshop.scenes[side].port.name
-    size = np.abs(system.motion(f"{side}.{port}") @ system.free).max(axis=1)
+    own = seat_motion(workshop.train, system, side, port)
+    size = np.abs(own @ system.free).max(axis=1)
     names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
     return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"] * bool(names)

@@ -3,7 +3,8 @@
 Kinetic energy is shared among the parts; what a shaft has goes to bending, axial motion and
 torsion as the energies its rigid mass would have in the motions of its lumped point.  A mode is
 called after the largest share, and counted: ``gear bending 2``.  Where no share has 40 % of the
-whole, after the two largest: ``pinion axial + gear bending 1``.
+whole, after the two largest: ``pinion axial + gear bending 1``.  All that a housing has goes to the
+way in which most of it moves: ``housing along z 1``.
 
 Modes with n >= 2 nodal diameters are called ``gear ovalising n=2``.  Their mean motion over any seat
 is zero, so that no averaged port drives or feels them; a harmonic solid has them where a local mesh
@@ -16,8 +17,10 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.frames import shift
+from solidgear.scene.train_housing import HOUSING
 from solidgear.solve.circumference import of_body
 from solidgear.solve.families import FAMILIES
+from solidgear.studies.train.housing import shares_of
 from solidgear.studies.train.local import waves_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.modes import SystemModes
@@ -40,6 +43,9 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         place = system.place(part)
         each = shapes[place] * momentum[place]
         own = np.maximum(each.sum(axis=0), 0.0)
+        if part == HOUSING:
+            out |= shares_of(system, own, shapes)
+            continue
         if part not in workshop.scenes:
             out[f"{part} torsion"] = own
             continue

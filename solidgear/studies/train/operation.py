@@ -26,6 +26,7 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
+from solidgear.studies.train.housing import under
 from solidgear.studies.train.layout import mesh_forces, rotor_torques
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.own_loads import refuse_own_loads, scene_load
@@ -84,7 +85,7 @@ class OperatingState:
         return self.system.motion(end) @ self.coordinates
 
     def forces(self) -> dict[str, np.ndarray]:
-        """Force (6,) of everything but weight on each port: teeth, springs, bearings, and loads from
+        """Force (6,) of everything but weight on each port of a shaft: teeth, springs, bearings, and loads from
         outside, N and N m, in the axes of its scene.
         """
         out = port_forces(self.system, self.coordinates)
@@ -144,7 +145,12 @@ class Operating:
     @cached_property
     def _seats(self) -> tuple[Seats, ...]:
         scenes = self.workshop.scenes.items()
-        return tuple(seats_of(side, scene, self.made) for side, scene in scenes)
+        train, out = self.workshop.train, []
+        for side, scene in scenes:
+            own = seats_of(side, scene, self.made)
+            below = (under(train, side, one.port) for one in own.bearings)
+            out.append(replace(own, stands_in=tuple(port for port in below if port is not None)))
+        return tuple(out)
 
     @cached_property
     def _flanks(self) -> dict[bool, OnBearings]:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from solidgear.judge.correlation import best_assignment
+from solidgear.scene.train_housing import HOUSING
+from solidgear.studies.train.housing import BOX
 from solidgear.studies.train.models import Workshop
 from solidgear.system.system import System
 
@@ -44,6 +46,7 @@ def seen_modes(
         side: np.array([1.0] * 3 + [workshop.scenes[side].length] * 3)[:, None]
         for side in workshop.scenes
     }
+    scale[HOUSING] = max(scale.values(), key=np.max)
     ends = ports_of(workshop) if ends is None else ends
     rows = [scale[end.partition(".")[0]] * (system.motion(end) @ elastic) for end in ends]
     rows += [
@@ -54,8 +57,10 @@ def seen_modes(
 
 
 def ports_of(workshop: Workshop) -> list[str]:
-    """Ports of all shafts, the lumped point of each before its others."""
-    return [f"{side}.{s.name}" for side in workshop.scenes for s in workshop.scenes[side].stations]
+    """Ports of all shafts, the lumped point of each before its others, and that of the housing."""
+    box = [BOX] if workshop.train.housing is not None else []
+    scenes = workshop.scenes.items()
+    return [f"{side}.{s.name}" for side, scene in scenes for s in scene.stations] + box
 
 
 def partners(

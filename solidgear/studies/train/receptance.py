@@ -14,8 +14,9 @@ import numpy as np
 
 from solidgear.errors import SolidgearError, show
 from solidgear.frames import DOF_NAMES
+from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.respond import FORCE_UNITS, MOTION_UNITS, Drive
+from solidgear.studies.train.respond import Drive
 from solidgear.studies.train.shaft import told_mix
 
 #: a motion this much smaller than what reciprocal motions of both ends allow is rounding

@@ -15,8 +15,9 @@ import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError, show
-from solidgear.frames import DOF_NAMES
 from solidgear.machine.threads import pinned
+from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
+from solidgear.studies.train.housing import columns_of, felt, seat_motion
 from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
@@ -28,8 +29,6 @@ from solidgear.system.system import System
 
 #: readings of the losses of a file: the three kinds, and the thesis's C = zeta K to the letter
 DAMPING = ("hysteretic", "viscous", "modal", "literal")
-FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
-MOTION_UNITS = ("m",) * 3 + ("rad",) * 3
 #: the first frequency of a response, over the first elastic one
 BEGIN = 0.25
 #: half-widths from a natural frequency, and share of it where losses are small, within which a top is
@@ -199,7 +198,8 @@ class Drive:
         out = {}
         for side in self.workshop.scenes:
             supports = as_supports(self.workshop.scenes[side])
-            seats = np.vstack([self.system.motion(f"{side}.{b}") for b in supports.ports])
+            here = self.workshop.train, self.system, side
+            seats = np.vstack([seat_motion(*here, name) for name in supports.ports])
             link = next(n for n in self.system.links if n.startswith(f"{side}."))
             force = -np.array(supports.stiffness) @ seats
             for k, name in enumerate(supports.ports):
@@ -216,7 +216,8 @@ class Drive:
 
     def columns(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
         """All that a response tells of the first order, by name and unit: the mesh that drives it,
-        reactions of every bearing, motions of all main lumped points, forces of other meshes.
+        reactions of every bearing, motions of all main lumped points, forces of other meshes, and what
+        the housing does.
         """
         reactions, scenes = self._reaction_rows(), self.workshop.scenes
         ports = {side: f"{side}.{scene.port.name}" for side, scene in scenes.items()}
@@ -228,17 +229,15 @@ class Drive:
         dte, force = self._teeth(frequency_hz, found[:, 0])
         out = {"dynamic transmission error [m]": dte, "mesh force [N]": force}
         for name, reaction in self._reactions(frequency_hz, reactions, found[:, 1:]).items():
-            for c, (dof, unit) in enumerate(zip(DOF_NAMES, FORCE_UNITS)):
-                out[f"{name} {dof} [{unit}]"] = reaction[:, c]
+            out |= six(name, FORCE_UNITS, reaction)
         moved = found[:, 1 + 6 * len(reactions) :]
         for k, side in enumerate(ports):
-            for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
-                out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
+            out |= six(side, MOTION_UNITS, moved[:, 6 * k : 6 * k + 6])
         for pair, stretch in zip(others, moved.T[6 * len(ports) :]):
             stiff = self.workshop.contacts[pair.name].stiffness
             factor = stiff * self.steady.factor(pair.name, frequency_hz)
             out[f"mesh force{pair.label} [N]"] = factor * stretch
-        return out
+        return out | columns_of(self, frequency_hz)
 
     def grid(
         self,
@@ -258,7 +257,7 @@ class Drive:
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
 
-        seen = seen or (lambda hz: np.column_stack(self.mesh(hz)))
+        seen = seen or (lambda hz: np.column_stack([*felt(self, hz), *self.mesh(hz)]))
         points = self.steady.grid(lowest, highest_hz, seen)
         tops = peaks(np.abs(seen(points)[:, -1]))
         if len(tops) > MOST_PEAKS:

@@ -18,6 +18,7 @@ import numpy as np
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.scene.coned import coned
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import OperatingState, settled
 from solidgear.studies.train.shaft import JUDGE
@@ -63,7 +64,8 @@ class StaticBars:
         if turns > 1e-9 * np.linalg.norm(row):
             return None
         adjoint = port_forces(self.tangent, self.tangent.static(row))
-        own = self._ports(_with_load(adjoint, self.tangent, row, [*self.workshop.scenes]))
+        parts = [*self.workshop.scenes, *[HOUSING] * (self.workshop.train.housing is not None)]
+        own = self._ports(_with_load(adjoint, self.tangent, row, parts))
         total = 0.0
         for side, bounds in self.bounds.items():
             f, g = self.rest[side], own[side]
@@ -76,13 +78,13 @@ class StaticBars:
 
 
 def _with_load(
-    forces: dict[str, np.ndarray], system: System, row: np.ndarray, shafts: list[str]
+    forces: dict[str, np.ndarray], system: System, row: np.ndarray, parts: list[str]
 ) -> dict[str, np.ndarray]:
     """Forces of links with the unit load that a row of coordinates stands for, on the ports that it
     is made of.
     """
     out = dict(forces)
-    ends = [f"{side}.{port}" for side in shafts for port in system.parts[side].ports]
+    ends = [f"{side}.{port}" for side in parts for port in system.parts[side].ports]
     rows = np.vstack([system.motion(end) for end in ends])
     loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
     for end, six in zip(ends, loads.reshape(-1, 6)):

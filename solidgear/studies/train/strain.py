@@ -22,7 +22,7 @@ def strain_shares(
     -------
     dict of str to (k,) ndarray
         ``engine spring``, ``pinion shaft``, ``pinion bearings`` (with their housing), ``mesh``,
-        ``gear bearings``, ``gear shaft``, ``load spring``; those that are never strained left out.
+        ``gear bearings``, ``gear shaft``, ``load spring``, ``mounts``; those that are never strained left out.
 
     Examples
     --------
@@ -32,6 +32,7 @@ def strain_shares(
     {'pinion shaft': 0.25, 'pinion bearings': 0.5, 'mesh': 0.25}
     """
     first, *others = shafts
+    energy = mounts_together(energy)
     order = ["engine spring", f"{first} shaft", f"{first} bearings"]
     order += [name for name in energy if name.startswith("mesh")]
     for side in others:
@@ -42,6 +43,13 @@ def strain_shares(
         place = _place(name, shafts)
         out[place] = out.get(place, 0.0) + share
     return {name: out[name] for name in [*order, *out] if name in out and out[name].any()}
+
+
+def mounts_together(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Strain energy of modes with that of all mounts of a housing under ``mounts``."""
+    out = {name: share for name, share in energy.items() if not name.startswith("mount ")}
+    mounts = [share for name, share in energy.items() if name.startswith("mount ")]
+    return out | ({"mounts": np.sum(mounts, axis=0)} if mounts else {})
 
 
 def _place(name: str, shafts: Sequence[str]) -> str:

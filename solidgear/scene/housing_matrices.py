@@ -1,0 +1,152 @@
+"""An elastic housing by mass and stiffness of its points, as other programs reduce it to them.
+
+Coordinates are the six motions of every point, point by point, in the axes of the train, and behind
+them those of modes, which move no point (Craig and Bampton 1968).  All of it is SI.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg as sla
+
+from solidgear.errors import SceneError
+from solidgear.frames import shift
+
+ARRAYS = ("mass", "stiffness", "points", "positions")
+MOST = 2000
+#: asymmetry, over the diagonal, that typed or printed numbers leave
+PRINTED = 1e-6
+#: frequency of a rigid motion, over the first elastic one, that rounding of such numbers leaves
+STILL = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class HousingMatrices:
+    """A free elastic body by the motions of its points and its modes.
+
+    Attributes
+    ----------
+    source : str
+        File that they are from.
+    mass, stiffness : (n, n) ndarray
+        Symmetric, the first positive definite, SI.
+    positions : dict of str to (3,) ndarray
+        Of its points in turn, m.
+    """
+
+    source: str
+    mass: np.ndarray
+    stiffness: np.ndarray
+    positions: dict[str, np.ndarray]
+
+    @cached_property
+    def _factor(self) -> np.ndarray:
+        try:
+            return np.linalg.cholesky(self.mass)
+        except np.linalg.LinAlgError:
+            raise self._wrong("its mass is not positive definite") from None
+
+    def _wrong(self, reason: str) -> SceneError:
+        return SceneError(reason, where=self.source)
+
+    def rigid(self, about: np.ndarray | None = None) -> np.ndarray:
+        """(n, 6) coordinates of rigid motions about a point, the origin by default."""
+        about = np.zeros(3) if about is None else about
+        moved = [shift(place - about) for place in self.positions.values()]
+        return np.pad(np.vstack(moved), ((0, len(self.mass) - 6 * len(moved)), (0, 0)))
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        """(3,) centre of mass, m."""
+        whole = self.rigid().T @ self.mass @ self.rigid()
+        return np.array([whole[1, 5], whole[2, 3], whole[0, 4]]) / whole[0, 0]
+
+    @cached_property
+    def rigid_mass(self) -> np.ndarray:
+        """(6, 6) about the centre of mass."""
+        return self.rigid(self.centre).T @ self.mass @ self.rigid(self.centre)
+
+    @cached_property
+    def mean(self) -> np.ndarray:
+        """(6, n) motion of the centre of mass, with the momentum of all of it."""
+        return np.linalg.solve(self.rigid_mass, self.rigid(self.centre).T @ self.mass)
+
+    @cached_property
+    def elastic(self) -> tuple[np.ndarray, np.ndarray]:
+        """Elastic frequencies (n - 6,) of the free body, rad/s, and strain rows (n - 6, n) that its
+        rigid motions do not strain at all.
+        """
+        lower = self._factor
+        whole = sla.solve_triangular(lower, self.stiffness, lower=True)
+        whole = sla.solve_triangular(lower, whole.T, lower=True)
+        basis = np.linalg.qr(lower.T @ self.rigid(self.centre), mode="complete")[0]
+        still, held = basis[:, :6], basis[:, 6:]
+        square, turn = np.linalg.eigh(held.T @ whole @ held)
+        least = np.sqrt(np.abs(np.linalg.eigvalsh(still.T @ whole @ still)).max())
+        if not len(square) or square[0] <= 0:
+            raise self._wrong(
+                "its stiffness leaves more than six motions free, or is negative in one; a rigid "
+                "housing is told by mass, inertia and centre"
+            )
+        omega = np.sqrt(square)
+        if least > STILL * omega[0]:
+            at = least / (2 * np.pi)
+            raise self._wrong(
+                f"its stiffness resists rigid motions like a mode at {at:.4g} Hz, and must not: "
+                "give that of the free body, in SI, with positions in the axes of the train"
+            )
+        return omega, (lower @ held @ turn * omega).T
+
+
+def read_matrices(path: str | os.PathLike) -> HousingMatrices:
+    """An elastic housing from a NumPy archive.
+
+    Parameters
+    ----------
+    path : str or path
+        An ``.npz`` with ``mass``, ``stiffness`` (n, n), ``points``, the names of p points, and
+        ``positions`` (p, 3).
+
+    Raises
+    ------
+    SceneError
+        For a file that cannot be read, and matrices that are none of a free body.
+    """
+    where = os.fspath(path)
+    try:
+        with np.load(where, allow_pickle=False) as store:
+            missing = [name for name in ARRAYS if name not in store]
+            if missing:
+                reason = f"has no array {missing[0]!r}; it holds {', '.join(ARRAYS)}"
+                raise SceneError(reason, where=where)
+            mass, stiffness, points, positions = (store[name] for name in ARRAYS)
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        said = getattr(error, "strerror", None) or "not an .npz file of NumPy"
+        raise SceneError(f"the matrices cannot be read: {said}", where=where) from None
+    names = [str(name) for name in points.ravel()]
+    n = len(mass) if mass.ndim == 2 else 0
+    shapes = mass.shape == stiffness.shape == (n, n) and positions.shape == (len(names), 3)
+    if not shapes or not 6 * max(len(names), 2) <= n <= MOST:
+        raise SceneError(
+            f"mass {mass.shape}, stiffness {stiffness.shape}, {len(names)} points and positions "
+            f"{positions.shape} do not fit: of p points, two or more, they are (n, n), (n, n) and "
+            f"(p, 3), n from 6 p to {MOST}",
+            where=where,
+        )
+    if len({*names}) < len(names):
+        raise SceneError("a point is named twice; each has a name of its own", where=where)
+    for name, one in (("mass", mass), ("stiffness", stiffness), ("positions", positions)):
+        if one.dtype.kind not in "fiu" or not np.isfinite(one).all():
+            raise SceneError(f"{name} must be real and finite numbers, SI", where=where)
+    for name, one in (("mass", mass), ("stiffness", stiffness)):
+        size = np.sqrt(np.abs(np.diag(one)))
+        if (np.abs(one - one.T) > PRINTED * np.outer(size, size)).any():
+            raise SceneError(f"{name} is not symmetric", where=where)
+    mass, stiffness = ((one + one.T) / 2 for one in (mass.astype(float), stiffness.astype(float)))
+    found = HousingMatrices(where, mass, stiffness, dict(zip(names, positions.astype(float))))
+    found.elastic  # noqa: B018  refuses what is no free body
+    return found

@@ -1,0 +1,240 @@
+"""A housing under the bearings of a train, with mass and mounts: data only.
+
+All of it is told in the axes of the train, which are those of the first shaft's scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, Field, InstanceOf, model_validator
+
+from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.housing_matrices import HousingMatrices
+from solidgear.scene.mesh_cycle import Vector
+from solidgear.scene.stations import Status
+from solidgear.scene.typed import Model
+from solidgear.scene.units import Loss, Mass, quantity
+
+if TYPE_CHECKING:
+    from solidgear.scene.train import Train
+
+#: what the housing is called among the parts of a train, and its centre of mass among its points
+HOUSING, CENTRE = "housing", "centre"
+#: moments of inertia that are typed with four digits may break the triangle inequality by this
+TYPED = 1e-3
+
+
+def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
+    """Three moments of inertia about the axes of the train, or the rows of a tensor, kg m^2."""
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    how = "three moments of inertia about x, y and z, or three rows of three"
+    if not isinstance(rows, (list, tuple)) or len(rows) != 3:
+        raise SceneError(f"must be {how}")
+    if not any(isinstance(row, (list, tuple)) for row in rows):
+        rows = [[one if j == k else 0.0 for j in range(3)] for k, one in enumerate(rows)]
+    if any(not isinstance(row, (list, tuple)) or len(row) != 3 for row in rows):
+        raise SceneError(f"must be {how}")
+    tensor = np.array([[quantity(entry, "inertia") for entry in row] for row in rows])
+    if np.abs(tensor - tensor.T).max() > 1e-9 * np.abs(tensor).max():
+        raise SceneError("is not symmetric; products of inertia stand on both sides alike")
+    least, middle, most = np.linalg.eigvalsh(tensor)
+    if least <= 0:
+        raise SceneError(
+            f"has a principal moment of {least:.4g} kg m^2; all three must be greater than zero"
+        )
+    if most > (1 + TYPED) * (least + middle):
+        raise SceneError(
+            f"has principal moments of {least:.4g}, {middle:.4g} and {most:.4g} kg m^2, and no body "
+            "has one that is larger than the other two together"
+        )
+    return tuple(tuple(row) for row in tensor.tolist())
+
+
+class Mount(Model):
+    """A spring between the housing and ground.
+
+    Attributes
+    ----------
+    name : str
+        By default its number, counted from one.
+    position : tuple of float or None
+        Of a rigid housing, m.
+    at : str or None
+        A point of the housing instead.
+    stiffness : tuple of tuple of float
+        6x6 about its place, SI; the constructor also takes named entries.
+    loss : float
+        Loss factor, twice a damping ratio.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    name: str = ""
+    position: Vector | None = None
+    at: str | None = None
+    stiffness: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    loss: Loss = 0.1
+    status: Status = "assumed"
+
+    @model_validator(mode="after")
+    def _holds(self):
+        if (self.at is None) == (self.position is None):
+            how = "say where it stands: position, or at = a point of the housing, one of the two"
+            raise SceneError(how, path=("position",))
+        if not np.any(self.stiffness):
+            how = "holds nothing; write entries such as {kxx = ..., kyy = ..., kzz = ...}"
+            raise SceneError(how, path=("stiffness",))
+        return self
+
+
+class TrainHousing(Model):
+    """A body that carries the bearings of shafts, on mounts to ground: rigid, or of matrices.
+
+    Attributes
+    ----------
+    matrices : HousingMatrices or None
+        Of an elastic one: mass, inertia and centre are then theirs.
+    mass : float
+        kg.
+    inertia : tuple of tuple of float
+        3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal.
+    centre : tuple of float
+        Its centre of mass, m.
+    loss : float
+        Loss factor of an elastic one.
+    carries : tuple of str
+        Shafts whose bearings stand in it; all by default.
+    mounts : tuple of Mount
+        ``mount`` in a file.
+    points : dict of str to tuple of float
+        Places of a rigid one whose motion is told, by name, m.
+    status : {'published', 'identified', 'assumed', 'measured'}
+        Of mass and inertia.
+
+    Examples
+    --------
+    >>> mount = Mount(position=("0 mm", "0 mm", "-150 mm"), stiffness={"kzz": "2e7 N/m"})
+    >>> box = TrainHousing(mass="85 kg", inertia=(3.1, 2.2, 2.9), centre=(0, 0.1, 0), mount=(mount,))
+    >>> list(box.mounted), box.mass_matrix.diagonal()
+    (['1'], array([85. , 85. , 85. ,  3.1,  2.2,  2.9]))
+    """
+
+    matrices: InstanceOf[HousingMatrices] | None = Field(None, exclude=True, repr=False)
+    mass: Mass
+    inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
+    centre: Vector
+    loss: Loss = 0.01
+    carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    mounts: tuple[Mount, ...] = Field((), alias="mount")
+    points: dict[str, Vector] = {}
+    status: Status = "assumed"
+
+    def __init__(self, /, **data: Any):
+        if isinstance(found := data.get("matrices"), HousingMatrices):
+            whole = found.rigid_mass
+            own = {"mass": float(whole[0, 0]), "inertia": whole[3:, 3:].tolist()}
+            data |= own | {"centre": tuple(found.centre.tolist()), "points": {}}
+        super().__init__(**data)
+
+    @model_validator(mode="after")
+    def _named_once(self):
+        places, taken = [*self.known], [CENTRE]
+        for k, mount in enumerate(self.mounts):
+            if mount.at is not None and mount.at not in places:
+                reason = f"names no point of the housing{nearest(mount.at, places)}; known here: "
+                raise SceneError(reason + listed(places), path=("mount", k, "at"))
+            if mount.at is None and self.matrices is not None:
+                reason = f"stands at a point of the matrices: write at, one of {listed(places)}"
+                raise SceneError(reason, path=("mount", k, "position"))
+        named = [(("mount", k, "name"), name) for k, name in enumerate(self.mounted)]
+        for path, name in [*named, *((("points", name), name) for name in self.points)]:
+            if name in taken or "." in name or not name.strip():
+                reason = (
+                    f"{name!r} cannot name it: mounts and points have names of their own, without "
+                    f"dots, and {CENTRE!r} is the centre of mass"
+                )
+                raise SceneError(reason, path=path)
+            taken.append(name)
+        return self
+
+    @property
+    def known(self) -> Mapping[str, tuple[float, ...]]:
+        """Points by their names, m, the centre of mass apart."""
+        if self.matrices is None:
+            return self.points
+        return {name: tuple(at.tolist()) for name, at in self.matrices.positions.items()}
+
+    @property
+    def mounted(self) -> dict[str, Mount]:
+        """Mounts by their names."""
+        return {mount.name or str(k): mount for k, mount in enumerate(self.mounts, start=1)}
+
+    @property
+    def feet(self) -> dict[str, str]:
+        """Points that mounts stand at, by the names of the mounts."""
+        return {name: mount.at or name for name, mount in self.mounted.items()}
+
+    def foot(self, name: str) -> tuple[float, ...]:
+        """Place of a mount, m."""
+        mount = self.mounted[name]
+        return tuple(mount.position or map(float, self.known[mount.at or ""]))
+
+    @property
+    def told(self) -> list[str]:
+        """Points whose motion is told: all that are named and carry neither bearing nor mount."""
+        return [CENTRE, *(n for n in self.known if "." not in n and n not in self.feet.values())]
+
+    @property
+    def mass_matrix(self) -> np.ndarray:
+        """(6, 6) about the centre of mass."""
+        out = self.mass * np.eye(6)
+        out[3:, 3:] = self.inertia
+        return out
+
+    @property
+    def places(self) -> dict[str, np.ndarray]:
+        """(3,) all points of a rigid one from its centre of mass, m."""
+        own = {name: one.position for name, one in self.mounted.items() if one.at is None}
+        at = {CENTRE: self.centre, **own, **self.points}
+        return {name: np.subtract(place, self.centre) for name, place in at.items()}
+
+
+def housing_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of the housing of a train: shafts that are not there or stand in another, and names.
+
+    Yields
+    ------
+    SceneError
+    """
+    if train.housing is None:
+        return
+    for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):
+        if HOUSING in names:
+            reason = f"a {kind} beside a housing cannot be called {HOUSING!r}; give it another name"
+            yield SceneError(reason, path=(kind, HOUSING))
+    for k, side in enumerate(train.housing.carries or ()):
+        if side not in train.shafts:
+            known = [*train.shafts]
+            reason = f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
+            yield SceneError(reason, path=(HOUSING, "carries", k))
+    for side in train.housed:
+        scene = train.shafts[side].scene
+        if (own := train.housing.matrices) is not None:
+            for name in (f"{side}.{b.name}" for b in scene.bearings):
+                if name not in own.positions:
+                    known = [*own.positions]
+                    reason = (
+                        f"has no point {name!r}{nearest(name, known)}, where that bearing stands"
+                    )
+                    yield SceneError(
+                        f"{reason}; there are {listed(known)}", path=(HOUSING, "matrices")
+                    )
+        if scene.housing is not None or scene.housing_axial is not None:
+            reason = (
+                f"has a [housing] of its own, and that of the train carries the bearings of the {side}; "
+                "leave one out, or the shaft out of carries"
+            )
+            yield SceneError(reason, path=(*train.shaft_path(side), "scene"))
