@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.body import Body, as_supports
+from solidgear.judge.body_bars import stepped_bars
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
+from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
