@@ -62,6 +62,17 @@ def shift(offset: ArrayLike) -> np.ndarray:
     return out
 
 
+def on_axis(place: float | Sequence[float]) -> np.ndarray:
+    """A point (3,), or that of the axis at some y, m.
+
+    Examples
+    --------
+    >>> on_axis(0.2), on_axis([0.1, 0.2, 0.3])
+    (array([0. , 0.2, 0. ]), array([0.1, 0.2, 0.3]))
+    """
+    return np.array([0.0, place, 0.0] if np.ndim(place) == 0 else place, float)
+
+
 def rotation(axis: int, angle: float) -> np.ndarray:
     """Rotation of motions and loads about a coordinate axis.
 

@@ -16,11 +16,12 @@ from solidgear.cli.app import app
 from solidgear.judge.bounded import mode_bars
 from solidgear.scene.paths import changed, keys_of
 from solidgear.scene.toml_file import parse
+from solidgear.scene.uncertain import stated
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, Seen, align
 from solidgear.studies.measured.common import Common
-from solidgear.studies.measured.computed import computed_up_to
+from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
 from solidgear.studies.measured.fit import Fit
@@ -104,14 +105,32 @@ def test_pairs_that_are_told_as_sure_are_right(slip):
 
 
 def test_two_modes_are_under_one_peak_where_it_is_as_wide_as_they_are_apart():
-    def shares(gap):
+    def shares(gap, wide=2e-3):
         rest = (0.7, 1.0, 1.3, 1.6, 1.9)
-        modes = [Peak(x, 1e-4, 1) for x in (0.0, 0.3, 0.3 + gap, *rest)]
+        modes = [Peak(x, 1e-4, 1, "", wide) for x in (0.0, 0.3, 0.3 + gap, *rest)]
         return align([Peak(x, 1e-4) for x in (0.0, 0.3, *rest)], modes).pairs[1, 1:3]
 
     assert shares(3e-4).min() > 0.7
     # the second one was missed
     assert shares(6e-3) == pytest.approx([1.0, 0.0], abs=0.1)
+    # but not at a damping ratio of 1 %
+    assert shares(6e-3, 2e-2).min() > 0.2
+
+
+def test_modes_scatter_as_far_as_the_scene_says_of_its_bearings():
+    scene = sg.load("geometry/shaft_stepped.toml")
+    body = sg.build(scene, "timoshenko")
+    modes = tuple(m for m in sg.modes(body, scene, n=4).modes if m.frequency_hz > 0)
+
+    def widths(said):
+        told = stated(scene, {f"bearing.{b.name}.stiffness": said for b in scene.bearings if said})
+        return Computed(told, body, modes, (0.0,) * len(modes), 0.0, "", {}, 0.0).widths(0.2)
+
+    usual = widths("")
+    assert usual.max() > 1e-3
+    assert widths("± 20 %") == pytest.approx(usual, rel=0.02)  # 1.2 and 0.8 as logarithms
+    # equally likely anywhere from half to twice
+    assert widths("0.5 : 2") == pytest.approx(usual * math.log(4) / 12**0.5 / 0.2)
 
 
 def test_two_modes_that_changed_places_are_told_apart_by_multiplicity():

@@ -44,11 +44,15 @@ class Port:
         Axial position of the reference point, m.
     attachment : str
         How the point is tied to the material: ``average``, ``rigid``, ``section`` or ``node``.
+    x, z : float
+        Its place beside the axis, m.
     """
 
     name: str
     y: float
     attachment: str
+    x: float = 0.0
+    z: float = 0.0
 
 
 def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarray:
@@ -345,7 +349,7 @@ class Body(Displayed):
     @cached_property
     def rigid_ports(self) -> np.ndarray:
         """(6 * n_ports, 6) motions of all ports under unit rigid motions about the origin."""
-        return np.vstack([shift((0.0, p.y, 0.0)) for p in self.ports])
+        return np.vstack([shift((p.x, p.y, p.z)) for p in self.ports])
 
     def rows(self, block: Block) -> np.ndarray:
         """Places of a block's port rows among the ``6 * n_ports`` port components.

@@ -21,7 +21,7 @@ from solidgear.report.table import Column, Table
 from solidgear.report.terminal import matrix_table
 from solidgear.report.units import units_named
 from solidgear.report.words import plus_minus
-from solidgear.scene import Scene
+from solidgear.scene import Port, Scene
 from solidgear.scene.rules import no_such_point
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.statics import condense
@@ -128,9 +128,16 @@ def _plain_coupled(found: Coupled) -> dict[str, Any]:
     }
 
 
+def _at(port: Port) -> str:
+    """Place of a lumped point, mm."""
+    if port.patch is None:
+        return f"y = {1e3 * port.y:.3f}"
+    return "({})".format(", ".join(f"{1e3 * v:.3f}" for v in port.patch.point))
+
+
 def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
     say(
-        f"{head}, port {found.port!r} at y = {1e3 * scene.port.y:.3f} mm ({found.attachment})",
+        f"{head}, port {found.port!r} at {_at(scene.port)} mm ({found.attachment})",
         matrix_table(found.stiffness, "stiffness", units),
         matrix_table(found.compliance, "compliance", units),
         soft_wrap=False,
@@ -171,9 +178,9 @@ def _bars(settled: Settled, found: Coupled) -> Table:
 
 
 def _tell_coupled(head: str, scene: Scene, found: Coupled, units: str) -> None:
-    places = {port.name: 1e3 * port.y for port in scene.ports}
+    places = {port.name: _at(port) for port in scene.ports}
     at = ", ".join(
-        f"{name!r} at y = {places[name]:.3f} mm ({kind})"
+        f"{name!r} at {places[name]} mm ({kind})"
         for name, kind in zip(found.ports, found.attachments)
     )
     say(f"{head}, ports {at}", soft_wrap=False)

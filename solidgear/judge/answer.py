@@ -139,7 +139,7 @@ def answer(
     (True, 'harmonic', True)
     """
     if without_axis(scene):
-        raise SolidgearError(f"answer: {scene.name} has no axis, and modes alone; ask for modes")
+        raise SolidgearError(f"answer: {scene.name} has no axis: run solidgear stiffness or modes")
     start = time.perf_counter()
     tol = usable(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)

@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
-from solidgear.bounds.safety import REFINEMENT
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.answer import climbed, usable
+from solidgear.judge.body_bars import MODEL, static_bars, stepped_bars
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import at_points, between, in_order
@@ -35,7 +35,6 @@ from solidgear.judge.steps import Step
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
-from solidgear.meshing.corners import SHOULDER, is_notched
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
 from solidgear.scene.shaft import without_axis
 from solidgear.solve.modes import ModeSet, modes
@@ -175,11 +174,12 @@ def settle(
     if ask not in QUESTIONS:
         raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
     if without_axis(scene):
-        if ask == "stiffness":
+        if ask != "modes" and scene.port.patch is None:
             raise SolidgearError(
-                f"{scene.name}: a body without an axis has no seat to be stiff at; ask for modes"
+                f"{scene.name} names no lumped point to be stiff at: give it a [[port]] with a patch, "
+                "or ask for modes"
             )
-        return _settled_body(scene, tol, progress)
+        return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
         both = {scene.port.name, *points}
@@ -223,21 +223,16 @@ def bars_of_modes(
     return bars | {name: settled.bars[name] for name in asked}
 
 
-#: the only model that holds a body without an axis
-MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
 NESTED = (1.0, 2.0, 4.0)
-#: share of the step from a mesh with half the cells along an edge that is taken for what is left:
-#: errors of smooth modes fall to a sixteenth, which leaves a fifteenth of it; this is what errors
-#: that fall to an eighth leave, twice as much
-LEFT = 1 / 7
-#: the exponent of that, where a mesh file has no concave edge
-CONVEX = 1.5
 
 
-def _settled_body(scene: Scene, tol: float, progress: Progress) -> Settled:
-    """A body without an axis on the first of its meshes whose bars of the lowest modes are within a
-    tolerance: of a block on nested ones, else on the last one of its files.
+def _settled_body(
+    scene: Scene, tol: float, ask: str, points: tuple[str, ...], progress: Progress
+) -> Settled:
+    """A body without an axis on the first of its meshes whose bars of the lowest modes, and of what
+    is static at some points, are within a tolerance: of a block on nested ones, else on the last one
+    of its files.
     """
     steps: list[Step] = []
     assert scene.body is not None  # that is without an axis
@@ -247,8 +242,10 @@ def _settled_body(scene: Scene, tol: float, progress: Progress) -> Settled:
         options = {**LADDER[MODEL].given(scene, {}), **mesh}
         progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
         body = build(scene, MODEL, **options)
-        found = modes(body, scene, scene.ask.modes)
-        bars = {Quantity(name): bar for name, bar in stepped_bars(scene, body, found).items()}
+        bars = static_bars(scene, body, points) if ask != "modes" else {}
+        if ask != "stiffness":
+            found = modes(body, scene, scene.ask.modes)
+            bars |= {Quantity(name): bar for name, bar in stepped_bars(scene, body, found).items()}
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
@@ -267,43 +264,6 @@ def _settled_body(scene: Scene, tol: float, progress: Progress) -> Settled:
     return Settled(
         scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
     )
-
-
-def stepped_bars(scene: Scene, body: Body, found: ModeSet) -> dict[str, float]:
-    """Relative bars of the frequencies of a body without an axis, from those of the next coarser mesh
-    at the same places of the list; empty where there is none.
-
-    Of a block that mesh has half as many cells along every edge: the finer one holds all motions of
-    the coarser, and both integrate exactly, so that frequencies come from above on both. Mesh files
-    are of any shape: what a step leaves rests on the size of their cells and on how sharp edges are,
-    with the safety of other meshes in a sequence.
-    """
-    elastic = [mode for mode in found.modes if mode.frequency_hz > 0]
-    before = _before(scene, body)
-    if before is None:
-        return {}
-    coarse = modes(before, scene, len(elastic))
-    above = [mode.frequency_hz for mode in coarse.modes if mode.frequency_hz > 0]
-    if "coarser" in body.mesh:
-        sizes = (before.mesh["representative_size"], body.mesh["representative_size"])
-        exponent = SHOULDER if is_notched(body.geometry.mesh) else CONVEX  # type: ignore[union-attr]
-        factor = REFINEMENT.steps[0] / ((sizes[0] / sizes[1]) ** (2 * exponent) - 1)
-        changes = [abs(hertz / mode.frequency_hz - 1) for mode, hertz in zip(elastic, above)]
-    else:
-        factor = LEFT
-        changes = [max(hertz / mode.frequency_hz - 1, 0) for mode, hertz in zip(elastic, above)]
-    return {str(mode.name): factor * change + mode.error for mode, change in zip(elastic, changes)}
-
-
-def _before(scene: Scene, body: Body) -> Body | None:
-    """The body on the next coarser mesh; None where that of a file is the coarsest."""
-    assert scene.body is not None  # that is without an axis
-    given = {"element": body.mesh["element"]}
-    if "coarser" not in body.mesh:
-        return build(scene, MODEL, **given, refinement=body.mesh["refinement"] / 2)
-    if body.mesh["coarser"] == len(scene.body.coarser):
-        return None
-    return build(scene, MODEL, **given, coarser=body.mesh["coarser"] + 1)
 
 
 class Whole(Climb):

@@ -10,16 +10,19 @@ import scipy.sparse as sp
 from solidgear.body import Block
 from solidgear.body.sections import from_points, through
 from solidgear.errors import SolidgearError
+from solidgear.frames import on_axis, shift
 
 
-def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> Block:
+def tie_rigidly(
+    block: Block, ties: Sequence[tuple[int, float | Sequence[float], np.ndarray]]
+) -> Block:
     """Let surfaces of a block move as rigid bodies.
 
     Parameters
     ----------
-    ties : list of (port index, y, mask)
-        Port whose motion the surface takes, its position (m), and the (n,) mask of unknowns on the
-        surface.
+    ties : list of (port index, place, mask)
+        Port whose motion the surface takes, its y on the axis or its point (m), and the (n,) mask of
+        unknowns on the surface.
 
     Returns
     -------
@@ -50,8 +53,8 @@ def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> 
     rigid, y = [block.rigid[free]], [block.y[free]]
     ports = block.ports.tolil()[:, free]
     extra = sp.lil_matrix((ports.shape[0], c * len(ties)))
-    for k, (index, y0, mask) in enumerate(ties):
-        local = _about(block, y0)
+    for k, (index, place, mask) in enumerate(ties):
+        local = _about(block, place)
         at = np.flatnonzero(mask)
         columns.append(sp.csr_matrix(_rows(local, at, n)))
         # Motion of the port under rigid motions of the body about the origin.
@@ -81,14 +84,10 @@ def tie_rigidly(block: Block, ties: Sequence[tuple[int, float, np.ndarray]]) -> 
     )
 
 
-def _about(block: Block, y0: float) -> np.ndarray:
-    """Rigid motions about the point at y0 on the axis."""
-    out = block.rigid.copy()
-    place = {c: k for k, c in enumerate(block.components)}
-    for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
-        if tilt in place and translation in place:
-            out[:, place[tilt]] -= sign * y0 * block.rigid[:, place[translation]]
-    return out
+def _about(block: Block, place: float | Sequence[float]) -> np.ndarray:
+    """Rigid motions about a point, or one on the axis."""
+    own = list(block.components)
+    return block.rigid @ shift(-on_axis(place))[np.ix_(own, own)]
 
 
 def _rows(values, at, n):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,8 @@ class FileMesh:
         Groups of the file that tell materials, where there are several.
     remarks : tuple of str
         What is odd about the file.
+    patches : dict of str to (n,) ndarray
+        Facets of the mesh in named groups of surfaces.
     """
 
     mesh: Mesh
@@ -60,6 +62,7 @@ class FileMesh:
     rest: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    patches: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Its surface and what lies between groups: (3, n) points, (3, t) triangles, into which
@@ -119,9 +122,27 @@ def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMes
         rest,
         material_groups(deck),
         deck.remarks,
+        _patches(mesh, deck),
     )
     _no_holes(found)
     return replace(found, remarks=(*found.remarks, *_pitted(found, deck)))
+
+
+def _patches(mesh: Mesh, deck: Deck) -> dict[str, np.ndarray]:
+    """Facets of named groups of surfaces, of those that lie on the surface of the mesh."""
+    used = np.unique(deck.cells[: len(mesh.t)])
+    outside = mesh.boundary_facets()
+    known = {
+        tuple(corners): facet
+        for corners, facet in zip(np.sort(mesh.facets[:, outside], 0).T, outside)
+    }
+    out = {}
+    for name, corners in deck.patches.items():
+        places = np.sort(np.searchsorted(used, corners), axis=0).T
+        found = [known[tuple(one)] for one in places if tuple(one) in known]
+        if found:
+            out[name] = np.unique(found)
+    return out
 
 
 def _sound(deck: Deck, points, corners: int) -> None:

@@ -20,6 +20,7 @@ from solidgear.meshing.section_materials import Share, shared_out
 from solidgear.scene.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Frustum, Outline
+from solidgear.scene.patches import block_patches
 from solidgear.scene.recognised import Recognised
 
 #: least share of the surface that is round about the axis, for a part to be a shaft
@@ -88,6 +89,12 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         remarks=found_in.remarks,
         edges=None if shaft else tuple(float(v) for v in np.ptp(points, axis=1)),
         coarser=coarser,
+        patches=()
+        if shaft
+        else tuple(
+            p.with_changes(point=(p.point[0], p.point[1] - start, p.point[2]))
+            for p in found_in.patches
+        ),
         **found_in.own_mesh,
     )
     cylinders = tuple(
@@ -136,6 +143,7 @@ def _block(edges: list[float]) -> Recognised:
         round_share=0.0,
         round_volume=volume_of(Outline((wall,))) / (x * y * z),
         edges=(x, y, z),
+        patches=block_patches((x, y, z)),
     )
     return Recognised(body, (wall,), 0.0, (), lambda radius, lo, hi: 0.0)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +17,7 @@ from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.step import look
 from solidgear.scene.body_file import BodyTable, CoarseMesh, PartGroup
+from solidgear.scene.patches import Patch
 
 #: seconds after which a file is given up
 LOOK_SECONDS = 25.0
@@ -51,6 +53,7 @@ class Found(NamedTuple):
     told: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     own_mesh: dict[str, Any] = {}
+    patches: tuple[Patch, ...] = ()
 
 
 @lru_cache(maxsize=8)
@@ -79,8 +82,20 @@ def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> Found:
     groups = _groups(table, found.volumes(len(named) + 1), found.rest)
     own_mesh = {"element": found.element, "counts": counts}
     points, triangles, sides = found.faces()
-    more = (found.told, found.remarks, own_mesh)
+    more = (found.told, found.remarks, own_mesh, tuple(_patches(found)))
     return Found(points, triangles, sides, found.volume, groups, *more)
+
+
+def _patches(found: FileMesh) -> Iterator[Patch]:
+    """Named faces of a mesh: their middles by area, and their sizes."""
+    for name, facets in found.patches.items():
+        corners = found.mesh.p[:, found.mesh.facets[:, facets]]  # (3, corner, facet)
+        weight = np.linalg.norm(
+            np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0), axis=0
+        )
+        x, y, z = (float(v) for v in corners.mean(axis=1) @ weight / weight.sum())
+        extent = float(np.linalg.norm(np.ptp(corners.reshape(3, -1), axis=1)))
+        yield Patch(name=name, point=(x, y, z), extent=extent)
 
 
 def _groups(table: BodyTable, volumes, rest: tuple[str, ...]) -> tuple[PartGroup, ...]:

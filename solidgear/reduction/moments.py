@@ -26,7 +26,7 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
-from solidgear.body import Block, Body, Port
+from solidgear.body import Block, Body
 from solidgear.body.cache import Cache
 from solidgear.body.mass import ScalarMass
 from solidgear.machine.threads import pinned
@@ -339,11 +339,10 @@ def _frame(body: Body) -> Body:
             block.mirror,
         )
 
-    ports = tuple(Port(p.name, p.y, p.attachment) for p in body.ports)
     return Body(
         body.fidelity,
         tuple(map(bare, body.blocks)),
-        ports,
+        body.ports,
         body.scale,
         body.length,
         dict(body.mesh),

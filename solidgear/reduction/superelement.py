@@ -259,7 +259,7 @@ def assemble(
     motions = np.concatenate([b.motions for b in blocks], axis=2)
     ports = {}
     for place, (name, index) in enumerate(chosen.items()):
-        point = np.array([0.0, body.ports[index].y, 0.0])
+        point = np.array([body.ports[index].x, body.ports[index].y, body.ports[index].z])
         ports[name] = PortMotion(motions[:, place, :], point, np.eye(3))
     return Superelement(kind, body.fidelity, blocks, ports)
 

@@ -138,3 +138,21 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
             f"is {eigenvalue[0]:.3g}; it must not be negative"
         )
     return tuple(tuple(row) for row in K.tolist())
+
+
+def one_stiffness(table: Mapping[str, Any]) -> None:
+    """Refuse a bearing in a file that is described twice."""
+    given = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
+    if len(given) > 1:
+        raise SceneError(f"give either {given[0]} or {given[-1]}, not both", path=(given[0],))
+    if "hold" in table and table.get("axial_series"):
+        raise SceneError(
+            "a spring in series needs a stiffness beside it; leave one of hold and axial_series "
+            "out",
+            path=("axial_series",),
+        )
+
+
+def matrix_or_none(value: Any) -> Any:
+    """A checked stiffness, if there is one."""
+    return None if value is None else checked_matrix(value)

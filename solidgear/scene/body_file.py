@@ -6,14 +6,16 @@ the file was read.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, listed
 from solidgear.scene.materials import by_name
 from solidgear.scene.parts import Material
+from solidgear.scene.patches import Patch, Triple, refuse_elsewhere
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Mass, PositiveLength, quantity
 
@@ -106,26 +108,15 @@ class BodyTable(Model):
         return [self.step] if self.step is not None else self.mesh or []
 
 
-#: what would hold a body without an axis or be held by it, and what is told by beams
-_ATTACHED = ("bearing", "port", "mass", "housing", "load", "lubrication", "uncertain")
-
-
 def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a file; of a body without an axis, which is free, with the port that every scene
-    has, on the face at y = 0.
+    """The tables of a file; of a body without an axis that names no lumped point, with the port that
+    every scene has, on the face at y = 0: nothing is lumped into it.
     """
     body = raw.get("body")
     if not isinstance(body, Mapping) or ("block" not in body and body.get("axis") != NONE):
         return raw
-    given = [key for key in _ATTACHED if key in raw]
-    if given:
-        what = "block" if "block" in body else 'body with axis = "none"'
-        why = f"a {what} is free, and has modes alone; leave this out"
-        raise SceneError.of(SceneError(why, path=(key,)) for key in given)
-    return {**raw, "port": {"at": "start", "attach_to": "s1", "attachment": "section"}}
-
-
-Triple = tuple[float, float, float]
+    refuse_elsewhere(raw, "block" if "block" in body else 'body with axis = "none"')
+    return {"port": {"at": "start", "attach_to": "s1", "attachment": "section"}, **raw}
 
 
 class PartGroup(Model):
@@ -207,6 +198,8 @@ class BodyFile(Model):
         Along x, y and z, m, of a block, or around a body without an axis.
     coarser : tuple of CoarseMesh
         Meshes of the same part, coarse to fine, of which it is the finest.
+    patches : tuple of Patch
+        Named faces of a body without an axis.
 
     Raises
     ------
@@ -241,6 +234,7 @@ class BodyFile(Model):
     remarks: tuple[str, ...] = ()
     edges: Triple | None = None
     coarser: tuple[CoarseMesh, ...] = ()
+    patches: tuple[Patch, ...] = ()
 
     @property
     def sort(self) -> str:
@@ -292,6 +286,11 @@ class BodyFile(Model):
             for g in self.groups
         )
         return self.with_changes(groups=groups)
+
+    def placed(self, point: Sequence[float]) -> Triple:
+        """A point (m) in the axes of its file, in those of the scene."""
+        x, y, z = np.array(self.turn) @ (np.array(point) - self.foot)
+        return float(x), float(y), float(z)
 
     @property
     def one_mesh(self) -> bool:

@@ -39,7 +39,8 @@ def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[S
 
 
 def _snapped(station: Station, marks: Sequence[float]) -> Station:
-    if getattr(station, "seat_width", 0.0) is None:  # a mass on another's seat
+    # a mass on another's seat, or faces of a body without an axis
+    if getattr(station, "seat_width", 0.0) is None or getattr(station, "patch", None):
         return station
     hair = min(
         max(HAIR, HAIR_OF_LENGTH * (marks[-1] - marks[0])), SHARE * (station.hi - station.lo)

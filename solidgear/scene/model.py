@@ -27,6 +27,7 @@ from solidgear.scene.housing import Housing
 from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import STEEL, Material, Segment
+from solidgear.scene.patches import off_patches
 from solidgear.scene.plain_data import plain_data
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.rules import ONE_HOUSING, no_such_point, question_problems, shaft_problems
@@ -203,7 +204,7 @@ class Scene(Displayed, Model):
         """The same scene as its segments alone: a body of revolution."""
         if not self.features and self.body is None:
             return self
-        return self.with_changes(features=(), body=None)
+        return self.with_changes(features=(), body=None, **off_patches(self))
 
     @cached_property
     def outline(self) -> Outline[Segment]:

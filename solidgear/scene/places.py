@@ -7,13 +7,14 @@ and has one as far as the shaft that its words refer to is known.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, TypeVar
 
 from pydantic import AfterValidator, Field
 from pydantic.fields import FieldInfo
 
 from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.patches import Patch
 from solidgear.scene.recognised import Recognised, Seat
 from solidgear.scene.typed import Gathered, Model, by_key, not_meant, unknown_keys
 from solidgear.scene.units import Length
@@ -109,6 +110,25 @@ class Places:
             return self.part.span(seat)
         except SceneError as error:
             raise error.located(None, prefix=("seat",)) from None
+
+    def patch(self, name: str, point: Sequence[float] | None = None) -> Patch | None:
+        """A patch of a body without an axis, lumped into a point (m, in the axes of its file) where
+        one is given; None where the body is in doubt.
+        """
+        if self.part is None and self.of_body:
+            return None
+        body = None if self.part is None else self.part.body
+        if body is None or body.edges is None:
+            reason = 'patches are faces of a body without an axis (axis = "none", or a block)'
+            raise SceneError(reason, path=("patch",))
+        known = {patch.name: patch for patch in body.patches}
+        if name not in known:
+            there = listed(map(repr, known)) or "none: name groups of surfaces in the mesher"
+            raise SceneError(
+                f"unknown patch{nearest(name, known)}; there are {there}", path=("patch",)
+            )
+        found = known[name]
+        return found if point is None else found.with_changes(point=body.placed(point))
 
 
 class NoWords(Model):

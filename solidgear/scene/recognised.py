@@ -163,6 +163,8 @@ class Recognised(NamedTuple):
 
 def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]) -> BodyFile:
     """A part, and what is to be said of seats that are not whole."""
+    if part.body.edges is not None:
+        return part.body
     said = []
     for s in stations:
         under = [g for g in segments if g.y1 > s.lo and g.y0 < s.hi]

@@ -169,7 +169,7 @@ def station_problems(
         if mass.on is None
     ]
     for i, port in enumerate(ports):
-        if not -TOUCH <= port.y <= length + TOUCH:
+        if port.patch is None and not -TOUCH <= port.y <= length + TOUCH:
             yield SceneError(
                 f"the port is at y = {port.y:.6g} m, outside the shaft (0 to {length:.6g} m)",
                 path=(*_port_path(i), "y"),
@@ -187,6 +187,8 @@ def station_problems(
                 "the name of one of several points has no @, which stands before it in C_zz@name"
             )
             yield SceneError(reason, path=(*path[:-1], "name"))
+        if getattr(here, "patch", None) is not None:
+            continue
         reason = _misplaced(here, what, places[:k], length, jumps)
         if reason:
             yield SceneError(reason, path=path)

@@ -10,9 +10,10 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.bearing_stiffness import matrix_or_none, one_stiffness
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.housing import Elastic, elastic
+from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.recognised import Seat
 from solidgear.scene.rules import MOST_SPRINGS
@@ -51,10 +52,6 @@ def _few_springs(springs: Any) -> Any:
 AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
 
 
-def _matrix(value: Any) -> Any:
-    return None if value is None else checked_matrix(value)
-
-
 class Bearing(Placed):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
@@ -89,6 +86,8 @@ class Bearing(Placed):
         In place of a stiffness: nothing moves, or nothing moves but turns.
     face : {'start', 'end'} or None
         The end face whose middle it holds, as a section; the seat is then the rim beside that face.
+    patch : Patch or None
+        Of a body without an axis, the faces that it holds, at their point.
 
     Raises
     ------
@@ -108,9 +107,11 @@ class Bearing(Placed):
     """
 
     class Words(Along):
-        """Of a file: along the shaft, or a cylinder of a part."""
+        """Of a file: along the shaft, a cylinder of a part, or faces of a body."""
 
         seat: Seat | None = None
+        patch: str | None = None
+        point: Point = None
 
     sources: ClassVar = {
         "y": ("seat", "face", "position"),
@@ -121,7 +122,7 @@ class Bearing(Placed):
     name: str
     y: Position
     seat_width: PositiveLength
-    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(_matrix)] = None
+    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(matrix_or_none)] = None
     catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
     housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
@@ -131,6 +132,7 @@ class Bearing(Placed):
     support: Support | None = None
     hold: Hold | None = None
     face: Face | None = None
+    patch: Patch | None = None
 
     def __init__(self, /, **data: Any):
         if "stiffness" in data:
@@ -143,8 +145,10 @@ class Bearing(Placed):
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
-        _one_stiffness(table)
+        one_stiffness(table)
         face = table.get("face")
+        if words.patch is not None:
+            return on_patch(words, table, places, "seat_width")
         if words.seat is not None:
             both = "a seat has its place and width in seat; leave one of both out"
             words.refuse(both, "position", "from_", "face", "seat_width", beside=table)
@@ -201,7 +205,7 @@ class Bearing(Placed):
 
     @model_validator(mode="after")
     def _supports(self) -> Bearing:
-        if found := list(support_problems(self)):
+        if found := [*support_problems(self), *patch_problems(self)]:
             raise SceneError.of(found)
         return self
 
@@ -316,6 +320,8 @@ class Port(Placed):
     lo, hi : float
         Span of the surface that carries it, m.
     attachment : {'average', 'rigid', 'section'}
+    patch : Patch or None
+        Of a body without an axis, the faces that carry it, and the point itself.
 
     Raises
     ------
@@ -336,6 +342,8 @@ class Port(Placed):
         attach_to: str | None = None
         span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
         seat: Seat | None = None
+        patch: str | None = None
+        point: Point = None
 
     sources: ClassVar = {
         "y": ("at", "position"),
@@ -348,9 +356,18 @@ class Port(Placed):
     lo: Position
     hi: Position
     attachment: Attachment = "average"
+    patch: Patch | None = None
+
+    @model_validator(mode="after")
+    def _on_a_patch(self) -> Port:
+        if found := list(patch_problems(self)):
+            raise SceneError.of(found)
+        return self
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        if words.patch is not None:
+            return on_patch(words, table, places, "lo", "hi")
         problems = Gathered()
         y = problems.read(lambda: cls._y(words, places))
         lo, hi = problems.read(lambda: cls._span(words, places)) or (None, None)
@@ -379,16 +396,3 @@ class Port(Placed):
         how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
         words.one_of("attach_to", "span", how)
         return words.span or places.span_of(words.attach_to, "attach_to")
-
-
-def _one_stiffness(table: Mapping[str, Any]) -> None:
-    """Refuse a bearing in a file that is described twice."""
-    given = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
-    if len(given) > 1:
-        raise SceneError(f"give either {given[0]} or {given[-1]}, not both", path=(given[0],))
-    if "hold" in table and table.get("axial_series"):
-        raise SceneError(
-            "a spring in series needs a stiffness beside it; leave one of hold and axial_series "
-            "out",
-            path=("axial_series",),
-        )

@@ -7,6 +7,7 @@ much an entry is multiplied, so that it goes with a scene that is changed.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -47,6 +48,14 @@ class Uncertain(Model):
     said: str
     low: float
     high: float
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation of its logarithm: what ± says is one, and anywhere between two ends is
+        equally likely.
+        """
+        spread = math.log(self.high / self.low)
+        return spread / (2.0 if PLUS_MINUS.fullmatch(self.said) else math.sqrt(12.0))
 
 
 def stated(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.body import Body
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.judge.effort import heavy_meshes
 from solidgear.judge.record import GuardRecord
 from solidgear.judge.solution import Solution
@@ -301,10 +301,19 @@ def _of_a_body(scene: Scene) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"{scene.name}: {'block' if block else body.name} of {edges} mm along x, y and z, free, mass "
-        f"{body.mass(scene.material):.4g} kg{'; springs, masses and ports are not modelled' * (not block)}",
+        f"{scene.name}: {'block' if block else body.name} of {edges} mm along x, y and z, mass "
+        f"{body.mass(scene.material):.4g} kg; {_held_at(scene)}",
     )
     yield from of_files(scene)
+
+
+def _held_at(scene: Scene) -> str:
+    """Patches that are held, or those that could be."""
+    held = [repr(b.patch.name) for b in scene.bearings if b.patch is not None]
+    if held:
+        return f"held at {listed(held)}"
+    there = listed([repr(p.name) for p in scene.body.patches], 12) if scene.body else ""
+    return f"free; patches: {there or 'none, for the file names no groups of surfaces'}"
 
 
 def _of_the_shaft(scene: Scene) -> Iterator[Notice]:

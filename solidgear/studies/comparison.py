@@ -175,8 +175,8 @@ def compare(
         )
     if without_axis(scene) or without_axis(models):
         raise SolidgearError(
-            "compare: a body without an axis has one model, the 3D solid; solidgear modes tells its "
-            "frequencies and bars"
+            "compare: a body without an axis has one model, the 3D solid; solidgear modes and "
+            "stiffness tell its numbers and bars"
         )
     if isinstance(models, Scene):
         if settings:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -69,6 +69,8 @@ class Deck:
         Where in the file they begin, counted from 1.
     remarks : tuple of str
         What is odd about the file, but no fault.
+    patches : dict of str to ndarray
+        Corners (3 or 4, n) of the faces of named groups of surfaces.
     """
 
     points: np.ndarray
@@ -78,6 +80,7 @@ class Deck:
     numbers: np.ndarray | None = None
     lines: np.ndarray | None = None
     remarks: tuple[str, ...] = ()
+    patches: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def named(self, place: int) -> str:
         """An element in a sentence, by its place in :attr:`cells`."""

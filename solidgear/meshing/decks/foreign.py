@@ -31,7 +31,8 @@ def read(path: str) -> Deck:
     kind = one_kind(counts)
     blocks = [k for k, b in enumerate(found.cells) if b.type == kind and len(b.data)]
     cells = np.concatenate([np.asarray(found.cells[k].data, np.int64) for k in blocks]).T
-    return Deck(points.T, kind, cells, tuple(_groups(found, blocks)))
+    groups = tuple(_groups(found, blocks))
+    return Deck(points.T, kind, cells, groups, patches=_patches(found, kind))
 
 
 def _parsed(path: str, module: str) -> Any:
@@ -50,7 +51,7 @@ def _parsed(path: str, module: str) -> Any:
 
 def _groups(found: Any, blocks: list[int]) -> Iterator[Group]:
     """Physical groups of volumes, else volumes of gmsh; else the values of arrays of cells."""
-    physical = dict(_physical(found, blocks))
+    physical = dict(_physical(found, blocks, 3))
     if physical:
         yield from (Group(name, own) for name, own in physical.items())
         return
@@ -69,12 +70,21 @@ def _groups(found: Any, blocks: list[int]) -> Iterator[Group]:
             yield Group(f"{before}{value}", np.flatnonzero(values == value), tells)
 
 
-def _physical(found: Any, blocks: list[int]) -> Iterator[tuple[str, np.ndarray]]:
+def _patches(found: Any, kind: str) -> dict[str, np.ndarray]:
+    """Corners of the faces of physical groups of surfaces."""
+    face, corners = ("triangle", 3) if kind.startswith("tet") else ("quad", 4)
+    blocks = [k for k, b in enumerate(found.cells) if b.type.startswith(face) and len(b.data)]
+    if not blocks:
+        return {}
+    faces = np.concatenate([np.asarray(found.cells[k].data, np.int64)[:, :corners] for k in blocks])
+    return {name: faces[own].T for name, own in _physical(found, blocks, 2)}
+
+
+def _physical(found: Any, blocks: list[int], dimension: int) -> Iterator[tuple[str, np.ndarray]]:
+    """Physical groups of some dimension, and their places in blocks of cells."""
     sizes = [len(found.cells[k].data) for k in blocks]
     starts = np.cumsum([0, *sizes[:-1]])
-    names = {
-        int(tag): name for name, (tag, dimension) in found.field_data.items() if dimension == 3
-    }
+    names = {int(tag): name for name, (tag, own) in found.field_data.items() if own == dimension}
     seen = set()
     for name in names.values():
         # an entity of several groups is in the set of each

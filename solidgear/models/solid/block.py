@@ -13,6 +13,7 @@ from solidgear.errors import SolidgearError
 from solidgear.meshing.edge_places import edge_places
 from solidgear.models.solid.matrices import _matrices, _mean
 from solidgear.models.solid.mesh import SolidMesh
+from solidgear.scene.patches import point_of
 
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
@@ -131,7 +132,7 @@ def free_block(
     *,
     clipped: bool = False,
     materials: Sequence[Any] | None = None,
-) -> tuple[Block, list[tuple[int, float, np.ndarray]]]:
+) -> tuple[Block, list[tuple[int, tuple[float, float, float], np.ndarray]]]:
     """The free block of a mesh with the rows of its ports.
 
     Parameters
@@ -151,7 +152,7 @@ def free_block(
     -------
     block : Block
         All six components.
-    ties : list of (port index, y, mask)
+    ties : list of (port index, point, mask)
         Rigid seats, for :func:`solidgear.kernel.attachment.tie_rigidly`.
 
     Raises
@@ -167,17 +168,19 @@ def free_block(
         if not len(facets):
             where = "section" if attachment == "section" else "seat"
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its {where}")
-        within = (station.lo, station.hi) if clipped and attachment != "section" else None
+        place, patch = point_of(station), getattr(station, "patch", None)
+        cut = clipped and attachment != "section" and patch is None
+        within = (station.lo, station.hi) if cut else None
         if attachment == "rigid":
             mask = np.zeros((n, 3), bool)
             mask[mesh.facet_unknowns(facets)] = True
             if within is not None:
                 y, hair = mesh.nodes[1], 1e-7 * scene.length
                 mask[(y < within[0] - hair) | (y > within[1] + hair)] = False
-            ties.append((i, station.y, mask.ravel()))
+            ties.append((i, place, mask.ravel()))
             rows.append(sp.csr_matrix((6, 3 * n)))
         else:
-            rows.append(_mean(mesh, facets, station.y, n, within=within))
+            rows.append(_mean(mesh, facets, place, n, within=within))
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
     ports = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, 3 * n))
     return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties

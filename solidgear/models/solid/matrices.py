@@ -12,7 +12,7 @@ from skfem.refdom import RefTet
 
 from solidgear.body.mass import ScalarMass
 from solidgear.elements import ELEMENTS
-from solidgear.frames import cross_matrix
+from solidgear.frames import cross_matrix, on_axis
 from solidgear.kernel.assembly import Pattern, Tabulation, batches, inverted, straight
 from solidgear.models.solid.mesh import SolidMesh
 
@@ -69,11 +69,11 @@ def _elastic(gram, lame: float, mu: float):
     return out
 
 
-def _mean(m: SolidMesh, facets, y0, n, within=None) -> sp.csr_matrix:
-    """(6, 3n) area-weighted least-squares rigid motion of facets about the axis point at y0; of
-    their parts between two places along y where these are given.
+def _mean(m: SolidMesh, facets, place, n, within=None) -> sp.csr_matrix:
+    """(6, 3n) area-weighted least-squares rigid motion of facets about a point, or the axis point at
+    some y; of their parts between two places along y where these are given.
     """
-    return rigid_part(*weighed(m.over_facets(facets, within), y0, n), tuple(range(6)))
+    return rigid_part(*weighed(m.over_facets(facets, within), place, n), tuple(range(6)))
 
 
 def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...]) -> sp.csr_matrix:
@@ -84,8 +84,8 @@ def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...])
     return sp.csr_matrix(g)
 
 
-def weighed(pieces, y0: float, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Normal equations of the rigid motion about y0 (m) that is nearest to the motion of some
+def weighed(pieces, place: float | Sequence[float], n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Normal equations of the rigid motion about a place (m) that is nearest to the motion of some
     pieces, of :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`, of a mesh of n nodes.
 
     With gram (6, 6) and loads (3 n, 6) the rigid motion of displacements u is ``gram^-1 loads' u``.
@@ -93,7 +93,7 @@ def weighed(pieces, y0: float, n: int) -> tuple[np.ndarray, np.ndarray]:
     a = np.zeros((6, 6))
     b = np.zeros((n, 3, 6))
     for value, x, weight, dofs in pieces:
-        offset = np.moveaxis(x, 0, -1) - np.array([0.0, y0, 0.0])  # (e, q, 3)
+        offset = np.moveaxis(x, 0, -1) - on_axis(place)  # (e, q, 3)
         motion = np.zeros((*offset.shape, 6))
         motion[..., :3] = np.eye(3)
         motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)

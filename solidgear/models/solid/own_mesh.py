@@ -14,6 +14,7 @@ from solidgear.models.solid.block import free_block
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.solid.seat_faces import Seats
 from solidgear.models.spectrum import elastic_scale
+from solidgear.scene.patches import point_of
 
 if TYPE_CHECKING:
     from skfem import Mesh
@@ -32,8 +33,9 @@ def solid_body(
     facts: Mapping[str, Any] | None = None,
     owner: np.ndarray | None = None,
     materials: Sequence[Material] | None = None,
+    patches: Mapping[str, np.ndarray] | None = None,
 ) -> Body:
-    """The free body of a mesh, with ports on cylinders and cones of its surface.
+    """The free body of a mesh, with ports on cylinders and cones of its surface, or on patches.
 
     Parameters
     ----------
@@ -55,6 +57,8 @@ def solid_body(
     owner : (ne,) ndarray of int, optional
         Place of each element's material among ``materials``; by default that of the segment which
         its middle lies in.
+    patches : mapping of str to (n,) ndarray of int, optional
+        Facets of the patches that stations without an axis lie on.
 
     Raises
     ------
@@ -79,7 +83,12 @@ def solid_body(
         owner = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
         materials = None
     solid = _isoparametric(mesh, element, owner)
-    facets = Seats(solid, shaft.segments, clipped)
+    seats = Seats(solid, shaft.segments, clipped)
+
+    def facets(station, attachment: str) -> np.ndarray:
+        patch = getattr(station, "patch", None)
+        return seats(station, attachment) if patch is None else (patches or {})[patch.name]
+
     block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
     own = {
         "element": element,
@@ -92,7 +101,8 @@ def solid_body(
         "round": False,
         "pair_tolerance": 0.0,
     }
-    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
+    points = [point_of(s) for s, _ in wanted]
+    ports = tuple(Port(s.name, y, a, x, z) for (s, a), (x, y, z) in zip(wanted, points))
     return Body(
         "solid",
         (tie_rigidly(block, ties),),

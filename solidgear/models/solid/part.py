@@ -62,15 +62,23 @@ def part_body(
         if element != found.element:
             facts["file_element"] = found.element
         free = file.edges is not None
+        if free:
+            wanted = [(s, a) for s, a in wanted if s.patch is not None]
+        for station, _ in wanted:
+            if free and station.patch.name not in found.patches:
+                raise SolidgearError(
+                    f"{source.name} has no group of surfaces {station.patch.name!r}"
+                )
         body = solid_body(
             found.mesh,
             scene,
             element=element,
-            wanted=() if free else wanted,
+            wanted=wanted,
             clipped=True,
             facts=facts | {"axis": not free},
             owner=found.owner if materials else None,
             materials=materials,
+            patches=found.patches,
         )
         return replace(body, scale=_rough_scale(file, scene.material)) if free else body
     plan = step_plan(

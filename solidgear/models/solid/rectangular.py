@@ -13,6 +13,7 @@ from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.room import assemblable
 from solidgear.models.solid.own_mesh import solid_body
+from solidgear.scene.patches import FACES
 
 #: cells along the shortest edge at refinement 1; an even number has a section in the middle
 CELLS = 4
@@ -26,7 +27,16 @@ def block_body(
     """
     mesh = block_mesh(scene, wanted, element, size, refinement)
     facts = {"refinement": refinement, "axis": False}
-    return solid_body(mesh, scene, element=element, wanted=wanted, facts=facts)
+    middle = mesh.p[:, mesh.facets].mean(axis=1)
+    low, high = mesh.p.min(axis=1), mesh.p.max(axis=1)
+    near = 1e-9 * (high - low).max()
+    patches = {
+        name: np.flatnonzero(np.abs(middle[k // 2] - (low, high)[k % 2][k // 2]) < near)
+        for k, name in enumerate(FACES)
+    }
+    return solid_body(
+        mesh, scene, element=element, wanted=wanted, clipped=False, facts=facts, patches=patches
+    )
 
 
 def block_mesh(
@@ -44,7 +54,7 @@ def block_mesh(
     x, y, z = scene.body.edges
     usual = size or min(x, y, z) / CELLS
     across = (-x / 2, 0.0, x / 2), (-z / 2, 0.0, z / 2)
-    along = sorted({0.0, y / 2, y, *(s.y for s, _ in wanted)})
+    along = sorted({0.0, y / 2, y, *(s.y for s, _ in wanted if s.patch is None)})
     lines = [_divided(places, usual, refinement) for places in (across[0], along, across[1])]
     assemblable(prod(len(own) - 1 for own in lines), 27)
     boxes = MeshHex.init_tensor(*lines)

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.body import Body, as_supports
+from solidgear.judge.body_bars import stepped_bars
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.settle import Settled, bars_of_modes, settle, stepped_bars
+from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
@@ -70,8 +71,15 @@ class Computed:
     def widths(self, springs: float) -> np.ndarray:
         """(modes,) standard deviations of logarithms of frequencies that those of the stiffnesses of
         all bearings make, each on its own: half the share of a mode's energy (Rayleigh).
+
+        A stiffness has the deviation that the scene's ``[uncertain]`` states, else ``springs``; with
+        none of these there are no widths, for stiffnesses are what they are.
         """
+        if not springs:
+            return np.zeros(len(self.modes))
         supports = as_supports(self.scene)
+        said = {u.path: u.deviation for u in self.scene.uncertain}
+        known = [said.get(f"bearing.{name}.stiffness", springs) for name in supports.ports]
         count, there = len(supports.ports), supports.rows(self.body)
         own = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
         own, out = own[range(count), range(count)], []
@@ -79,8 +87,8 @@ class Computed:
             states = [state for state, _ in of_mode(self.body, supports, mode).pairs]
             held = np.array([state.motions[there].reshape(count, 6) for state in states])
             energy = np.einsum("spi,pij,spj->p", held, own, held) / len(states)
-            out.append(np.linalg.norm(energy) / (2 * np.pi * mode.frequency_hz) ** 2)
-        return springs * np.array(out) / 2
+            out.append(np.linalg.norm(known * energy) / (2 * np.pi * mode.frequency_hz) ** 2)
+        return np.array(out) / 2
 
     @property
     def barred(self) -> tuple[BarredMode, ...]:

@@ -26,9 +26,11 @@ from solidgear.studies.measured.shapes import OnPoints
 SURE, POSSIBLE = 0.95, 0.05
 #: standard deviations of a measured frequency that count as its bar
 DEVIATIONS = 2.0
-#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing,
-#: and of a bearing's stiffness
-UNTOLD, SPRINGS = 1e-4, 0.2
+#: standard deviation of the logarithm of a measured frequency of which nothing is said, in the pairing
+UNTOLD = 1e-4
+#: of a bearing's stiffness of which [uncertain] of the scene says nothing: what a catalogue leaves open of
+#: the inside is +- 9 to 11 % of it, a class of clearance as much, and rigid rings and seats the rest
+SPRINGS = 0.2
 
 
 @dataclass(frozen=True)
@@ -265,6 +267,7 @@ def peaks_of(
             math.hypot(min(bar, 0.1), width),
             min(m.multiplicity, 2),
             m.name.family,
+            2 * measured.damping[0],
         )
         for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]

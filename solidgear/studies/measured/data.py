@@ -12,6 +12,7 @@ responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``.
     ]
     shapes = "tap.unv"              # shape 2: its second mode by frequency
     noise = "5 %"                   # of a component of a shape
+    damping = "0.1 %"               # ratio: how near two modes are heard as one
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
+from solidgear.studies.measured.alignment import BANDWIDTH
 from solidgear.studies.measured.responses import ResponseFit
 from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, read_universal
 
@@ -64,7 +66,7 @@ def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
 
 def _share(value: tuple[float, str]) -> tuple[float, str]:
     if value[1] != "relative":
-        raise SceneError('must be a share of the root mean square of a shape, such as "5 %"')
+        raise SceneError('must be a share and no frequency, such as "5 %"')
     return value
 
 
@@ -117,6 +119,8 @@ class Measured(Model):
         Universal file of shapes, beside this one.
     noise : (float, 'relative')
         Standard deviation of a component of a shape, relative to the root mean square of the shape.
+    damping : (float, 'relative')
+        Ratio; modes nearer to each other than twice that are heard as one peak.
     mode : tuple of MeasuredMode
         By ascending frequency.
     """
@@ -126,6 +130,7 @@ class Measured(Model):
     uncertainty: Uncertainty | None = None
     shapes: str = ""
     noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
+    damping: Annotated[Uncertainty, AfterValidator(_share)] = (BANDWIDTH / 2, "relative")
     mode: tuple[MeasuredMode, ...]
     _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)

@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import math
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
+from solidgear.body.surface import Surface
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Tables
 from solidgear.studies.measured import correlate
@@ -187,11 +188,32 @@ def _told(
             yield float(row[j]), len(told) == 1 and bool(row[j] >= SURE), int(j) in peak.right
 
 
+class _Drawn:
+    """A geometry that draws every shape once: points and noise are drawn anew, the shape is not, and
+    drawing took three quarters of the time of a seed.
+    """
+
+    def __init__(self, own: Any):
+        self.own = own
+        self.known: dict[Any, Surface] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.own, name)
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """The surface, moved by the unknowns of its blocks."""
+        key = tuple((name, u.tobytes()) for name, u in sorted(moved.items()))
+        if key not in self.known:
+            self.known[key] = self.own.surface(moved)
+        return self.known[key]
+
+
 def _solved(tables: Tables) -> Computed:
     scene = scene_of(tables, "shaft.toml")
     body = sg.build(scene, "harmonic", order=3)
     modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
     limit = modes[-1].frequency_hz
+    body = replace(body, geometry=_Drawn(body.geometry))
     return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {}, limit)
 
 

@@ -1,0 +1,111 @@
+"""Patches of a body without an axis: faces of its surface that a file names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any
+
+from solidgear.errors import SceneError
+from solidgear.scene.typed import Model
+from solidgear.scene.units import three
+
+Triple = tuple[float, float, float]
+#: in place of the middle of a patch, in the axes of the file
+Point = Annotated[tuple[float, float, float] | None, three("length", "along x, y and z")]
+
+#: faces of a block, in its own axes
+FACES = ("-x", "+x", "-y", "+y", "-z", "+z")
+#: tables whose entries lie on a patch, and those that a body without an axis has no place for
+ON_PATCHES = ("port", "bearing")
+ELSEWHERE = ("housing", "load", "lubrication", "uncertain")
+
+
+class Patch(Model):
+    """A named patch of the surface.
+
+    Attributes
+    ----------
+    name : str
+        Of the group of faces in the file; of a block one of `FACES`.
+    point : tuple of float
+        Its middle, by area, or the point that a scene names in its place, m.
+    extent : float
+        Diagonal of the box around it, m.
+    """
+
+    name: str
+    point: Triple
+    extent: float
+
+
+def point_of(station: Any) -> Triple:
+    """The point (m) that a station is lumped into: that of its patch, or one on the axis."""
+    patch = getattr(station, "patch", None)
+    return (0.0, station.y, 0.0) if patch is None else patch.point
+
+
+def off_patches(scene: Any) -> dict[str, Any]:
+    """Changes that take what is attached to a scene off the patches of its body."""
+    if scene.body is None or scene.body.edges is None:
+        return {}
+    port = scene.port.with_changes(patch=None, y=scene.length / 2, lo=0.0, hi=scene.length)
+    return {"port": port, "further_ports": (), "bearings": (), "masses": ()}
+
+
+def block_patches(edges: Triple) -> tuple[Patch, ...]:
+    """The six faces of a block (m) that begins at y = 0."""
+    low, high = (-edges[0] / 2, 0.0, -edges[2] / 2), (edges[0] / 2, edges[1], edges[2] / 2)
+    middle = (0.0, edges[1] / 2, 0.0)
+    out = []
+    for place, name in enumerate(FACES):
+        axis, end = place // 2, (low, high)[place % 2]
+        point = tuple(end[k] if k == axis else middle[k] for k in range(3))
+        extent = sum(e**2 for k, e in enumerate(edges) if k != axis) ** 0.5
+        out.append(Patch(name=name, point=point, extent=extent))
+    return tuple(out)
+
+
+def refuse_elsewhere(raw: Mapping[str, Any], what: str) -> None:
+    """Refuse what a body without an axis cannot have, and stations that name no patch."""
+    found = [
+        SceneError(f"a {what} has no place for this: leave it out", path=(key,))
+        for key in ELSEWHERE
+        if key in raw
+    ]
+    for key in ON_PATCHES:
+        of = raw.get(key, [])
+        for k, table in enumerate([of] if isinstance(of, Mapping) else of):
+            if isinstance(table, Mapping) and "patch" not in table:
+                reason = f"this key is missing: on a {what} name the faces, such as patch = "
+                example = '"+x"' if what == "block" else '"foot", a group of surfaces of the file'
+                found.append(SceneError(reason + example, path=(key, k, "patch")))
+    for k, table in enumerate(raw.get("mass", ())):
+        if isinstance(table, Mapping) and "on" not in table:
+            reason = "this key is missing: name the port or bearing that carries the mass"
+            found.append(SceneError(reason, path=("mass", k, "on")))
+    if found:
+        raise SceneError.of(found)
+
+
+def on_patch(words: Any, table: Mapping[str, Any], places: Any, *sizes: str) -> dict[str, Any]:
+    """Fields of a station on a patch; along y it is as long as the patch is large."""
+    own = "a patch has its place and size itself; leave one of both out"
+    words.refuse(own, "position", "from_", "at", "attach_to", "span", "seat", beside=None)
+    words.refuse(own, "face", "seat_width", beside=table)
+    patch = places.patch(words.patch, words.point)
+    if patch is None:
+        return dict.fromkeys(("y", *sizes))
+    y, half = patch.point[1], patch.extent / 2
+    size = {"lo": y - half, "hi": y + half, "seat_width": patch.extent}
+    return {"y": y, "patch": patch, **{key: size[key] for key in sizes}}
+
+
+def patch_problems(station: Any) -> Iterator[SceneError]:
+    """Ways of holding a station that faces cannot be held in."""
+    if station.patch is None:
+        return
+    if station.attachment == "section":
+        yield SceneError("a patch is no section: use average or rigid", path=("attachment",))
+    if getattr(station, "catalogue", None) is not None:
+        reason = "catalogue data are of a bearing around an axis: give a stiffness, or hold"
+        yield SceneError(reason, path=("catalogue",))
