@@ -28,6 +28,8 @@ from solidgear.studies.train.speed_run import ramp_of, speed_run
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds
 MOST_RUNS = 200
+#: at which branches apart are looked for
+SPEEDS = 32
 
 
 @command
@@ -71,6 +73,12 @@ def nonlinear(
             help="Further models to judge, as PINION+GEAR, one for each shaft; lumped and Timoshenko shafts by default.",
         ),
     ] = None,
+    apart: Annotated[
+        int,
+        typer.Option(
+            "--apart", help="Speeds at which branches apart are looked for; 0 leaves them out."
+        ),
+    ] = SPEEDS,
     in_time: Annotated[
         int,
         typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
@@ -109,7 +117,7 @@ def nonlinear(
     teeth = study.teeth_of(
         shop, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
     )
-    for option, count in (("--in-time", in_time), ("--forces", forces)):
+    for option, count in (("--apart", apart), ("--in-time", in_time), ("--forces", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
     low, high = study.ends(shop, reduced.max_frequency, min_frequency)
@@ -117,7 +125,9 @@ def nonlinear(
     ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
         found = tuple(
-            study.with_backlash(shop, mix, teeth, reduced.max_frequency, min_frequency, progress)
+            study.with_backlash(
+                shop, mix, teeth, reduced.max_frequency, min_frequency, progress, apart
+            )
             for mix in [first, *(mix for mix in others if mix != first)]
         )
         swept = study.in_time(found[0], in_time, progress) if in_time else ()

@@ -160,10 +160,10 @@ class Branch:
 
 
 class Follower:
-    """One walk along a branch."""
+    """One walk along a branch, of motions of so many periods of the excitation."""
 
-    def __init__(self, balance: Balance, size: float, width: float):
-        self.balance, self.size, self.width = balance, size, width
+    def __init__(self, balance: Balance, size: float, width: float, periods: int = 1):
+        self.balance, self.size, self.width, self.periods = balance, size, width, periods
 
     def bordered(self, left, row: np.ndarray) -> np.ndarray:
         n = len(left.value)
@@ -329,7 +329,12 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
     ahead[-1] = np.sign(end - begin)
     first = walk.point(motion, begin, ahead)
     points, turning = walked(walk, first, longest, adaptive, lambda p: not low <= p.omega <= high)
-    return _ended(points, turning, walk, begin, end, low, high)
+    cut(points, walk, low, high)
+    if points[-1].omega == begin:
+        end, known = points[-1].motion, first.balance.resized(first.motion, walk.balance.count)[1]
+        if np.abs(end - known).max() <= SAME * np.abs(known).max():
+            return None
+    return Branch(tuple(points), tuple(turning), (walk.size, walk.width))
 
 
 def walked(
@@ -345,7 +350,7 @@ def walked(
     while len(points) < MOST_POINTS:
         last = points[-1]
         if adaptive:
-            last = points[-1] = _fitted(walk, last)
+            last = points[-1] = fitted(walk, last)
         taken = walk.correct(last, step)
         if taken is None or not _sound(last, taken[0]):
             step /= 2
@@ -374,27 +379,21 @@ def _sound(last: Point, new: Point) -> bool:
     return bool(last.sign in (0.0, new.sign) and new.tangent @ last.tangent > STRAIGHT)
 
 
-def _fitted(walk: Follower, point: Point) -> Point:
+def fitted(walk: Follower, point: Point) -> Point:
     """The point with as many harmonics as its highest ask for."""
     count = point.balance.count
     tail = point.balance.tail(point.motion)
-    while tail > TAIL and count < MOST_HARMONICS:
+    while tail > TAIL and count < MOST_HARMONICS * walk.periods:
         count = count + 2
         point = walk.refit(point, count)
         tail = point.balance.tail(point.motion)
     return point
 
 
-def _ended(points, turning, walk, begin, end, low, high) -> Branch | None:
-    """The branch cut at the end of the range; None where it is back where it began, unchanged."""
+def cut(points: list[Point], walk: Follower, low: float, high: float) -> None:
+    """The last point, which is beyond the range, moved to its end."""
     last, before = points[-1], points[-2]
     edge = low if last.omega < low else high
     share = (edge - before.omega) / (last.omega - before.omega)
     motion = before.motion + share * (last.motion - before.motion)
-    motion = walk.balance.solve(motion, edge)
-    points[-1] = walk.point(motion, edge, last.tangent)
-    if edge == begin:
-        _, first = points[0].balance.resized(points[0].motion, walk.balance.count)
-        if np.abs(motion - first).max() <= SAME * np.abs(first).max():
-            return None
-    return Branch(tuple(points), tuple(turning), (walk.size, walk.width))
+    points[-1] = walk.point(walk.balance.solve(motion, edge), edge, last.tangent)

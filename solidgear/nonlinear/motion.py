@@ -13,6 +13,7 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
+from solidgear.nonlinear.continuation import Point
 from solidgear.nonlinear.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.nonlinear.model import Remainder
 from solidgear.nonlinear.pieces import SHORT, TERMS, Piece, Pieces
@@ -188,6 +189,24 @@ def _root(series: np.ndarray, rest: float) -> float | None:
     return float(at)
 
 
+def run_of(remainder: Remainder, omega: float) -> Run | Integrated:
+    """Motion in time at a frequency, exact where laws are straight."""
+    straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
+    return Run(remainder, omega) if straight else Integrated(remainder, omega)
+
+
+def departure(point: Point) -> float:
+    """Largest difference of the stretches of a periodic motion from a period in time, begun at its
+    state, over their swing; a motion that nothing but its sampled balance has is off by much.
+    """
+    run = run_of(point.balance.remainder, point.omega)
+    _, own, _ = run.period(point.state())
+    angle = 2 * np.pi * np.arange(len(own)) / len(own)
+    n = 1j * np.arange(point.balance.count + 1)
+    told = (np.exp(angle[:, None] * n) @ point.harmonics).real
+    return float((np.abs(own - told).max(axis=0) / np.ptp(told, axis=0)).max())
+
+
 def settled(
     remainder: Remainder,
     omega: float,
@@ -213,9 +232,8 @@ def settled(
     -------
     Steady
     """
-    straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
-    run = Run(remainder, omega) if straight else Integrated(remainder, omega)
-    rounding = ROUNDING if straight else 10 * TOLERANCE
+    run = run_of(remainder, omega)
+    rounding = ROUNDING if isinstance(run, Run) else 10 * TOLERANCE
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
     section: list[tuple[float, float]] = []

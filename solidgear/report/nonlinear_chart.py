@@ -13,10 +13,15 @@ from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.words import hertz
 
-STABLE, UNSTABLE, LINEAR, JUMP = "stable", "unstable", "linear: no backlash", "jumps"
+STABLE, UNSTABLE, LINEAR, APART = "stable", "unstable", "linear: no backlash", "stable, apart"
 OTHERS = ("#c98a00", "#b3305c", "#5a3e8c", "#1f9bb8", "#8a6d3b")
 DRIVE, NONE, BACK = "in contact", "apart", "on the other flank"
-LOOKS = {STABLE: Series("#00805e"), UNSTABLE: Series("#d55e00"), LINEAR: Series(GREY)}
+LOOKS = {
+    STABLE: Series("#00805e"),
+    UNSTABLE: Series("#d55e00"),
+    APART: Series("#0057b8"),
+    LINEAR: Series(GREY),
+}
 CONTACT = {DRIVE: Series("#00805e"), NONE: Series("#d9d9d9"), BACK: Series("#b3305c")}
 #: bins of the speed in which shares of the cycle are drawn
 BINS = 160
@@ -79,7 +84,8 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     linear = units.values(size, "N")
     curves = {one.label: units.values(one.force, "N") for one in found.found}
     ran = {_run_name(one, teeth): one for one in found.runs}
-    sizes = [linear, *curves.values(), *(units.values(one.force, "N") for one in ran.values())]
+    further = [units.values(one.force, "N") for one in (*judge.apart, *ran.values())]
+    sizes = [linear, *curves.values(), *further]
     top = 1.08 * max(float(size.max()) for size in sizes)
     named = [*(one.label for one in found.found[1:]), *ran]
     others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
@@ -88,7 +94,8 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
         360.0,
         "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
-        series={**LOOKS, **others},
+        series={name: look for name, look in LOOKS.items() if name != APART or judge.apart}
+        | others,
         legend={
             "orient": "top",
             "columns": 3 if width > NARROW else 1,
@@ -107,13 +114,9 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     for name, one in ran.items():
         places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
         panel.draw({"type": "line", "strokeWidth": 1.4}, _line(places, own, name))
-    force = curves[judge.label]
-    for name, where, dash in ((UNSTABLE, ~judge.stable, [3, 2]), (STABLE, judge.stable, [1, 0])):
-        for part, (a, b) in enumerate(_runs(where)):
-            # a part reaches its neighbours, so that the branch has no gaps
-            a, b = max(a - 1, 0), min(b + 1, len(rpm))
-            rows = _line(rpm[a:b], force[a:b], name, part)
-            panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
+    for one in (*judge.apart, judge):
+        calm = STABLE if one is judge else APART
+        _branch(panel, one, 60 * one.frequency_hz / teeth, units, calm)
     for jump in judge.jumps:
         x, y = 60 * jump.frequency_hz / teeth, units.value(jump.force, "N")
         way = "rising" if jump.rising else "falling"
@@ -123,7 +126,7 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
             mark | {"size": 90, "filled": True, "color": "#222222"},
             [{"x": x, "y": y, "readout": words}],
         )
-    read = []
+    read, force = [], curves[judge.label]
     for k in read_places(rpm, force, int(width / 14.0)):
         words = readout(
             "stable" if judge.stable[k] else "unstable",
@@ -135,6 +138,17 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         read.append({"x": rpm[k], "y": force[k], "readout": words})
     panel.read(read, LOOKS[STABLE].colour)
     return panel
+
+
+def _branch(panel: Panel, one: Any, rpm: np.ndarray, units: Units, calm: str) -> None:
+    """Stable and unstable parts of a branch."""
+    force = units.values(one.force, "N")
+    for name, where, dash in ((UNSTABLE, ~one.stable, [3, 2]), (calm, one.stable, [1, 0])):
+        for part, (a, b) in enumerate(_runs(where)):
+            # a part reaches its neighbours, so that the branch has no gaps
+            a, b = max(a - 1, 0), min(b + 1, len(rpm))
+            rows = _line(rpm[a:b], force[a:b], name, part)
+            panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
 
 
 def _run_name(one: Any, teeth: int) -> str:
@@ -199,10 +213,12 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Pan
 
 def _orders(judge: Any, units: Units) -> Panel:
     """Amplitudes of the mesh force by orders of the mesh."""
-    size = units.values(judge.spectrum(), "N")
-    unit, hz = units.unit("N"), judge.loudest[0]
+    own = judge.worst
+    size = units.values(own.spectrum(), "N")
+    unit, hz, periods = units.unit("N"), own.loudest[0], own.periods
+    half = 0.3 / periods
     panel = Panel(
-        Axis("order of the mesh", (0.4, len(size) + 0.6)),
+        Axis("order of the mesh", (2 * half - 0.2 / periods, len(size) / periods + 2 * half)),
         Axis(f"amplitude in {unit}", (0.0, 1.1 * float(size.max()))),
         130.0,
         f"Orders of the mesh force where it is largest, {hz:.0f} Hz",
@@ -210,12 +226,14 @@ def _orders(judge: Any, units: Units) -> Panel:
     )
     rows = [
         {
-            "x": k - 0.3,
-            "x2": k + 0.3,
+            "x": k / periods - half,
+            "x2": k / periods + half,
             "y": 0.0,
             "y2": float(y),
             "fill": LOOKS[STABLE].colour,
-            "readout": readout(f"order {k}", ("mesh force", plain(float(y), 4), unit)),
+            "readout": readout(
+                f"order {k / periods:.3g}", ("mesh force", plain(float(y), 4), unit)
+            ),
         }
         for k, y in enumerate(size, start=1)
     ]

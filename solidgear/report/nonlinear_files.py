@@ -67,16 +67,21 @@ def write_nonlinear(
         lead(found, shown),
         [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
-        lines={"nonlinear": branch(found), **runs(found)},
+        lines={"nonlinear": branch(found, found.judge), **apart(found), **runs(found)},
         charts={"nonlinear": partial(backlash_chart, found, title, shown)},
         cautions=cautions,
         verdict=found.sentences(),
     )
 
 
-def branch(found: Any) -> Table:
-    """The branch of the first mix in its order, in SI."""
-    one = found.judge
+def apart(found: Any) -> dict[str, Table]:
+    """Each branch apart of the first mix, by the names of their files."""
+    some = enumerate(found.judge.apart, start=1)
+    return {f"apart_{k}_of_{one.periods}_periods": branch(found, one) for k, one in some}
+
+
+def branch(found: Any, one: Any) -> Table:
+    """A branch of the first mix in its order, in SI."""
     there = {
         "frequency [Hz]": one.frequency_hz,
         f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
@@ -131,8 +136,8 @@ def mixes(found: Any, units: Units = ENGINEERING) -> Table:
         text("shafts", lambda one: one.label),
         text("jump up, Hz", lambda one: jumps(one, True)),
         text("jump down, Hz", lambda one: jumps(one, False)),
-        Column(f"largest, {units.unit('N')}", lambda one: _force(one.loudest[1], units)),
-        Column("at, Hz", lambda one: hertz(one.loudest[0])),
+        Column(f"largest, {units.unit('N')}", lambda one: _force(one.worst.loudest[1], units)),
+        Column("at, Hz", lambda one: hertz(one.worst.loudest[0])),
         Column(f"linear, {units.unit('N')}", lambda one: _force(one.linear_loudest[1], units)),
         Column("at, Hz", lambda one: hertz(one.linear_loudest[0])),
     ]
@@ -143,7 +148,7 @@ def mixes(found: Any, units: Units = ENGINEERING) -> Table:
 
 
 def _largest(mesh: int, units: Units, one: Any) -> str:
-    return _force(one.every[mesh].loudest[1], units)
+    return _force(one.every[mesh].worst.loudest[1], units)
 
 
 def over_force(found: Any, units: Units = ENGINEERING) -> Table:

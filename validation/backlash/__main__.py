@@ -66,12 +66,11 @@ both harmonic.
 ## Branches that hang together with no other
 
 Above some mean force the large motion of the overhung axle comes off the branch that starts at low \
-speed. Sweeps from rest never meet it; a blow can. A sweep or a branch at one torque does not tell.
+speed. Sweeps never meet it; a blow can.
 
 {detached}
 
-So where both have that motion, Timoshenko shafts and solid ones differ by {same} % in its force. They \
-differ in whether a sweep meets it.
+So where both have that motion, Timoshenko shafts and solid ones differ by {same} % in its force.
 
 ## Over torque: where the linear criterion fails
 

@@ -8,9 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from solidgear.nonlinear.apart import Search
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import Branch, Point
 from solidgear.nonlinear.model import Remainder
+from solidgear.nonlinear.motion import departure
 from solidgear.nonlinear.stability import ON
 from solidgear.studies.train.shaft import told_mix
 
@@ -134,6 +136,14 @@ class Backlash:
         Processor time, of the branch and its stability.
     law : int
         Number of the law whose mesh is told: 0 for that whose transmission error drives the train.
+    periods : int
+        Of the driven mesh after which motions repeat themselves.
+    end : str
+        Of a branch apart, as :class:`solidgear.nonlinear.apart.Apart` says.
+    search : Search or None
+        For branches apart; None where they were not looked for.
+    apart : tuple of Backlash
+        Those that were found.
     """
 
     models: dict[str, str]
@@ -143,6 +153,10 @@ class Backlash:
     multiplier: np.ndarray = field(repr=False)
     seconds: float
     law: int = 0
+    periods: int = 1
+    end: str = ""
+    search: Search | None = field(default=None, repr=False)
+    apart: tuple[Backlash, ...] = ()
 
     @property
     def label(self) -> str:
@@ -157,7 +171,11 @@ class Backlash:
     def every(self) -> tuple[Backlash, ...]:
         """The same told of each mesh with a law, that which drives the train first."""
         others = enumerate(self.teeth.others, start=1)
-        return (self, *(replace(self, teeth=teeth, law=k) for k, teeth in others))
+        return (self, *(self._told_of(teeth, k) for k, teeth in others))
+
+    def _told_of(self, teeth: Teeth, law: int) -> Backlash:
+        apart = tuple(one._told_of(teeth, law) for one in self.apart)
+        return replace(self, teeth=teeth, law=law, apart=apart)
 
     @property
     def row(self) -> int:
@@ -172,7 +190,7 @@ class Backlash:
     @cached_property
     def frequency_hz(self) -> np.ndarray:
         """(p,) mesh frequency."""
-        return self.branch.omega / (2 * np.pi)
+        return self.periods * self.branch.omega / (2 * np.pi)
 
     @cached_property
     def _waves(self) -> list[np.ndarray]:
@@ -243,9 +261,30 @@ class Backlash:
 
     @cached_property
     def loudest(self) -> tuple[float, float]:
-        """Frequency and size of the largest dynamic mesh force of stable motions."""
+        """Frequency and size of the largest dynamic mesh force of its stable motions."""
         size = np.where(self.stable, self.force, 0.0)
         return float(self.frequency_hz[size.argmax()]), float(size.max())
+
+    @property
+    def worst(self) -> Backlash:
+        """That of this branch and those apart which has the largest force."""
+        return max((self, *self.apart), key=lambda one: one.loudest[1])
+
+    @property
+    def calm(self) -> Range | None:
+        """From the lowest to the highest frequency of stable motions; None where there are none."""
+        hz = self.frequency_hz[self.stable]
+        return Range(float(hz.min()), float(hz.max())) if len(hz) else None
+
+    @cached_property
+    def departs(self) -> float:
+        """How far off a period in time is where its force is largest, of the swing of the teeth."""
+        return departure(self.points[int(np.where(self.stable, self.force, 0.0).argmax())])
+
+    def along(self, omega: float) -> list[Point]:
+        """Motions of this branch and those apart at a frequency of the driven mesh, rad/s."""
+        every = (self, *self.apart)
+        return [point for one in every for point in one.branch.at(omega / one.periods)]
 
     @cached_property
     def linear_loudest(self) -> tuple[float, float]:

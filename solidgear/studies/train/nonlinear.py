@@ -22,9 +22,9 @@ from solidgear.errors import SolidgearError
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
-from solidgear.nonlinear.stability import multipliers
 from solidgear.scene.gears import Pair
 from solidgear.scene.operation import OperatingPoint
+from solidgear.studies.train.apart import largest, searched
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
 from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
@@ -245,6 +245,7 @@ def with_backlash(
     highest_hz: float | None = None,
     lowest_hz: float | None = None,
     told: Callable[[str], None] | None = None,
+    apart: int = 0,
 ) -> Backlash:
     """Periodic motion of a train whose teeth have backlash, by models of its shafts.
 
@@ -256,6 +257,8 @@ def with_backlash(
         Of the driven mesh; the highest is that of the file by default, the lowest a hundredth of it.
     told : callable, optional
         Called with words as it goes on.
+    apart : int
+        Speeds at which branches apart are looked for.
 
     Raises
     ------
@@ -282,9 +285,13 @@ def with_backlash(
     if told:
         told(f"branch of {' + '.join(mix.values())}")
     branch = follow(own, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
-    largest = np.array([multipliers(point)[0] for point in branch.points])
-    seconds = process_time() - begin
-    return Backlash(mix, teeth, own, branch, largest, seconds)
+    found = Backlash(mix, teeth, own, branch, largest(branch), process_time() - begin)
+    if not apart:
+        return found
+    if told:
+        told(f"branches apart of {' + '.join(mix.values())}")
+    looked = searched(found, apart, STEP)
+    return replace(looked, seconds=process_time() - begin)
 
 
 def over_force(
@@ -373,6 +380,6 @@ def in_time(
 
 def _beside(found: Backlash, one: Steady, rising: bool) -> InTime:
     force = float(np.ptp(one.force[:, 0]) / 2)
-    there = [float(np.ptp(p.forces()[:, 0]) / 2) for p in found.branch.at(one.omega)]
+    there = [float(np.ptp(p.forces()[:, 0]) / 2) for p in found.along(one.omega)]
     nearest = min(there, key=lambda size: abs(size - force))
     return InTime(one.omega / (2 * np.pi), rising, one.cycle, force, nearest)

@@ -10,6 +10,7 @@ import numpy as np
 
 from solidgear.scene.layout import PerTurn
 from solidgear.scene.train import Train
+from solidgear.studies.train.apart import plain, sentences
 from solidgear.studies.train.backlash import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.studies.train.nonlinear import InTime
 from solidgear.studies.train.speed_run import SpeedRun
@@ -111,10 +112,11 @@ class BacklashTold:
         """Sentences of the first mix, and on which of the others is enough."""
         own = self.judge
         calm = not any(one.lost for one in own.every) and not own.teeth.varies
-        if calm:
+        if calm and not own.apart:
             return [
                 "The teeth keep contact in all of the range: the linear answer holds to the last "
                 "digit.",
+                *sentences(own, self._at, self._range),
                 *self._run(),
                 *self._verdict(),
             ]
@@ -122,17 +124,22 @@ class BacklashTold:
         lines += self._jumped(own.jumps)
         lines += self._returned(own)
         lines += [WANDERS.format(self._range(one), kind) for kind, one in own.wandering]
+        lines += sentences(own, self._at, self._range)
         for one in own.every:
-            (at, size), (there, linear) = one.loudest, one.linear_loudest
+            (at, size), (there, linear) = one.worst.loudest, one.linear_loudest
+            where = ""
+            if one.worst is not one:
+                own_at, own_size = one.loudest
+                where = f" on a branch apart, {own_size:.0f} N at {self._at(own_at)} on this one"
             lines.append(
-                f"Largest dynamic mesh force{self._of(one)} {size:.0f} N at {self._at(at)}; the linear "
-                f"answer says {linear:.0f} N at {self._at(there)}."
+                f"Largest dynamic mesh force{self._of(one)} {size:.0f} N at {self._at(at)}{where}; the "
+                f"linear answer says {linear:.0f} N at {self._at(there)}."
             )
         if not own.teeth.varies:
             held = float(own.holding[1].max())
             lines.append(
                 f"At mean forces{self._of(own)} above {held:.0f} N ({held * self.lever:.0f} N m on the "
-                f"{self.train.reference}) the teeth never part in this range."
+                f"{self.train.reference}) the teeth never part on the branch from low speed."
             )
         lines += [line for one in own.every for line in self._off(one)]
         lines += [*self._checked(), *self._run(), *self._verdict()]
@@ -142,7 +149,7 @@ class BacklashTold:
             lines.append(PHASES)
         lines.append(
             "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
-            "are followed to 1e-4 of the largest. Motions apart from this branch are not looked for."
+            "are followed to 1e-4 of the largest."
         )
         return lines
 
@@ -221,7 +228,7 @@ class BacklashTold:
                 parted = f"the teeth{of} part in {share:.3g} %, from {self._range(one.lost)}"
             lines.append(
                 f"Run {way} at {self._rpm(abs(one.ramp)):.6g} rpm/s: largest dynamic mesh force{of} "
-                f"{size:.0f} N at {self._at(at)}; stable motions of one mesh period "
+                f"{size:.0f} N at {self._at(at)}; stable motions of this branch "
                 f"reach {steady:.0f} N at {self._at(steady_at)}."
             )
             lines.append(
@@ -243,7 +250,7 @@ class BacklashTold:
             _worst(*([e for r in f.lost for e in (r.low, r.high)] for f in two)) for two in both
         ]
         lost = None if None in ends else max(e for e in ends if e is not None)
-        force = max((a.loudest[1] / b.loudest[1] - 1 for a, b in both), key=abs)
+        force = max((a.worst.loudest[1] / b.worst.loudest[1] - 1 for a, b in both), key=abs)
         factor = 10 ** (ask.decibels / 20)
         close = 1 / factor <= 1 + force <= factor
         return Sufficiency(
@@ -251,7 +258,7 @@ class BacklashTold:
             jumps,
             len(ours),
             force,
-            one.loudest[0] / judge.loudest[0] - 1,
+            one.worst.loudest[0] / judge.worst.loudest[0] - 1,
             lost,
             jumps is not None and jumps <= ask.tolerance and close,
             one.seconds,
@@ -325,12 +332,13 @@ class BacklashTold:
             "other_flank": own["other_flank"],
             "jumps": [asdict(jump) for jump in one.jumps],
             "unstable": [{"by": kind, **asdict(r)} for kind, r in one.wandering],
+            **plain(one),
             **own,
             **({"other_meshes": others} if others else {}),
         }
 
     def _of_mesh(self, one: Backlash) -> dict[str, Any]:
-        (at, size), (there, linear) = one.loudest, one.linear_loudest
+        (at, size), (there, linear) = one.worst.loudest, one.linear_loudest
         return {
             "parts": [asdict(r) for r in one.lost],
             "other_flank": [asdict(r) for r in one.both_flanks],
@@ -339,7 +347,7 @@ class BacklashTold:
             "linear_off": [
                 {**asdict(r), "decibels": most} for r, most in one.off(self.train.ask.decibels)
             ],
-            "orders_at_largest": one.spectrum().tolist(),
+            "orders_at_largest": one.worst.spectrum().tolist(),
         }
 
 

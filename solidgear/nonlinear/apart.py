@@ -1,0 +1,293 @@
+r"""Branches apart from one that was followed: isolas, and motions of two periods of the excitation.
+
+Newton's method of the harmonic balance begins at motions of one order with many amplitudes and
+phases, at some speeds.  A motion that it arrives at and that lies on no branch known so far is
+followed both ways, until it is back where it began, merges or leaves the range.  It finds unstable
+motions as well as stable ones: an isola is met anywhere between its ends, not just where it is stable.
+
+No number of starts shows that there are no others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from solidgear.errors import SolidgearError
+from solidgear.machine.threads import pinned
+from solidgear.nonlinear.balance import Balance, as_complex
+from solidgear.nonlinear.continuation import Branch, Follower, Point, cut, fitted, walked
+from solidgear.nonlinear.motion import departure
+
+#: starts at a speed of one and of two periods, orders of the excitation that they balance, and steps
+#: of Newton's method that they may take
+STARTS, SEEDED, STEPS = {1: 16, 2: 8, 3: 8}, 5, 8
+#: amplitudes of starts, of the gap and what the mean force presses in beyond it, and above which a
+#: trial is given up
+AMPLITUDES, FAR = (0.4, 1.6), 30.0
+#: shares of 1 by which amplitudes and phases of starts advance: evenly spread, whatever their number
+SPREAD = (0.7548776662466927, 0.5698402909980532)
+#: changes that end Newton's method, and that tell motions of one balance and of two apart, relative
+CLOSE, APART, OTHER = 1e-9, 1e-5, 1e-2
+#: half orders over the scale of motions below which two periods are one
+MERGED = 1e-3
+#: of the swing, how far off a period in time may be of a motion that is believed
+BELIEVED = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """A branch that hangs together with none known before.
+
+    Attributes
+    ----------
+    periods : int
+        Of the excitation after which its motions repeat themselves; frequencies of the branch are
+        those of them all.
+    end : {'closed', 'range', 'merged'}
+        Back where it began, cut by the range of speeds, or of one period again.
+    """
+
+    branch: Branch = field(repr=False)
+    periods: int
+    end: str
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What was looked for, and what was found.
+
+    Attributes
+    ----------
+    omega : (n,) ndarray
+        Speeds of starts, rad/s.
+    starts : int
+        At all of them.
+    found : tuple of Apart
+    lost : tuple of float
+        Speeds of further motions that could not be followed, rad/s.
+    """
+
+    omega: np.ndarray = field(repr=False)
+    starts: int
+    found: tuple[Apart, ...]
+    lost: tuple[float, ...] = ()
+
+
+@pinned
+def search(branch: Branch, omegas: Sequence[float], step: float = 0.02) -> Search:
+    """Motions that are on no branch, from many starts at some speeds, each followed.
+
+    Parameters
+    ----------
+    branch : Branch
+        That is known.
+    omegas : sequence of float
+        rad/s, within its range.
+    step : float
+        Longest step, as that of :func:`solidgear.nonlinear.continuation.follow`.
+
+    Examples
+    --------
+    >>> from solidgear.system import Inertia, RowSpring, System
+    >>> from solidgear.nonlinear.continuation import follow
+    >>> from solidgear.nonlinear.model import remainder
+    >>> from solidgear.system.law import Gap
+    >>> teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
+    >>> pair = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    >>> losses = dict(loss={"mesh": 0.1}, kind="viscous", matched_hz=1 / (2 * np.pi))
+    >>> own = remainder(pair, load=np.array([0.1]), errors={"mesh": [0.05]}, **losses)
+    >>> search(follow(own, 0.5, 1.3), [0.6, 0.75, 0.9]).found
+    ()
+    """
+    remainder = branch.points[0].balance.remainder
+    ends = float(branch.omega.min()), float(branch.omega.max())
+    found: list[Apart] = []
+    lost: list[float] = []
+    count = 0
+    for periods, starts in STARTS.items():
+        own = remainder if periods == 1 else remainder.slower(periods)
+        balance = Balance(own, SEEDED * periods)
+        size, width = branch.scale
+        for number, omega in enumerate(omegas):
+            walk = Follower(balance, size, width / periods, periods)
+            known = [branch, *(one.branch for one in found if one.periods == 1)]
+            if periods > 1:
+                known = [one.branch for one in found if one.periods == periods]
+            met = [m for one in known for m in _across(one, omega / periods, balance)]
+            for seed in _seeds(balance, omega / periods, periods, number * starts, starts):
+                count += 1
+                motion = _arrived(balance, seed, omega / periods)
+                if motion is None or any(_same(motion, m, walk, APART) for m in met):
+                    continue
+                met.append(motion)
+                if periods > 1 and _parts(motion, own.rows, periods) < MERGED * size:
+                    continue
+                try:
+                    one = _followed(
+                        Follower(balance, size, width / periods, periods),
+                        motion,
+                        omega / periods,
+                        known,
+                        step,
+                        ends,
+                    )
+                except (SolidgearError, np.linalg.LinAlgError):
+                    lost.append(float(omega))
+                    continue
+                if one is not None:
+                    found.append(one)
+                    known.append(one.branch)
+                    met += _across(one.branch, omega / periods, balance)
+    return Search(np.array(omegas, float), count, tuple(found), tuple(lost))
+
+
+def _followed(
+    walk: Follower,
+    motion: np.ndarray,
+    omega: float,
+    known: Sequence[Branch],
+    step: float,
+    ends: tuple[float, float],
+) -> Apart | None:
+    """The branch through a motion; None where it is one of those known, or time does not bear it out."""
+    low, high = (end / walk.periods for end in ends)
+    first = walk.point(motion, omega, np.append(np.zeros(motion.size), 1.0))
+    first = fitted(walk, first)
+    if _on(first, known, walk) or not departure(first) <= BELIEVED:
+        return None
+    ahead = _Way(first, walk, step, low, high)
+    points, turning = walked(walk, first, step, True, ahead.ended)
+    ahead.trim(points)
+    if ahead.end != "closed":
+        walk.balance = first.balance
+        begin = _turned(first)
+        back = _Way(begin, walk, step, low, high)
+        other, turned = walked(walk, begin, step, True, back.ended)
+        back.trim(other)
+        count = len(other) - 1
+        points = [_turned(point) for point in other[:0:-1]] + points
+        turning = [count - k for k in reversed(turned)] + [count + k for k in turning]
+    found = Branch(tuple(points), tuple(turning), (walk.size, walk.width))
+    middle = [found.points[len(points) * k // 4] for k in (1, 2, 3)]
+    if all(_on(point, known, walk) for point in middle):
+        return None
+    return Apart(found, walk.periods, ahead.end)
+
+
+def _turned(point: Point) -> Point:
+    """The point with the branch run through the other way."""
+    return replace(point, tangent=-point.tangent, sign=-point.sign)
+
+
+class _Way:
+    """One way along a branch, and why it ends."""
+
+    def __init__(self, first: Point, walk: Follower, step: float, low: float, high: float):
+        self.first, self.walk, self.step, self.low, self.high = first, walk, step, low, high
+        self.end, self._before = "", 1.0
+
+    def ended(self, point: Point) -> bool:
+        """Tell whether a point ends it."""
+        rows, size = point.balance.remainder.rows, self.walk.size
+        if not self.low <= point.omega <= self.high:
+            self.end = "range"
+        elif (
+            self.walk.periods > 1 and _parts(point.motion, rows, self.walk.periods) < MERGED * size
+        ):
+            self.end = "merged"
+        else:
+            _, begun = self.first.balance.resized(self.first.motion, point.balance.count)
+            _, tangent = self.first.balance.resized(self.first.tangent[:-1], point.balance.count)
+            away = (point.motion - begun) / size
+            faster = (point.omega - self.first.omega) / self.walk.width
+            along = float(away @ tangent + faster * self.first.tangent[-1])
+            near = np.hypot(np.linalg.norm(away), faster) < 2 * self.step
+            if near and self._before < 0 <= along:
+                self.end = "closed"
+            self._before = along
+        return bool(self.end)
+
+    def trim(self, points: list[Point]) -> None:
+        """The last point put where the way ends."""
+        if self.end == "closed":
+            points[-1] = self.first
+        elif self.end == "range":
+            cut(points, self.walk, self.low, self.high)
+
+
+def _on(point: Point, branches: Sequence[Branch], walk: Follower) -> bool:
+    """Tell whether a motion is one of some branches, of which truncation differs."""
+    for branch in branches:
+        for other in branch.at(point.omega):
+            _, motion = other.balance.resized(other.motion, point.balance.count)
+            if _same(point.motion, motion, walk, OTHER):
+                return True
+    return False
+
+
+def _seeds(
+    balance: Balance, omega: float, periods: int, first: int, count: int
+) -> Iterator[np.ndarray]:
+    """Linear motions with another amplitude and phase of the slowest order of the driven link."""
+    own = balance.remainder
+    _, at = own.laws[0]
+    start = balance.start(omega).reshape(-1, own.rows)
+    scale = abs(start[0, at.start])
+    low, high = AMPLITUDES
+    for k in range(first, first + count):
+        shares = [((k + 1) * by) % 1.0 for by in SPREAD]
+        amplitude = scale * (low + (high - low) * shares[0])
+        out = start.copy()
+        out[1, at.start] = amplitude * np.cos(2 * np.pi * shares[1])
+        out[1 + balance.count, at.start] = amplitude * np.sin(2 * np.pi * shares[1])
+        yield out.ravel()
+
+
+def _arrived(balance: Balance, motion: np.ndarray, omega: float) -> np.ndarray | None:
+    """Where a few steps of Newton's method arrive; None where they do not."""
+    far = FAR * np.abs(motion).max()
+    for _ in range(STEPS):
+        left = balance.residual(motion, omega)
+        if not left.held:
+            return None
+        try:
+            change = np.linalg.solve(left.jacobian, -left.value)
+        except np.linalg.LinAlgError:
+            return None
+        motion = motion + change
+        if not np.abs(motion).max() < far:
+            return None
+        if np.abs(change).max() <= CLOSE * np.abs(motion).max():
+            return motion
+    return None
+
+
+def _across(branch: Branch, omega: float, balance: Balance) -> list[np.ndarray]:
+    """Motions of a branch at a speed, in another balance."""
+    out = []
+    for before, after in zip(branch.points, branch.points[1:]):
+        low, high = sorted((before.omega, after.omega))
+        if low <= omega <= high and low < high:
+            share = (omega - before.omega) / (after.omega - before.omega)
+            ends = [one.balance.resized(one.motion, balance.count)[1] for one in (before, after)]
+            found = _arrived(balance, ends[0] + share * (ends[1] - ends[0]), omega)
+            out += [] if found is None else [found]
+    return out
+
+
+def _same(motion: np.ndarray, other: np.ndarray, walk: Follower, tolerance: float) -> bool:
+    """Tell whether two motions differ by less than a tolerance, or are one begun periods apart."""
+    rows = walk.balance.remainder.rows
+    one, two = (as_complex(m.reshape(-1, rows)) for m in (motion, other))
+    turn = np.exp(2j * np.pi / walk.periods * np.arange(len(two)))[:, None]
+    least = min(np.abs(one - two * turn**k).max() for k in range(walk.periods))
+    return bool(least < tolerance * np.abs(two).max())
+
+
+def _parts(motion: np.ndarray, rows: int, periods: int) -> float:
+    """Size of the orders that a motion of one period has not."""
+    size = np.abs(as_complex(motion.reshape(-1, rows))).max(axis=1)
+    return float(size[np.arange(len(size)) % periods > 0].max())

@@ -1,0 +1,94 @@
+"""Branches apart: found from starts, closed, and what motion in time says of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.nonlinear.apart import search
+from solidgear.nonlinear.continuation import follow
+from solidgear.nonlinear.model import remainder
+from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.stability import stable
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.nonlinear import teeth_of, with_backlash
+from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.system import Inertia, RowSpring, System
+from solidgear.system.law import Gap
+
+OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
+
+
+def pair(error):
+    """x'' + 0.1 x' + f(x) = 0.1 + error w^2 cos w t."""
+    teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
+    system = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
+    losses = {"loss": {"mesh": 0.1}, "kind": "viscous", "matched_hz": 1 / (2 * np.pi)}
+    return remainder(system, load=np.array([0.1]), errors={"mesh": [error]}, **losses)
+
+
+def loudest(branch):
+    """The stable motion of the largest force, and that force."""
+    calm = [point for point in branch.points if stable(point)]
+    return max(((point, np.ptp(point.forces()) / 2) for point in calm), key=lambda one: one[1])
+
+
+@pytest.fixture(scope="module")
+def axle():
+    train = sg.load_train(OVERHUNG)
+    mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
+    shop = Workshop(train.with_changes(mesh=mesh))
+    found = with_backlash(shop, ["lumped"], teeth_of(shop, 5000.0), 2000.0, 150.0, apart=32)
+    return shop, found
+
+
+def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(axle):
+    _, found = axle
+    one, two = found.apart
+    assert (one.periods, two.periods) == (1, 2) and one.end == two.end == "closed"
+    # known from a smaller mean force, raised until the branch is apart
+    assert one.frequency_hz.min() == pytest.approx(518.5, abs=0.1)
+    assert one.loudest[1] == pytest.approx(9397, rel=1e-3)
+    assert found.worst is two and found.loudest[1] < 0.72 * two.loudest[1]
+    for other in found.apart:
+        point, force = loudest(other.branch)
+        time = settled(found.remainder, other.periods * point.omega, point.state(), steady=1e-4)
+        assert time.cycle % other.periods == 0
+        assert np.ptp(time.force) / 2 == pytest.approx(force, rel=1e-3)
+
+
+def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
+    shop, found = axle
+    told = " ".join(BacklashTold(shop.train, (found,), 0.044).sentences())
+    assert "A branch apart of two mesh periods from 100" in told
+    assert "looked for from 1024 starts at 32 speeds" in told and "there may be others" in told
+    assert "on a branch apart, 7392 N" in told
+
+
+def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else():
+    own = pair(0.05)
+    branch = follow(own, 0.3, 2.5, step=0.02)
+    looked = search(branch, np.geomspace(0.35, 2.4, 10))
+    (one,) = looked.found
+    assert one.periods == 2 and one.end == "closed" and not looked.lost
+    low, high = 2 * one.branch.omega.min(), 2 * one.branch.omega.max()
+    point = one.branch.at(0.8)[np.argmax([p.rms[0] for p in one.branch.at(0.8)])]
+    time = settled(own, 1.6, point.state())
+    assert time.cycle == 2
+    assert np.ptp(time.force) == pytest.approx(np.ptp(point.forces()), rel=1e-3)
+    # beyond its ends such a motion falls back to that of one period
+    for omega in (0.97 * low, 1.03 * high):
+        assert settled(own, omega, point.state()).cycle == 1
+
+
+def test_a_branch_of_two_periods_that_comes_off_another_ends_there():
+    own = pair(0.1)
+    branch = follow(own, 0.3, 2.5, step=0.02)
+    looked = search(branch, [1.2])
+    (one,) = looked.found
+    assert one.end == "merged" and one.periods == 2
+    # both ends are motions of one period, on the branch
+    for point in (one.branch.points[0], one.branch.points[-1]):
+        there = branch.at(2 * point.omega)
+        assert min(abs(p.rms[0] / point.rms[0] - 1) for p in there) < 1e-3
