@@ -78,7 +78,7 @@ def static_bars(scene: Scene, body: Body, points: tuple[str, ...]) -> dict[Quant
 
 
 def _left_over(scene: Scene, before: Body, body: Body) -> float:
-    """What a step between two meshes leaves of itself, by the sharpest edge: concave ones, the ends
+    """Share of a step between two meshes that it leaves, by the sharpest edge: concave ones, the ends
     of rigid patches, and of those in the mean, where pressure jumps.
     """
     sizes = (before.mesh["representative_size"], body.mesh["representative_size"])

@@ -57,7 +57,7 @@ class Apart:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What was looked for, and what was found.
+    """Search for branches apart: starts, and motions found.
 
     Attributes
     ----------
@@ -247,7 +247,7 @@ def _seeds(
 
 
 def _arrived(balance: Balance, motion: np.ndarray, omega: float) -> np.ndarray | None:
-    """Where a few steps of Newton's method arrive; None where they do not."""
+    """Place at which a few steps of Newton's method arrive; None where they do not."""
     far = FAR * np.abs(motion).max()
     for _ in range(STEPS):
         left = balance.residual(motion, omega)

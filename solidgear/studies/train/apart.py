@@ -64,7 +64,7 @@ def _lively(found: Backlash, count: int) -> np.ndarray:
 def sentences(
     found: Backlash, at: Callable[[float], str], span: Callable[[Range], str]
 ) -> list[str]:
-    """What was looked for and found, with words for a frequency and for a range of them."""
+    """Sentences of starts and motions found, with words for a frequency and for a range of them."""
     looked = found.search
     if looked is None:
         return [UNSEARCHED]

@@ -278,7 +278,7 @@ class Backlash:
 
     @cached_property
     def departs(self) -> float:
-        """How far off a period in time is where its force is largest, of the swing of the teeth."""
+        """Distance of a period in time where its force is largest, of the swing of the teeth."""
         return departure(self.points[int(np.where(self.stable, self.force, 0.0).argmax())])
 
     def along(self, omega: float) -> list[Point]:
