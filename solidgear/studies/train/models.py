@@ -23,6 +23,7 @@ from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
+from solidgear.studies.train.space import overlaps
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -251,12 +252,15 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Data of the meshes that do not fit together but can be solved, in words."""
-        return tuple(
+        """Data that do not fit together but can be solved, in words: of the meshes, and of shafts that
+        take the same space.
+        """
+        told = [
             f"{name}: {text}" if len(self.contacts) > 1 else text
             for name, met in self.contacts.items()
             for text in met.cautions
-        )
+        ]
+        return (*told, *map(str, overlaps(self.train, self.scenes, self.places)))
 
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
