@@ -36,7 +36,6 @@ from solidgear.system.system import System
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"
-
 LOOP = (
     "meshes of a loop divide the torque by their stiffness, as if all of their teeth touched without "
     "load: errors of teeth and places shift it"
@@ -197,8 +196,9 @@ class Operating:
         except SolidgearError as error:
             raise SolidgearError(f"at {point.label}: {error}") from None
         found = _engine_still(found, held.system, shop.train)
-        if own := divided(shop, held.system, found.coordinates, point.label):
-            forces, notes = {n: {**forces, **own}[n] for n in shop.contacts}, [*notes, LOOP]
+        if looped := divided(shop, held.system, found.coordinates, point.label):
+            forces = {name: {**forces, **looped}[name] for name in shop.contacts}
+            notes.append(LOOP)
         notes += list(_told(found, held.system, point))
         models = shop.mix(self.models)
         own = models, forces, found, held.system, self.made, loads

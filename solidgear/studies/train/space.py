@@ -26,8 +26,9 @@ LEAST = 1e-5
 PARALLEL = 1e-6
 #: depth of teeth in modules, and a little more: a blank that reaches into them carries them
 DEEP = 2.5
-#: places along parallel axes, points around a circle, and circles along its radius
-ALONG, AROUND, FINE = 9, 72, 6
+#: places along parallel axes; points around a circle, circles along its radius, and at most along a
+#: piece
+ALONG, AROUND, FINE, MOST = 9, 72, 6, 500
 
 
 @dataclass(frozen=True)
@@ -214,6 +215,10 @@ def across(
     shafts: tuple[str, str], one: Piece, two: Piece, turn: np.ndarray, at: np.ndarray
 ) -> Iterator[Overlap]:
     """Overlap of two pieces on axes at an angle: points of either in the other."""
+    middles = [np.array([0.0, sum(piece.y) / 2, 0.0]) for piece in (one, two)]
+    reach = sum(np.hypot((p.y[1] - p.y[0]) / 2, max(p.outer)) for p in (one, two))
+    if np.linalg.norm(at + turn @ middles[1] - middles[0]) > reach:
+        return
     back = turn.T, -turn.T @ at
     ways = ((shafts, one, two, *back), (shafts[::-1], two, one, turn, at))
     for (a, b), own, other, into, origin in ways:
@@ -238,7 +243,7 @@ def _step(*pieces: Piece) -> float:
 def _points(piece: Piece, step: float) -> np.ndarray:
     """(n, 3) points of the outer surface and of both ends of a piece."""
     length = piece.y[1] - piece.y[0]
-    y = np.linspace(*piece.y, 2 + ceil(length / step))
+    y = np.linspace(*piece.y, min(2 + ceil(length / step), MOST))
     rings = [(v, r) for v, r in zip(y, piece.radii(y)[1])]
     for k in (0, 1):
         count = 1 + ceil((piece.outer[k] - piece.inner[k]) / step)
