@@ -129,23 +129,25 @@ def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> li
         seat = next(s for s in scene.stations if s.name == port)
         meshes = frozenset(pair.name for pair in pairs)
         gear, depth = known[0] if known else (Piece("", (seat.lo, seat.hi), (0.0, 0.0)), np.inf)
-        for pair in pairs:
-            tips[pair.name] = tips.get(pair.name, 0.0) + (max(gear.outer) if known else np.inf)
+        tip = max(gear.outer) if known else np.inf
         straight, bore = bool(known) and gear.outer[0] == gear.outer[1], gear.outer
         for k, one in enumerate(blanks):
             along = min(one.y[1], gear.y[1]) - max(one.y[0], gear.y[0])
             if along < min(one.y[1] - one.y[0], gear.y[1] - gear.y[0]) / 2:
                 continue
             bore = min(bore, one.inner)
-            # a blank up to the teeth, or of a bevel gear any that is as large
-            fits = max(one.outer) <= max(gear.outer) + LEAST or not straight
-            if fits and max(one.outer) >= min(gear.outer) - depth:
-                blanks[k] = replace(one, meshes=one.meshes | meshes)
+            # a blank up to the teeth, whose profile shift may not be told; of a bevel gear any as large
+            size = max(one.outer)
+            fits = size <= max(gear.outer) + depth / DEEP or not straight
+            if fits and size >= min(gear.outer) - depth:
+                blanks[k], tip = replace(one, meshes=one.meshes | meshes), max(tip, size)
+        for pair in pairs:
+            tips[pair.name] = tips.get(pair.name, 0.0) + tip
         gears += [replace(gear, inner=bore, meshes=meshes)] if known else []
     for k, segment in enumerate(scene.segments):
         if segment.part == "backcone":  # of the head before it or behind it
-            beside = blanks[max(k - 1, 0) : k + 2]
-            blanks[k] = replace(blanks[k], meshes=frozenset().union(*(b.meshes for b in beside)))
+            head = blanks[max(k - 1, 0) : k + 2]
+            blanks[k] = replace(blanks[k], meshes=frozenset().union(*(b.meshes for b in head)))
     return [*blanks, *gears]
 
 
