@@ -1014,6 +1014,22 @@ MUTATIONS = (
         "::test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth",
     ),
     Mutation(
+        "all of the power passes a mesh that a load before it has taken some of",
+        "solidgear/scene/power.py",
+        "flows_of",
+        "flow * (abs(flow) > NONE)",
+        "(flow > NONE) - (flow < -NONE)",
+        "tests/test_train_power.py::test_a_torque_divides_by_the_shares_of_the_power",
+    ),
+    Mutation(
+        "teeth of a gear take no space beyond its pitch circle",
+        "solidgear/studies/train/space.py",
+        "_gear",
+        "radius + module * (1 + wheel.profile_shift)",
+        "radius",
+        "tests/test_train_space.py::test_a_wheel_turned_into_the_first_shaft_is_told_by_how_much",
+    ),
+    Mutation(
         "no grid points at the poles",
         "solidgear/system/steady.py",
         "SteadyState.grid",

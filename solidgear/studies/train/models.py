@@ -26,6 +26,7 @@ from solidgear.studies.train.housing import astray, losses_of, mounts_of, part_o
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
+from solidgear.studies.train.space import overlaps
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -254,12 +255,15 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Data of meshes and housing that do not fit together but can be solved, in words."""
-        told = (
+        """Data that do not fit together but can be solved, in words: of the meshes, of shafts that take
+        the same space, and of the housing.
+        """
+        told = [
             f"{name}: {text}" if len(self.contacts) > 1 else text
             for name, met in self.contacts.items()
             for text in met.cautions
-        )
+        ]
+        told += map(str, overlaps(self.train, self.scenes, self.places))
         return (*told, *astray(self.train, self.scenes, self.places))
 
     def on_flank(self, coast: bool) -> Workshop:

@@ -37,6 +37,10 @@ from solidgear.system.system import System
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"
+LOOP = (
+    "meshes of a loop divide the torque by their stiffness, as if all of their teeth touched without "
+    "load: errors of teeth and places shift it"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +202,9 @@ class Operating:
         except SolidgearError as error:
             raise SolidgearError(f"at {point.label}: {error}") from None
         found = _engine_still(found, held.system, shop.train)
-        forces |= divided(shop, held.system, found.coordinates, point.label)
+        if looped := divided(shop, held.system, found.coordinates, point.label):
+            forces = {name: {**forces, **looped}[name] for name in shop.contacts}
+            notes.append(LOOP)
         notes += list(_told(found, held.system, point))
         models = shop.mix(self.models)
         own = models, forces, found, held.system, self.made, loads
