@@ -154,8 +154,10 @@ def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:
-    """Models that the first are held against; a shaft of several gears is no lumped one."""
-    single = all(len(shaft.gears) == 1 for shaft in shop.train.shafts.values())
+    """Models that the first are held against; a shaft of several gears, or in a housing, is no lumped one."""
+    single = not shop.train.housed and all(
+        len(shaft.gears) == 1 for shaft in shop.train.shafts.values()
+    )
     usual = ("lumped", "timoshenko") if single else ("timoshenko",)
     return [(model,) * len(shop.train.shafts) for model in usual]
 
