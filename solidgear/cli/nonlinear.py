@@ -161,8 +161,9 @@ def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:
-    """Models that the first are held against."""
-    return [(model,) * len(shop.train.shafts) for model in ("lumped", "timoshenko")]
+    """Models that the first are held against; shafts in a housing are no lumped ones."""
+    usual = ("timoshenko",) if shop.train.housed else ("lumped", "timoshenko")
+    return [(model,) * len(shop.train.shafts) for model in usual]
 
 
 def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:

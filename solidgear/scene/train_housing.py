@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 HOUSING, CENTRE = "housing", "centre"
 #: moments of inertia that are typed with four digits may break the triangle inequality by this
 TYPED = 1e-3
+#: loss factor of castings with their joints, where none is told
+LOSS = 0.01
 
 
 def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
@@ -103,8 +105,8 @@ class TrainHousing(Model):
         3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal.
     centre : tuple of float
         Its centre of mass, m.
-    loss : float
-        Loss factor of an elastic one.
+    loss : float or None
+        Loss factor of an elastic one, 0.01 by default.
     carries : tuple of str
         Shafts whose bearings stand in it; all by default.
     mounts : tuple of Mount
@@ -126,7 +128,7 @@ class TrainHousing(Model):
     mass: Mass
     inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
     centre: Vector
-    loss: Loss = 0.01
+    loss: Loss | None = None
     carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     mounts: tuple[Mount, ...] = Field((), alias="mount")
     points: dict[str, Vector] = {}
@@ -141,6 +143,8 @@ class TrainHousing(Model):
 
     @model_validator(mode="after")
     def _named_once(self):
+        if self.loss is not None and self.matrices is None:
+            raise SceneError("is of an elastic housing; a rigid one loses nothing", path=("loss",))
         places, taken = [*self.known], [CENTRE]
         for k, mount in enumerate(self.mounts):
             if mount.at is not None and mount.at not in places:

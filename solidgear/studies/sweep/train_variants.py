@@ -18,6 +18,7 @@ from solidgear.scene.paths import Keys, Tables
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_file import train_of
+from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.loading import scene_of
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry, Place
@@ -142,7 +143,7 @@ def train_variants(
 
     varied, values, kept = design.points(
         files,
-        partial(_owner, [*shafts], many),
+        partial(_owner, [*shafts], many, HOUSING in own),
         points,
         example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5",
     )
@@ -172,7 +173,7 @@ def _scene(path: Path, table: Any) -> Tables:
     return parse(str(path.parent / name)) if isinstance(name, str) else {}
 
 
-def _owner(shafts: Sequence[str], many: bool, path: str) -> tuple[str, str]:
+def _owner(shafts: Sequence[str], many: bool, housed: bool, path: str) -> tuple[str, str]:
     """The scene of a shaft owns the keys of scenes, the train file all others."""
     if many:
         path = path.removeprefix("shaft.")
@@ -181,7 +182,8 @@ def _owner(shafts: Sequence[str], many: bool, path: str) -> tuple[str, str]:
         return first, within
     if many and first in shafts:
         return OWN, f"shaft.{path}"
-    if first in KEYS and first not in {*Train.model_fields, *shafts, *SHORT, "mesh"}:
+    of_train = {*Train.model_fields, *shafts, *SHORT, "mesh"} - ({HOUSING} if not housed else set())
+    if first in KEYS and first not in of_train:
         raise SolidgearError(
             f"--vary {path}: is of the scene of a shaft; say of which: "
             + " or ".join(f"{side}.{path}" for side in shafts)

@@ -10,10 +10,9 @@ import numpy as np
 
 from solidgear.frames import DOF_NAMES
 from solidgear.reduction.superelement import PortMotion
-from solidgear.scene import Scene
 from solidgear.scene.housing_matrices import HousingMatrices
 from solidgear.scene.train import Train
-from solidgear.scene.train_housing import CENTRE, HOUSING, TrainHousing
+from solidgear.scene.train_housing import CENTRE, HOUSING, LOSS, TrainHousing
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
 from solidgear.system.links import BearingSpring, Link, apart
 from solidgear.system.parts import Part, Placed, RigidBody
@@ -78,15 +77,20 @@ def mounts_of(housing: TrainHousing) -> dict[str, Link]:
 def losses_of(housing: TrainHousing) -> dict[str, float]:
     """Loss factors of mounts, and of an elastic housing."""
     own = {f"mount {name}": mount.loss for name, mount in housing.mounted.items()}
-    return own if housing.matrices is None else {HOUSING: housing.loss, **own}
+    if housing.matrices is None:
+        return own
+    return {HOUSING: LOSS if housing.loss is None else housing.loss, **own}
 
 
-def under(train: Train, side: str, bearing: str) -> str | None:
-    """Port of the housing that a bearing stands in; None of one that stands on ground."""
+def under(train: Train, side: str, station: str) -> str | None:
+    """Port of the housing that a bearing stands in, or that a place of a shaft is held against; None
+    where the bearings of the shaft stand on ground.
+    """
     if train.housing is None or side not in train.housed:
         return None
+    own, end = train.housing.matrices, f"{side}.{station}"
     # wherever a bearing stands, a rigid housing moves it by the motion of its centre of mass
-    return BOX if train.housing.matrices is None else f"{HOUSING}.{side}.{bearing}"
+    return BOX if own is None or end not in own.positions else f"{HOUSING}.{end}"
 
 
 def standing_in(train: Train, side: str, links: dict[str, Link]) -> dict[str, Link]:
@@ -101,11 +105,11 @@ def standing_in(train: Train, side: str, links: dict[str, Link]) -> dict[str, Li
     }
 
 
-def seat_motion(train: Train, system: System, side: str, bearing: str) -> np.ndarray:
-    """(6, N) motion of a bearing's inner ring against what it stands in."""
-    below = under(train, side, bearing)
+def seat_motion(train: Train, system: System, side: str, station: str) -> np.ndarray:
+    """(6, N) motion of a bearing's inner ring, or of a place beside, against what it stands in."""
+    below = under(train, side, station)
     around = [system.port(below)] if below is not None else []
-    return apart(system.port(f"{side}.{bearing}"), *around)
+    return apart(system.port(f"{side}.{station}"), *around)
 
 
 def mount_rows(train: Train, system: System) -> dict[str, np.ndarray]:
@@ -202,28 +206,29 @@ def facts_of(train: Train) -> Iterator[str]:
         f"{kind} of {housing.mass:.4g} kg carries the bearings of {', '.join(train.housed)} on "
         f"{len(housing.mounts)} mounts; alone on them it has modes at {alone} Hz"
     )
-    if own is not None:
-        yield "what the matrices of the housing leave out is in no bar and no bound"
 
 
-def astray(
-    train: Train, scenes: Mapping[str, Scene], places: Mapping[str, tuple[np.ndarray, np.ndarray]]
-) -> list[str]:
-    """Sentences on points of an elastic housing that are not where the bearings in it stand.
+def cautions_of(train: Train, places: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> list[str]:
+    """Sentences on what no bar says of a housing, and on points of an elastic one that are not where
+    the bearings in it stand.
 
     Parameters
     ----------
     places : mapping of str to ((3, 3) ndarray, (3,) ndarray)
         Turn and origin of every shaft's scene in the axes of the train.
     """
-    own = train.housing.matrices if train.housing is not None else None
-    out = []
-    for side in train.housed if own is not None else ():
+    if train.housing is None:
+        return []
+    if (own := train.housing.matrices) is None:
+        return [
+            "the housing is rigid: modes of its walls are in no number and in no bar; where they "
+            f"lie below {train.ask.max_frequency:g} Hz, give its matrices"
+        ]
+    out = ["what the matrices of the housing leave out is in no bar and in no bound"]
+    for side in train.housed:
         turn, origin = places[side]
-        for bearing in scenes[side].bearings:
+        for bearing in train.shafts[side].scene.bearings:
             name = f"{side}.{bearing.name}"
-            if own is None or name not in own.positions:  # a station that carries nothing
-                continue
             off = np.linalg.norm(own.positions[name] - origin - turn[:, 1] * bearing.y)
             if off > ASTRAY:
                 out.append(

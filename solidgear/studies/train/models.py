@@ -22,7 +22,7 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
-from solidgear.studies.train.housing import astray, losses_of, mounts_of, part_of, standing_in
+from solidgear.studies.train.housing import cautions_of, losses_of, mounts_of, part_of, standing_in
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
@@ -229,7 +229,7 @@ class Workshop:
         return out
 
     def with_train(self, train: Train) -> Workshop:
-        """The same shafts in a train that differs in bearings, mesh or operating point alone; bodies
+        """The same shafts in a train that differs in bearings, housing, mesh or operating point; bodies
         and their reductions are kept.
         """
         out = self._on_other_bearings()
@@ -255,16 +255,12 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Data that do not fit together but can be solved, in words: of the meshes, of shafts that take
-        the same space, and of the housing.
-        """
-        told = [
-            f"{name}: {text}" if len(self.contacts) > 1 else text
-            for name, met in self.contacts.items()
-            for text in met.cautions
-        ]
+        """Cautions on meshes, shafts that take the same space, and the housing, in words."""
+        several = len(self.contacts) > 1
+        met = [(f"{name}: " * several, own.cautions) for name, own in self.contacts.items()]
+        told = [head + text for head, cautions in met for text in cautions]
         told += map(str, overlaps(self.train, self.scenes, self.places))
-        return (*told, *astray(self.train, self.scenes, self.places))
+        return (*told, *cautions_of(self.train, self.places))
 
     def on_flank(self, coast: bool) -> Workshop:
         """The same train with one of the two flanks of its teeth in contact.
