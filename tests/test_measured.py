@@ -145,6 +145,17 @@ def test_two_modes_that_changed_places_are_told_apart_by_multiplicity():
     assert pairs[1].argmax() == 2 and pairs[2].argmax() == 1
 
 
+def test_three_modes_in_another_order_are_told_apart_by_their_shapes():
+    modes = [Peak(x, 0.1, 1, "bending") for x in (0.0, 0.03, 0.2)] + [Peak(1.0, 1e-3, 1)]
+    mac = np.full((4, 4), 0.05)
+    right = [1, 2, 0, 3]  # as no neighbours changing places make it
+    mac[range(4), right] = 0.998
+    seen = Seen(mac, 30, np.ones(4, int), 0.05)
+    found = align([replace(mode, width=1e-3) for mode in modes], modes, seen)
+    assert found.pairs.argmax(axis=1).tolist() == right
+    assert found.pairs[range(4), right].min() > SURE
+
+
 def shaped(x, components=30, noise=0.05, span=1):
     """How like one shape is two modes, of which it is `x` short of the first and 0.99 of the other."""
     mac = np.array([[1 - x, 0.01]])

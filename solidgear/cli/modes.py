@@ -21,9 +21,11 @@ from solidgear.cli.shared import (
     Run,
     SceneFile,
     Solved,
+    options,
 )
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.second_mesh import second_bars
 from solidgear.judge.settle import bars_of_modes
 from solidgear.report.terminal import modes_table
 from solidgear.report.words import by_plane
@@ -33,6 +35,8 @@ from solidgear.solve.modes import modes as solve
 from solidgear.studies.budget import beside
 from solidgear.studies.check import cautions
 
+#: models that have bars from a second mesh where theirs is set
+SECOND = ("solid",)
 #: rows of a list whose beginning has left the terminal
 MANY = 30
 
@@ -52,6 +56,13 @@ def modes(
             "--count", help="Prove by the inertia of a second factor that no mode was missed."
         ),
     ] = False,
+    second: Annotated[
+        bool,
+        typer.Option(
+            "--bars/--no-bars",
+            help="Of -f solid: tell bars by a coarser second mesh, which takes a quarter more time.",
+        ),
+    ] = True,
     run: Run,
 ) -> None:
     if max_frequency is not None and not max_frequency > 0:
@@ -70,6 +81,8 @@ def modes(
         count=count,
     )
     bars = bars_of_modes(loaded, body, found, settled)
+    if settled is None and second and body.fidelity in SECOND:
+        bars = second_bars(loaded, body, found, options(model.pairs))
     said = cautions(loaded, body)
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
@@ -131,7 +144,11 @@ def modes(
         say(completeness(e, body.fidelity), soft_wrap=False)
     lines = bar_lines(settled)
     if settled is None:
-        lines.append("No bars: the model was given, and its mesh with it; -f auto has them.")
+        lines.append(
+            "Bars: from a second, coarser mesh."
+            if bars
+            else "No bars: the model was given, and its mesh with it; -f auto has them."
+        )
     if bars:
         lines += unjudged(without_bar(found, bars), body.fidelity)
     lines += beyond(bars, settled)

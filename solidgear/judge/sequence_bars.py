@@ -72,13 +72,15 @@ def sequence_bars(
     last = [size or 0.0 for size in sizes[-3:]]
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
+    left_over = 1 / ((last[-2] / last[-1]) ** (2 * sharpest(scene)) - 1)
+    return step_bars(levels, solver, safety, left_over=left_over)
+
+
+def sharpest(scene: Scene) -> float:
+    """Exponent of displacement at the sharpest corner: of shoulders, features and rigid seats."""
     held = any(s.attachment == "rigid" for s in scene.stations)
     notched = any(f.notched for f in scene.features)
-    exponent = min(
-        sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0
-    )
-    left_over = 1 / ((last[-2] / last[-1]) ** (2 * exponent) - 1)
-    return step_bars(levels, solver, safety, left_over=left_over)
+    return min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0)
 
 
 def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:

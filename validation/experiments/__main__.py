@@ -175,7 +175,7 @@ The steel cylinder as its file says, its lowest 38 shapes in ascending order; al
 | --- | --- | --- | --- |
 {solids}
 
-Worst is n = 4, of which twelve cells around leave three to a wave. `modes -f solid` has no bars, and says so; `correlate` and `-f auto` take the harmonic solid. A second mesh at `refinement = 0.67` takes a quarter to a half more time; over five scenes its step was at least 1.3 times the error that was left, mode by mode by name, so that a bar would be cheap.
+Worst is n = 4, of which twelve cells around leave three to a wave. `modes -f solid` tells bars by a second, coarser mesh; `correlate` and `-f auto` take the harmonic solid.
 
 Sources: steel cylinder, dimensions and mass as measured with the resonances; aluminium rod, B. Zadler and J. H. L. Le Rousseau, Installation and Help Guide to Fitspectra and RUS-inverse, Table 3.1; Macor, B. Zadler, J. H. L. Le Rousseau, J. A. Scales and M. L. Smith, Geophys. J. Int. 156 (2004) 154, section 10.1. Aluminium and Ti-6Al-4V blocks, dimensions and density as measured with the resonances. Numbers are cited as facts.
 """

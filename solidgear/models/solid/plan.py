@@ -47,7 +47,7 @@ def hexahedra_layout(
         # quadratic sides: what layers do at a sharp corner, more of them do at a round one
         corner_cells=max(1, layers),
     )
-    return layout(scene, grading, attachments), max(8, 4 * int(round(around * refinement / 4)))
+    return layout(scene, grading, attachments), turns_of(around, refinement)
 
 
 def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) -> float:
@@ -64,6 +64,11 @@ def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) 
 def usual_size(scene) -> float:
     """Element edge of tetrahedra at refinement 1, away from everything, m."""
     return scene.outline.largest_radius / 3
+
+
+def turns_of(around: int, refinement: float) -> int:
+    """Hexahedra around at some refinement."""
+    return max(8, 4 * int(round(around * refinement / 4)))
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:

@@ -3,8 +3,8 @@ were measured, shapes, and how sure that is.
 
 Both lists ascend. They are laid beside each other by a hidden Markov model: a step takes one of
 each (the same mode), two measured and one computed (a pair that was measured split), one measured
-and two computed (two modes too near each other to be told apart), two of each crosswise, or one of
-either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
+and two computed (two modes too near each other to be told apart), two of each crosswise, three of each
+in another order, or one of either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
 by a common shift, such as that of a modulus which is not known well, and a scatter beside what is
 told of each; both are found with the pairing (expectation maximisation). Forward and backward sums
 (Rabiner 1989, Proc. IEEE 77, 257, eqs. 19 to 27) give the probability of every pair, which is what
@@ -28,6 +28,8 @@ SAME, SPLIT, SPURIOUS, MISSED = 0.8, 0.02, 0.03, 0.12
 BANDWIDTH = 2e-3
 #: two crosswise: scatter of both alone decides whether they changed places
 CROSSED = SAME**2
+#: and so of three, in the orders that no neighbours changing places make of them
+TURNED, ORDERS = SAME**3, ((1, 2, 0), (2, 0, 1), (2, 1, 0))
 #: a single resonance where a pair was computed (a split pair of which one was seen), and a pair
 #: where a single one was
 HALF, DOUBLE = 0.2, 0.02
@@ -153,7 +155,8 @@ class Alignment:
     scatter: float
 
 
-_Steps = dict[tuple[int, int], np.ndarray]
+#: by the numbers of both lists that a step takes, and which of its kind it is
+_Steps = dict[tuple[int, int, int], np.ndarray]
 
 
 def align(
@@ -222,7 +225,7 @@ class _Lattice:
         shaped = np.zeros(shape) if seen is None else seen.log_likelihoods(computed, scatter)
         #: that a sum of two shapes is within noise of one alone: of its angle
         chance = 0.0 if seen is None else math.log(2 * seen.noise / math.pi)
-        #: by the numbers of both lists that a step takes, its log-likelihoods by where it begins
+        #: log-likelihoods of every step by where it begins
         self.steps = _steps(measured, computed, shift, scatter, shaped, chance)
         self.forward = _sums(self.steps, shape)
         back = {step: logs[::-1, ::-1] for step, logs in self.steps.items()}
@@ -233,17 +236,20 @@ class _Lattice:
     def alignment(self) -> Alignment:
         """Probabilities of pairs."""
         share = {}
-        for (a, b), logs in self.steps.items():
+        for (a, b, kind), logs in self.steps.items():
             begun = self.forward[: logs.shape[0], : logs.shape[1]]
-            share[a, b] = np.exp(begun + logs + self.backward[a:, b:] - self.total)
-        pairs = share[1, 1]
-        pairs[:-1] += share[2, 1]
-        pairs[1:] += share[2, 1]
-        pairs[:, :-1] += share[1, 2]
-        pairs[:, 1:] += share[1, 2]
-        pairs[:-1, 1:] += share[2, 2]
-        pairs[1:, :-1] += share[2, 2]
-        spurious, missed = share[1, 0].sum(axis=1), share[0, 1].sum(axis=0)
+            share[a, b, kind] = np.exp(begun + logs + self.backward[a:, b:] - self.total)
+        pairs = share[1, 1, 0]
+        pairs[:-1] += share[2, 1, 0]
+        pairs[1:] += share[2, 1, 0]
+        pairs[:, :-1] += share[1, 2, 0]
+        pairs[:, 1:] += share[1, 2, 0]
+        pairs[:-1, 1:] += share[2, 2, 0]
+        pairs[1:, :-1] += share[2, 2, 0]
+        for kind, order in enumerate(ORDERS):
+            for one in _ordered(pairs, order) if (3, 3, kind) in share else ():
+                one += share[3, 3, kind]
+        spurious, missed = share[1, 0, 0].sum(axis=1), share[0, 1, 0].sum(axis=0)
         return Alignment(pairs, spurious, missed, self.shift, self.scatter)
 
 
@@ -280,26 +286,38 @@ def _steps(
     amid += one + np.where(one > 0, chance, 0.0) + named[:, :-1] + named[:, 1:]
     amid = np.where(near[:, :-1] & near[:, 1:], amid, -np.inf)
     crossed = like[:-1, 1:] + like[1:, :-1] + alike[:-1, 1:] + alike[1:, :-1]
-    return {
-        (1, 0): np.full((n, m + 1), alone),
-        (0, 1): np.full((n + 1, m), math.log(MISSED)),
-        (1, 1): like + alike + math.log(SAME),
-        (2, 1): like[:-1] + like[1:] + split,
-        (1, 2): amid + np.log(np.maximum(SAME * within, TINY)),
-        (2, 2): crossed + math.log(CROSSED),
+    # frequencies alone tell no orders of three apart
+    turned = {
+        (3, 3, kind): sum(_ordered(like + alike, order)) + math.log(TURNED)
+        for kind, order in enumerate(ORDERS if shaped.any() else ())
     }
+    return {
+        (1, 0, 0): np.full((n, m + 1), alone),
+        (0, 1, 0): np.full((n + 1, m), math.log(MISSED)),
+        (1, 1, 0): like + alike + math.log(SAME),
+        (2, 1, 0): like[:-1] + like[1:] + split,
+        (1, 2, 0): amid + np.log(np.maximum(SAME * within, TINY)),
+        (2, 2, 0): crossed + math.log(CROSSED),
+        **turned,
+    }
+
+
+def _ordered(pairs: np.ndarray, order: Sequence[int]) -> list[np.ndarray]:
+    """Views of a matrix of pairs: of three of each from every place on, each with its own in an order."""
+    n, m = (max(size - 2, 0) for size in pairs.shape)
+    return [pairs[k : k + n, own : own + m] for k, own in enumerate(order)]
 
 
 def _sums(steps: _Steps, shape: tuple[int, int]) -> np.ndarray:
     """(n + 1, m + 1) logarithms of sums over all ways from the beginning of both lists."""
     n, m = shape
     out = np.full((n + 1, m + 1), -np.inf)
-    missed = np.concatenate([np.zeros((n + 1, 1)), np.cumsum(steps[0, 1], axis=1)], axis=1)
+    missed = np.concatenate([np.zeros((n + 1, 1)), np.cumsum(steps[0, 1, 0], axis=1)], axis=1)
     for i in range(n + 1):
         row = out[i]
         row[0] = 0.0 if i == 0 else -np.inf
-        for (a, b), logs in steps.items():
-            if 0 < a <= i:
+        for (a, b, _), logs in steps.items():
+            if 0 < a <= i and b <= m:
                 row[b:] = np.logaddexp(row[b:], out[i - a, : m + 1 - b] + logs[i - a])
         # any number of modes that were missed
         out[i] = np.logaddexp.accumulate(row - missed[i]) + missed[i]

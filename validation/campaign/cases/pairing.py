@@ -47,6 +47,8 @@ SETS = 2
 MANY = 200
 #: least MAC on many points of modes that are the same one; below, nobody can say which it is
 SAME, MIXED = 0.7, None
+#: MAC of a second mode over that of the first, above which it is a mixture, and neither
+NEITHER = 0.5
 #: probabilities that are told together
 BINS = (POSSIBLE, 0.2, 0.5, 0.8, SURE, 0.99, 1.0)
 
@@ -90,7 +92,7 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
     count = len(computed.body.surface({}).points)
     many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
     everywhere = OnPoints(many, NOISES[0], computed)
-    partner = [{int(row.argmax())} if row.max() > SAME else MIXED for row in everywhere.seen.mac]
+    partner = [_partner(row) for row in everywhere.seen.mac]
     widths = computed.widths(correlate.SPRINGS)
     rows = []
     for slip, _ in product(SLIPS, range(SETS)):
@@ -115,6 +117,12 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
             tags = {"stated": stated, "slip": slip, "noise": seen, "silent": silent}
             rows.append({"quantity": "pair", "tags": tags, "error": float(not right), "how": how})
     return rows
+
+
+def _partner(mac: np.ndarray) -> set[int] | None:
+    """The computed mode that a true one is, by its MAC with all on many points."""
+    second, first = np.sort(mac)[-2:]
+    return {int(mac.argmax())} if first > SAME and second < NEITHER * first else MIXED
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,34 @@
+"""Bars of a 3D solid whose mesh is set, from a second, coarser one, beside the harmonic solid."""
+
+import json
+
+import pytest
+
+import solidgear as sg
+from validation.shipped import GEOMETRY
+
+SCENES = [
+    ("cylinder_free", ("refinement=0.5",)),
+    pytest.param("cylinder_free", ("element=tet10", "refinement=0.8"), marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize("name, settings", SCENES)
+def test_bars_of_a_mesh_that_is_set_hold_what_the_harmonic_solid_says(run, name, settings):
+    path = GEOMETRY / f"{name}.toml"
+    code, out, _ = run("modes", path, "-f", "solid", "--json", *(f"--set={s}" for s in settings))
+    scene = sg.load(path)
+    exact = sg.modes(sg.build(scene, "harmonic", order=6), scene, n=24)
+    rows = [mode for mode in json.loads(out)["modes"] if mode["frequency_hz"] > 0]
+    assert code == 0 and len(rows) > 4
+    for mode in rows:
+        # the harmonic solid itself is good to some 1e-6
+        off = mode["frequency_hz"] / exact.named(mode["name"]).frequency_hz - 1
+        assert -2e-6 < off < mode["bar"] + 2e-6 < 0.05, mode["name"]
+
+
+def test_the_second_mesh_may_be_left_out(run):
+    code, out, _ = run(
+        "modes", GEOMETRY / "cylinder_free.toml", "-f", "solid", "--no-bars", "--set=refinement=0.4"
+    )
+    assert code == 0 and "No bars: the model was given" in out
