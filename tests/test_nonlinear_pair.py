@@ -11,6 +11,7 @@ from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.doubling import doubled
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import Run, settled, sweep
+from solidgear.nonlinear.run_up import run_up
 from solidgear.nonlinear.stability import multipliers, stable
 from solidgear.system import Inertia, RowSpring, System
 from solidgear.system.law import Gap
@@ -87,6 +88,22 @@ def test_what_lies_between_the_turning_points_is_unstable_and_nothing_else(loud)
     # at a turning point one multiplier is one: within what few harmonics leave of it
     for k in loud.turning:
         assert abs(multipliers(loud.points[k])[0]) == pytest.approx(1.0, abs=0.02)
+
+
+def test_teeth_with_a_damper_carry_what_the_mass_takes_up():
+    # Newton's second law of the mass, on which nothing but the mean force and the teeth act
+    law = Gap(1.0, 1.0, damper=0.2)
+    system = System({"gear": Inertia(1.0, "z")}, {"mesh": RowSpring("gear", ALONG, 1.0, law=law)})
+    own = remainder(system, load=np.array([MEAN]), errors={"mesh": [0.02]})
+    w = 1.1
+    point = follow(own, 1.0, w).points[-1]
+    motion = point.harmonics[1, 0] + 0.02
+    force = w**2 * abs(motion)
+    assert 1.02 * abs(point.harmonics[1, 0]) < force < MEAN
+    ran = run_up(own, w - 1e-6, w, 1e-8, state=point.state())
+    for wave in (point.forces(), settled(own, w, point.state()).force, 2 * ran.swing):
+        # the largest of 128 looks at a cosine
+        assert (np.ptp(wave) if wave.ndim > 1 else wave[-1]) / 2 == pytest.approx(force, rel=4e-4)
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,8 @@ from solidgear.machine.threads import pin
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "validation" / "results"
+#: letters of a row on one line at most
+LINE = 1500
 pin()
 
 
@@ -41,8 +43,37 @@ def kept(name: str, records: dict[str, Any]) -> None:
     path = RESULTS / f"{name}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     records = read_result(name) | plain(records)
-    text = json.dumps(records, indent=1, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    path.write_text(by_lines(records) + "\n", encoding="utf-8")
+
+
+def by_lines(value: Any, before: str = "") -> str:
+    """JSON with a row of a table, or a list of numbers, on one line.
+
+    Examples
+    --------
+    >>> print(by_lines({"rows": [{"hz": 1.0, "parts": [2, 3]}, {"hz": 4.0, "parts": []}]}))
+    {
+     "rows": [
+      {"hz": 1.0, "parts": [2, 3]},
+      {"hz": 4.0, "parts": []}
+     ]
+    }
+    """
+    line = json.dumps(value, ensure_ascii=False, allow_nan=False)
+    inner = value.values() if isinstance(value, dict) else value
+    if not isinstance(value, dict | list) or not any(isinstance(v, dict | list) for v in inner):
+        return line
+    if len(line) <= LINE and "{" not in line[1:]:
+        return line
+    more = before + " "
+    if isinstance(value, dict):
+        rows = [
+            f"{json.dumps(k, ensure_ascii=False)}: {by_lines(v, more)}" for k, v in value.items()
+        ]
+    else:
+        rows = [by_lines(v, more) for v in value]
+    begin, end = "{}" if isinstance(value, dict) else "[]"
+    return f"{begin}\n{more}" + f",\n{more}".join(rows) + f"\n{before}{end}"
 
 
 def plain(value: Any) -> Any:

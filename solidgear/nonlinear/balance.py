@@ -120,15 +120,21 @@ class Balance:
         return as_real(self.remainder.linear(omega, self.count)[0]).ravel()
 
     def start(self, omega: float) -> np.ndarray:
-        """(n,) motion of the linear system around where laws carry its mean forces."""
-        out = self.linear(omega).reshape(-1, self.remainder.rows)
-        own = self.remainder
-        mean = np.diag(own.stiffness) * own.mean
+        """(n,) motion of the linear system around where laws carry its mean forces; a link without
+        stiffness carries none, and moves with the others.
+        """
+        out, own = self.linear(omega).reshape(-1, self.remainder.rows), self.remainder
+        stiffness = np.diag(own.stiffness)
+        # what a law wants at its mean force beyond the linear stretch, as a force of its spring
+        lacking = np.zeros(own.rows)
         for law, at in own.laws:
             depth = getattr(law, "depth", None)
             if depth is not None:
                 for row in own.rows_of(at):
-                    out[0, row] = depth(mean[row])
+                    force = stiffness[row] * own.mean[row]
+                    lacking[row] = stiffness[row] * depth(force) - force
+        still = own.receptance(np.zeros(1))[0][0].real + own.flexible
+        out[0] += still @ lacking
         return out.ravel()
 
     def stretch(self, motion: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:

@@ -92,10 +92,9 @@ class Point:
         return np.concatenate([own.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real])
 
     def forces(self) -> np.ndarray:
-        """(T, m) forces of the laws over a period, without those of their dampers."""
-        stretch, line = self.waves()[0], self.balance.line(0.0)
-        still = np.zeros_like(stretch)
-        return self.balance.remainder.forces(stretch, still, self.balance.factor, line).value
+        """(T, m) forces of the laws over a period, those of their dampers among them."""
+        own, line = self.balance.remainder, self.balance.line(self.omega)
+        return own.forces(*self.waves(), self.balance.factor, line).value
 
     def along(self, law: int = 0) -> np.ndarray:
         """(T,) stretch over a period of a link with a law, along its line of action."""

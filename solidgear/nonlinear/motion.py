@@ -45,7 +45,7 @@ class Steady:
     periods : int
         That it took.
     stretch, force : (t, m) ndarray
-        Over its cycle, at equal intervals; forces without those of dampers.
+        Over its cycle, at equal intervals; forces with those of dampers.
     section : (p, 2) ndarray
         First stretch and its rate at the beginning of each of the last periods (Poincare).
     state : (2r,) ndarray
@@ -236,12 +236,13 @@ def settled(
     rounding = ROUNDING if isinstance(run, Run) else 10 * TOLERANCE
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
+    rates: list[np.ndarray] = []
     section: list[tuple[float, float]] = []
     change: dict[int, list[float]] = {c: [] for c in range(1, LONGEST_CYCLE + 1)}
     cycle = 0
     for _ in range(most):
         modal, s, v = run.period(modal)
-        waves = [*waves[-LONGEST_CYCLE:], s]
+        waves, rates = [*waves[-LONGEST_CYCLE:], s], [*rates[-LONGEST_CYCLE:], v]
         section.append((float(s[0, 0]), float(v[0, 0])))
         swing = float(np.ptp(s, axis=0).max()) or 1.0
         for c, own in change.items():
@@ -253,11 +254,11 @@ def settled(
             cycle = 0
         if cycle:
             break
-    kept = np.concatenate(waves[-max(cycle, 1) :])
+    kept, rate = (np.concatenate(own[-max(cycle, 1) :]) for own in (waves, rates))
     angle = 2 * np.pi * np.arange(len(kept)) / run.looks
     factor = remainder.factor(angle) if remainder.varies else None
-    line = remainder.line(angle, 0.0)
-    force = remainder.forces(kept, np.zeros_like(kept), factor, line).value
+    line = remainder.line(angle, omega)
+    force = remainder.forces(kept, rate, factor, line).value
     return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
 
 

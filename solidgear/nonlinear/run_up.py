@@ -33,7 +33,7 @@ class RunUp:
     omega : (c,) ndarray
         In the middle of each cycle, rad/s.
     lowest, highest : (c,) ndarray
-        Force of the first link within it, without that of a damper, N.
+        Force of the first link within it, that of a damper included, N.
     least, most : (c,) ndarray
         Its stretch, m.
     state : (2r,) ndarray
@@ -105,15 +105,15 @@ def run_up(
     duration = 4 * np.pi * cycles / (begin + np.sqrt(begin**2 + 4 * np.pi * cycles * slope))
     straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
     if straight and not remainder.unbalance:
-        times, s, modal = Ramped(remainder, begin, slope, duration).whole(modal, told)
+        times, s, v, modal = Ramped(remainder, begin, slope, duration).whole(modal, told)
     else:
         run = Integrated(remainder, begin, tolerance=tolerance, ramp=slope)
-        times, s, modal = _by_cycles(run, cycles, modal, told)
+        times, s, v, modal = _by_cycles(run, cycles, modal, told)
     omega = begin + slope * times
     angle = times * (begin + omega) / 2
     factor = remainder.factor(angle) if remainder.varies else None
-    line = remainder.line(angle, 0.0)
-    forces = remainder.forces(s, np.zeros_like(s), factor, line).value
+    line = remainder.line(angle, omega[:, None])
+    forces = remainder.forces(s, v, factor, line).value
     first = np.searchsorted(angle, 2 * np.pi * np.arange(cycles) - 1e-9)
     speed = np.sqrt(begin**2 + 4 * np.pi * slope * (np.arange(cycles) + 0.5))
     runs = []
@@ -127,15 +127,15 @@ def run_up(
 
 
 def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, told):
-    """Times (t,) and stretches (t, m) of a run that is integrated, and its last state."""
+    """Times (t,), stretches and rates (t, m) of a run that is integrated, and its last state."""
     rows = []
     for cycle in range(cycles):
         if told and cycle % TOLD == 0:
             told(cycle / cycles)
         angle = 2 * np.pi * (cycle + np.arange(LOOKS + 1) / LOOKS)
         times = 2 * angle / (run.omega + np.sqrt(run.omega**2 + 2 * run.ramp * angle))
-        modal, s, _ = run.over(modal, times)
-        rows.append((times[:-1], s))
+        modal, s, v = run.over(modal, times)
+        rows.append((times[:-1], s, v))
     return *(np.concatenate(own) for own in zip(*rows)), modal
 
 
@@ -173,9 +173,9 @@ class Ramped(Run):
         )
 
     def whole(self, modal: np.ndarray, told: Callable[[float], None] | None):
-        """Times (t,), stretches (t, m), and the last state."""
+        """Times (t,), stretches and rates (t, m), and the last state."""
         size, count = 2 * len(self.remainder.omega), len(self.times) - 1
-        s = np.empty((count, self.remainder.rows))
+        s, v = (np.empty((count, self.remainder.rows)) for _ in range(2))
         self.omega = float(self.speeds[0])
         name = self._standing(np.append(modal, self.around[0]))
         y, k = modal, 0
@@ -188,17 +188,22 @@ class Ramped(Run):
             states[0] = y
             for j in range(len(push) - 1):
                 states[j + 1] = over @ states[j] + push[j]
-            ahead = np.hstack([states, self.around[here]]) @ self.still.piece(name).stretch.T
+            whole, still = np.hstack([states, self.around[here]]), self.still.piece(name)
+            ahead = whole @ still.stretch.T
             gone = np.flatnonzero(self._off(name, ahead[1:]))
             stay = int(gone[0]) if len(gone) else len(push) - 1
             kept = min(stay + 1, len(push) - 1)
             s[k : k + kept] = ahead[:kept]
+            turning = whole[:kept] @ (self.unit.piece(name).rate - still.rate).T
+            v[k : k + kept] = (
+                whole[:kept] @ still.rate.T + self.speeds[k : k + kept, None] * turning
+            )
             y, k = states[stay], k + stay
             if len(gone):
                 self.omega = float(self.speeds[k])
                 y, name = self._through(name, np.append(y, self.around[k]), self.step)
                 y, k = y[:size], k + 1
-        return self.times[:-1], s, y
+        return self.times[:-1], s, v, y
 
     def _steps(self, name: tuple[int, ...], here: slice) -> tuple[np.ndarray, np.ndarray]:
         """Transition (2r, 2r) of a state over one step, and what the excitation adds to it in each of

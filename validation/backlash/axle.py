@@ -10,19 +10,10 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.nonlinear.balance import Balance
-from solidgear.nonlinear.continuation import Follower, Point, follow, walked
 from solidgear.nonlinear.motion import settled
-from solidgear.nonlinear.stability import stable
 from solidgear.studies.train.backlash import Backlash
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import (
-    FADED,
-    STEP,
-    backlash_model,
-    teeth_of,
-    with_backlash,
-)
+from solidgear.studies.train.nonlinear import FADED, teeth_of, with_backlash
 from solidgear.studies.train.nonlinear_told import BacklashTold
 from validation.common import ROOT
 
@@ -46,11 +37,8 @@ SHARES = (0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99)
 MAPPED = (MIXES[0], MIXES[1])
 #: Hz between places at which ranges are compared
 GRID = 0.1
-#: a mean force at which the large motion hangs together with the small one, N, a frequency on both, Hz,
-#: and steps in which the force is raised from there
-CONNECTED, RAISED_AT, RAISES = 4600.0, 540.0, 12
-#: points after which a walk may be back where it began
-AWAY = 12
+#: at which branches apart are looked for
+SPEEDS = 96
 
 
 def workshop(name: str) -> Workshop:
@@ -67,7 +55,7 @@ def models(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     found = []
     for mix in MIXES:
         told(f"{name}: {' + '.join(mix)}")
-        found.append(with_backlash(shop, mix, teeth, HIGHEST, LOWEST))
+        found.append(with_backlash(shop, mix, teeth, HIGHEST, LOWEST, apart=SPEEDS))
     beside = BacklashTold(shop.train, tuple(found), lever(shop)).sufficiency()
     out = []
     for one, judged in zip(found, (None, *beside)):
@@ -94,6 +82,7 @@ def of(one: Backlash) -> dict[str, Any]:
         "largest": [at, size],
         "highest": float(one.highest[one.stable].max()),
         "linear": [there, linear],
+        "apart": [[other.periods, *other.loudest] for other in one.apart if other.calm],
         "wanders": [[r.low, r.high] for _, r in one.wandering],
         "seconds": one.seconds,
     }
@@ -133,49 +122,30 @@ def criterion(one: Backlash, force: float) -> dict[str, Any]:
     }
 
 
-def detached(shop: Workshop, model: str, force: float) -> dict[str, Any]:
-    """The branch of the overhung axle that hangs together with no other, at a mean force.
-
-    It is met on a smaller mean force, where one branch has all motions, and carried up from there.
-
-    Returns
-    -------
-    dict
-        Hz between which it lives and those of its stable part, the largest dynamic mesh force there,
-        N, and the same in time.
+def apart(name: str, model: str, force: float) -> list[dict[str, Any]]:
+    """Branches apart of an axle at a mean force: where they live and are stable, Hz, the largest dynamic
+    mesh force there, N, and the same in time, after periods of the mesh.
     """
-    teeth = replace(teeth_of(shop, FORCE), mean_force=CONNECTED)
-    own = backlash_model(shop, [model], teeth, shop.train.ask.max_frequency)
-    branch = follow(own, *(2 * np.pi * f for f in (400.0, 800.0)), step=STEP)
-    begin = branch.at(2 * np.pi * RAISED_AT)[-1]
-    motion = begin.motion
-    for share in np.linspace(1.0, force / CONNECTED, RAISES):
-        balance = Balance(replace(own, mean=share * own.mean), begin.balance.count)
-        motion = balance.solve(motion, begin.omega)
-    walk = Follower(balance, *branch.scale)
-    first = walk.point(motion, begin.omega, np.append(np.zeros(motion.size), -1.0))
-    met: list[Point] = []
-
-    def around(point: Point) -> bool:
-        met.append(point)
-        apart = np.abs(point.harmonics[1] - first.harmonics[1]).max() / walk.size
-        near = abs(point.omega - first.omega) < STEP * walk.width and apart < 0.1
-        return len(met) > AWAY and near
-
-    points, turning = walked(walk, first, STEP, True, around)
-    hz = np.array([p.omega for p in points]) / (2 * np.pi)
-    calm = np.array([stable(p) for p in points])
-    size = np.array([np.ptp(p.forces()) / 2 for p in points])
-    most = int(np.where(calm, size, 0.0).argmax())
-    time = settled(
-        points[most].balance.remainder, points[most].omega, points[most].state(), steady=FADED
-    )
-    return {
-        "by": model,
-        "force": force,
-        "lives": [hz.min(), hz.max()],
-        "turning": [hz[k] for k in turning],
-        "stable": [hz[calm].min(), hz[calm].max()],
-        "largest": [hz[most], size[most]],
-        "in time": [time.cycle, float(np.ptp(time.force)) / 2],
-    }
+    shop = workshop(name)
+    teeth = replace(teeth_of(shop, FORCE), mean_force=force)
+    found = with_backlash(shop, [model], teeth, HIGHEST, LOWEST, apart=SPEEDS)
+    out = []
+    for one in found.apart:
+        hz, size = one.loudest
+        row = {
+            "axle": name,
+            "by": model,
+            "force": force,
+            "periods": one.periods,
+            "lives": [one.frequency_hz.min(), one.frequency_hz.max()],
+            "stable": None,
+        }
+        if one.calm:
+            point = one.points[int(np.argmin(abs(one.force - size)))]
+            omega = one.periods * point.omega
+            time = settled(found.remainder, omega, point.state(), steady=FADED)
+            row["stable"] = [one.calm.low, one.calm.high]
+            row["largest"] = [hz, size]
+            row["in time"] = [time.cycle, float(np.ptp(time.force)) / 2]
+        out.append(row)
+    return out

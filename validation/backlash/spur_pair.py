@@ -129,9 +129,8 @@ class SpurPair:
         """Motion over a cycle by harmonic balance, begun with the driving flanks in contact."""
         omega = self.omega(rpm)
         balance = Balance(self.remainder, self.per_cycle * MESH_ORDERS)
-        motion = balance.linear(omega)
-        motion[:2] += [self.half_gap, -self.half_gap]
-        return Point(omega, balance.solve(motion, omega), balance, np.zeros(0), 0.0)
+        motion = balance.solve(balance.start(omega), omega)
+        return Point(omega, motion, balance, np.zeros(0), 0.0)
 
     def in_time(self, begin: Point, cycles: int = 1) -> tuple[np.ndarray, np.ndarray]:
         """Stretches and forces (t, 2) over the last of some cycles, from a motion on."""

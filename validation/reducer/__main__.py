@@ -154,23 +154,17 @@ def stored() -> tuple[dict[str, Seen], dict[str, float]]:
     told.pop("made")
     checks = told.pop("checks")
     found = {
-        name: Seen(**{key: _long(value) for key, value in one.items()})
+        name: Seen(**{key: np.array(value) for key, value in one.items()})
         for name, one in told.items()
     }
     return found, checks
 
 
-def _short(values: np.ndarray) -> str | list[str]:
-    """Numbers of all designs on one line."""
+def _short(values: np.ndarray) -> list:
+    """Numbers with the digits that are kept."""
     if values.ndim > 1:
         return [_short(one) for one in values]
-    return " ".join(f"{float(value):.{DIGITS}g}" for value in values)
-
-
-def _long(told: str | list[str]) -> np.ndarray:
-    if isinstance(told, list):
-        return np.array([_long(one) for one in told])
-    return np.array(told.split(), float)
+    return [float(f"{float(value):.{DIGITS}g}") for value in values]
 
 
 def page(found: list[Outcome], in_time: dict[str, Seen], checks: dict[str, float]) -> str:

@@ -239,19 +239,30 @@ class Backlash:
                 yield at, values[a] + share * (values[b] - values[a])
 
     @cached_property
+    def _unbounded(self) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
+        """Frequencies, and stretches and rates there of the same train without backlash."""
+        ends = self.frequency_hz.min(), self.frequency_hz.max()
+        hz = np.concatenate([np.geomspace(*ends, LINEAR), self.remainder.omega / (2 * np.pi)])
+        hz = np.unique(hz[(hz >= ends[0]) & (hz <= ends[1])])
+        return hz, [self._linear(f) for f in hz]
+
+    def _linear(self, hz: float) -> tuple[np.ndarray, np.ndarray]:
+        balance = Balance(self.remainder, len(self.remainder.error))
+        s, v = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
+        return s[:, self.row], v[:, self.row]
+
+    def _swing(self, s: np.ndarray, v: np.ndarray, damped: float = 1.0) -> float:
+        own, row = self.remainder, self.row
+        return float(np.ptp(own.stiffness[row, row] * s + damped * own.damper[row, row] * v) / 2)
+
+    @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies and dynamic mesh force of the same train without backlash."""
-        ends = self.frequency_hz.min(), self.frequency_hz.max()
-        near = self.remainder.omega / (2 * np.pi)
-        hz = np.concatenate([np.geomspace(*ends, LINEAR), near])
-        hz = np.unique(hz[(hz >= ends[0]) & (hz <= ends[1])])
-        return hz, np.array([self.linear_force(f) for f in hz])
+        return self._unbounded[0], np.array([self._swing(*one) for one in self._unbounded[1]])
 
     def linear_force(self, hz: float) -> float:
         """Dynamic mesh force without backlash at one frequency, N."""
-        balance, row = Balance(self.remainder, len(self.remainder.error)), self.row
-        wave, _ = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
-        return float(self.remainder.stiffness[row, row] * np.ptp(wave[:, row]) / 2)
+        return self._swing(*self._linear(hz))
 
     @property
     def returns(self) -> float | None:
@@ -299,7 +310,11 @@ class Backlash:
         """
         apart = [one for one in self.every if one.teeth.half_gap > 0] or [self]
         own = self.teeth.mean_force
-        sizes = [one.linear[1] * (own / one.teeth.mean_force) for one in apart]
+        # teeth part as the stretch does: a damper has no part in it
+        sizes = [
+            [one._swing(*wave, 0.0) * own / one.teeth.mean_force for wave in one._unbounded[1]]
+            for one in apart
+        ]
         return self.linear[0], np.max(sizes, axis=0)
 
     @cached_property

@@ -26,8 +26,8 @@ RETURNS = (
     "higher speeds are not judged; give a lower --min-frequency."
 )
 IN_CONTACT = (
-    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz; "
-    "mesh forces are told without it."
+    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz and "
+    "takes part in the mesh forces."
 )
 
 
