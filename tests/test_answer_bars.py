@@ -129,7 +129,7 @@ def test_bars_hold_between_rigid_seats_that_all_but_touch():
 @pytest.mark.parametrize(
     ("tie", "quantity", "order", "before"),
     [
-        pytest.param("average", "C_yy", 5, 7.5e-7, marks=pytest.mark.long),
+        pytest.param("average", "C_yy", 5, 7.5e-7, marks=pytest.mark.slow),
         ("section", "K_zz", 4, 3.6e-5),
     ],
 )
@@ -161,7 +161,7 @@ def disc_between_shafts(*thick):
     return sg.Scene.from_parts(segments, port=port, bearings=[a, b])
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_bars_hold_for_a_thin_disc_between_shafts_of_two_diameters():
     # lines that run from one surface to the other would cross the disc
     found = answer(disc_between_shafts(("thick", 0.086, 0.166, 0.05)), 1e-3, ["C_thx", "bending 1"])

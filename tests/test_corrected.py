@@ -63,7 +63,7 @@ def test_the_effect_of_a_keyway(scene, plain, body):
     assert ours.multiplicity == (1,) * len(ours.modes)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_check_judges_it_where_there_are_features():
     """Models made for features are judged with them, and not named without them."""
     from solidgear.studies.check import check_scene
@@ -251,7 +251,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
     assert np.linalg.eigvalsh((change + change.T) / 2).min() > -1e-4
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_part_without_a_mirror_plane():
     """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
     from solidgear.scene import CrossHole, Flat

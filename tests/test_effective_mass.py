@@ -180,7 +180,7 @@ def test_receptance_against_a_direct_solution():
         assert receptance(w) == pytest.approx(direct, rel=1e-3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_solid_judges_like_the_harmonic():
     scene, _, expected, _ = solved("pinion_overhung", "harmonic")
     body = sg.build(scene, "solid", layers=2, radial_layers=2, edge_layers=0, around=8)

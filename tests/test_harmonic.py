@@ -118,14 +118,8 @@ def fine_rod():
     return sg.build(rod(), "harmonic", order=8, layers=1, edge_layers=1)
 
 
-@pytest.mark.parametrize(
-    "m",
-    [
-        pytest.param(1, marks=pytest.mark.slow),
-        pytest.param(2, marks=pytest.mark.long),
-        pytest.param(3, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("m", [1, 2, 3])
 def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
     # u_y = 0 and no shear at the end faces: the travelling wave of wave number m pi / L fits
     # exactly.

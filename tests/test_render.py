@@ -61,11 +61,7 @@ def unit_motion(body, component):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "pinion_overhung",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("shaft_hollow", "shaft_stepped")),
-    ],
+    "name", ["pinion_overhung", pytest.param("shaft_hollow", marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize(
     "fidelity, options",
@@ -74,7 +70,7 @@ def unit_motion(body, component):
         ("timoshenko", {}),
         ("harmonic", {"order": 1}),
         ("harmonic", {"order": 2} | RIGID),
-        pytest.param("harmonic", {"order": 5}, marks=pytest.mark.long),
+        pytest.param("harmonic", {"order": 5}, marks=pytest.mark.slow),
         ("solid", {"element": "hex8"} | SOLID),
         ("solid", {"element": "hex20"} | SOLID | RIGID),
         ("solid", {"element": "tet10", "size": 0.06, "graded_size": 0.06}),

@@ -533,7 +533,7 @@ def test_teeth_and_a_keyway_in_one_solid():
     assert not LADDER["solid"].unfit(scene) and LADDER["corrected"].unfit(scene)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_keyway_does_beside_teeth_what_it_does_beside_their_cone():
     """To the 3 % that meshes and what one leaves of the other change of it."""
     effect = []
@@ -602,7 +602,7 @@ def test_a_model_that_says_it_fits_can_be_built():
     assert "roots of" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
     from solidgear.studies.check import check_scene
 

@@ -83,7 +83,7 @@ def test_names_are_moved_apart_and_stay_in_order():
     assert shown[3] == 0.5 and shown[1] == pytest.approx(0.101)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_command_writes_the_map(tmp_path):
     args = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "euler", "--out"]
     done = command(*args, str(tmp_path), "--orders", "2")

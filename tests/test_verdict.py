@@ -411,7 +411,7 @@ def test_like_for_like_means_every_station():
     assert not found["models"]["euler"]["valid"]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_stubby_pinion_is_no_beam_by_either_tie():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
     solved = compare(scene, ("timoshenko", "harmonic"), settings=LIGHT)
