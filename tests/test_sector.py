@@ -602,19 +602,6 @@ def test_a_model_that_says_it_fits_can_be_built():
     assert "roots of" in LADDER["sector"].unfit(cone) and not LADDER["solid"].unfit(cone)
 
 
-@pytest.mark.slow
-def test_check_does_not_say_of_a_model_that_refuses_that_it_holds():
-    from solidgear.studies.check import check_scene
-
-    key = Keyway(name="key", segment="rod", y=0.1, length=0.03, width=0.01, depth=0.005)
-    for scene in (shaft(TEETH, key), filleted(0.0124)):
-        body = sg.build(scene.plain, "timoshenko")
-        for model, told in check_scene(scene, body)["verdicts"].items():
-            # a solid that a lumped model rests on may well carry features
-            least = {"will not hold", "uncertain"} if model == "lumped" else {"will not hold"}
-            assert not LADDER[model].unfit(scene) or told["verdict"] in least, model
-
-
 def test_a_seat_keeps_the_faces_whose_edges_had_to_be_straightened():
     """Wide cells of a wedge fold when their edges follow the surface, and are given chords. Without
     those faces the seat of the cone was a fifth of itself, and C_yy 2 % above the exact one, where
