@@ -39,6 +39,7 @@ def pytest_collection_modifyitems(items):
             raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
 
 
+GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: MB from which on a process gives back what its files have used
 HELD = 600.0
 
@@ -56,6 +57,14 @@ def given_back():
     gc.freeze()  # what is left stays: it is looked through once and not after every file
     if sys.platform == "linux" and hasattr(libc := ctypes.CDLL(None), "malloc_trim"):
         libc.malloc_trim(0)
+
+
+@pytest.fixture(scope="session")
+def overhung():
+    """The overhung pinion, which most files of tests look at."""
+    import solidgear as sg
+
+    return sg.load(GEOMETRY / "pinion_overhung.toml")
 
 
 @pytest.fixture(scope="session")

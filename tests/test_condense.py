@@ -27,11 +27,6 @@ def shipped(name):
     return sg.load(GEOMETRY / f"{name}.toml")
 
 
-@pytest.fixture(scope="module")
-def overhung():
-    return shipped("pinion_overhung")
-
-
 @pytest.fixture(scope="module", params=list(OPTIONS))
 def body(request, overhung):
     return sg.build(overhung, request.param, **OPTIONS[request.param])

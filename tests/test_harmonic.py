@@ -59,17 +59,10 @@ def test_mass_matrix_of_shipped_scenes(path):
 
 
 # --------------------------------------------------------------------------- Pochhammer-Chree
-@pytest.fixture(scope="module")
-def fine_rod():
-    return sg.build(rod(), "harmonic", order=8, layers=1, edge_layers=1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
-    # u_y = 0 and no shear at the end faces: the travelling wave of wave number m pi / L fits
-    # exactly.
-    body = fine_rod
+def test_bending_wave_of_a_cylinder_between_sliding_ends():
+    # u_y = 0 and no shear at the end faces: the travelling wave of wave number pi / L fits exactly
+    length = 0.12
+    body = sg.build(rod(length=length), "harmonic", order=8, layers=1, edge_layers=1)
     block = body.blocks[0]
     assert block.name == "bending_z"
     geometry = body.geometry
@@ -83,10 +76,10 @@ def test_bending_wave_of_a_cylinder_between_sliding_ends(fine_rod, m):
     keep[on(lambda x: x[0] < 1e-9), 1:] = False  # regularity on the axis, taken out by the library
     assert keep.sum() == block.size
     free[on(lambda x: abs(x[1]) < 1e-9), 2] = False
-    free[on(lambda x: abs(x[1] - LENGTH) < 1e-9), 2] = False
+    free[on(lambda x: abs(x[1] - length) < 1e-9), 2] = False
     at = np.flatnonzero(free[keep])
     k, mass = block.stiffness[at][:, at].tocsc(), block.mass[at][:, at].tocsc()
-    wave = m * np.pi / LENGTH
+    wave = np.pi / length
     exact = 2 * np.pi * bending_wave(wave, RADIUS)
     # a body that may slide has one rigid motion and many waves: look at those around the exact
     # value

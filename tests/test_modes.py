@@ -23,11 +23,6 @@ def shipped(name):
     return sg.load(GEOMETRY / f"{name}.toml")
 
 
-@pytest.fixture(scope="module")
-def overhung():
-    return shipped("pinion_overhung")
-
-
 def dense_system(body, scene):
     """K + G' Kb G and M of a whole body, all planes together, housing as an extra axial unknown of
     no mass condensed.
