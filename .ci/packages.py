@@ -3,8 +3,8 @@
 
     python .ci/packages.py [FOLDER]         # build/packages unless told otherwise
 
-The source distribution holds all that is under version control, and its tests are collected from it; the wheel is built
-from the source distribution and holds scenes, templates and `py.typed`.  Needs the extra `dev`.
+The source distribution holds all that is under version control, and the tests that reach farthest into the tree are
+collected from it; the wheel is built from the source distribution and holds scenes, templates and `py.typed`.  Needs the extra `dev`.
 """
 
 import shutil
@@ -16,6 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 #: tracked, and of use only in a checkout
 CHECKOUT = (".ci/", ".git", ".pre-commit")
+#: into documentation, notebooks, examples, scenes, validation and what tests share
+REACHING = [f"tests/test_{name}.py" for name in ("docs", "notebooks", "examples", "campaign", "report")]
 
 
 def tracked() -> list[str]:
@@ -67,6 +69,7 @@ def main() -> int:
         "--collect-only",
         "-p",
         "no:cacheprovider",
+        *REACHING,
     ]
     done = subprocess.run(collect, cwd=tree, capture_output=True, text=True)
     print(

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from solidgear.machine.memory import resident_mb
 from solidgear.machine.threads import pin
 
 pin()
@@ -38,16 +39,32 @@ def pytest_collection_modifyitems(items):
             raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
 
 
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+#: MB from which on a process gives back what its files have used
+HELD = 600.0
+
+
 @pytest.fixture(scope="module", autouse=True)
 def given_back():
     """Memory that a file has used goes back to the system, which the allocator would keep: a process
-    that runs a hundred files would hold the largest of each.
+    that runs a hundred files would hold the largest of each.  It costs a tenth of a second and
+    what comes back costs again, so that it is done where much is held.
     """
     yield
+    if (resident_mb() or HELD) < HELD:
+        return
     gc.collect()
     gc.freeze()  # what is left stays: it is looked through once and not after every file
     if sys.platform == "linux" and hasattr(libc := ctypes.CDLL(None), "malloc_trim"):
         libc.malloc_trim(0)
+
+
+@pytest.fixture(scope="session")
+def overhung():
+    """The overhung pinion, which most files of tests look at."""
+    import solidgear as sg
+
+    return sg.load(GEOMETRY / "pinion_overhung.toml")
 
 
 @pytest.fixture(scope="session")

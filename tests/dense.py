@@ -22,6 +22,17 @@ def whole(body, without=()):
     return k, m, rows
 
 
+def bearing_by_hand(bearing):
+    """Bearing matrix with the springs in series with its axial stiffness, the ring between them
+    eliminated.
+    """
+    k = np.array(bearing.matrix)
+    if bearing.axial_series:
+        spring = 1 / sum(1 / s for s in bearing.axial_series)
+        k = k - np.outer(k[:, 1], k[1]) / (k[1, 1] + spring)
+    return k
+
+
 def rigid_at(y):
     """(6, 6) motion at y on the axis for unit rigid motions about the origin: translation, th x r."""
     out = np.eye(6)

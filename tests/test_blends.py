@@ -153,7 +153,7 @@ def test_a_chamfer_in_a_shoulder_is_meshed_as_a_cone():
     assert coned(rim) is rim
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_bars_beside_a_chamfer_hold_against_the_same_outline_as_a_cone():
     # its two corners are cut as those of a cone are
     scene, cones = chamfer_and_cone()

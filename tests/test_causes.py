@@ -16,11 +16,6 @@ LIGHT = {"order": 3, "layers": 1}
 
 
 @pytest.fixture(scope="module")
-def overhung():
-    return sg.load(GEOMETRY / "pinion_overhung.toml")
-
-
-@pytest.fixture(scope="module")
 def table(overhung):
     return {c.cause: c for c in beam_causes(overhung)}
 

@@ -221,7 +221,7 @@ def test_the_automatic_choice_is_charted_at_its_largest_system():
     assert most / 3 <= found.body.size <= most
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     rows = [replace(row) for row in AUTOMATIC[:2]]
     found = race(sg.load(SCENE), rows, runs=1, sure=2e-4, solver=automatic.solved)
@@ -383,7 +383,7 @@ def test_an_interrupt_leaves_rows_and_chart_of_what_there_was(run, tmp_path, mon
     assert [r["reason"] for r in records(found)].count("interrupted") == 3
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_rows_are_written_as_they_come(run, tmp_path, monkeypatch, undrawn):
     """A process that is killed leaves what it had measured."""
     lengths, real = [], race_rows.write_rows

@@ -43,11 +43,6 @@ def scene_of(name):
 
 
 @pytest.fixture(scope="module")
-def overhung():
-    return scene_of("pinion_overhung")
-
-
-@pytest.fixture(scope="module")
 def rod():
     """A shaft of which a 3D solid is small."""
     firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9}

@@ -13,7 +13,7 @@ import solidgear as sg
 from solidgear.body import Supports, as_supports
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.solve.statics import flexibility
-from tests.dense import relative, whole
+from tests.dense import bearing_by_hand, relative, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 OPTIONS = {
@@ -25,11 +25,6 @@ OPTIONS = {
 
 def shipped(name):
     return sg.load(GEOMETRY / f"{name}.toml")
-
-
-@pytest.fixture(scope="module")
-def overhung():
-    return shipped("pinion_overhung")
 
 
 @pytest.fixture(scope="module", params=list(OPTIONS))
@@ -46,22 +41,6 @@ def moved(stiffness, d):
     t = np.eye(6)
     t[2, 3], t[0, 5] = -d, d
     return t.T @ stiffness @ t
-
-
-def bearing_by_hand(bearing):
-    """Bearing matrix with the springs in series with its axial stiffness, the ring between
-    eliminated as a seventh unknown.
-    """
-    k = np.array(bearing.matrix)
-    if not bearing.axial_series:
-        return k
-    spring = 1 / sum(1 / s for s in bearing.axial_series)
-    # unknowns: six of the shaft side, one axial of the ring; the bearing sees shaft minus ring
-    # along y
-    b = np.hstack([np.eye(6), -np.eye(6)[:, 1:2]])
-    big = b.T @ k @ b
-    big[6, 6] += spring
-    return big[:6, :6] - np.outer(big[:6, 6], big[6, :6]) / big[6, 6]
 
 
 def rigid_sum(scene):

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_features import KEY, shaft
 
 import solidgear as sg
 from solidgear.models import corrected as module
@@ -61,20 +60,6 @@ def test_the_effect_of_a_keyway(scene, plain, body):
         base = shape(theirs, name.replace(" z", "").replace(" x", ""))
         assert shape(ours, name) / base - 1 == pytest.approx(wanted, abs=1.2e-3), name
     assert ours.multiplicity == (1,) * len(ours.modes)
-
-
-@pytest.mark.long
-def test_check_judges_it_where_there_are_features():
-    """Models made for features are judged with them, and not named without them."""
-    from solidgear.studies.check import check_scene
-
-    # on the surface, as beams and solids alike see it
-    scene = shaft(KEY).with_port(y=0.0475)
-    body = sg.build(scene.plain, "timoshenko")
-    keyed, bare = (check_scene(s, body)["verdicts"] for s in (scene, scene.plain))
-    assert keyed["corrected"]["verdict"] == keyed["solid"]["verdict"] == "holds"
-    assert keyed["harmonic"]["verdict"] == "will not hold"
-    assert "corrected" not in bare
 
 
 def test_it_is_a_free_body_with_the_mass_of_the_part(scene, plain, body):
@@ -251,7 +236,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
     assert np.linalg.eigvalsh((change + change.T) / 2).min() > -1e-4
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_part_without_a_mirror_plane():
     """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
     from solidgear.scene import CrossHole, Flat

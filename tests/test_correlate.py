@@ -3,7 +3,6 @@ refinements and rotations.
 """
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ import pytest
 import solidgear as sg
 from solidgear.judge.correlation import correlate, subspace_mac
 
-GEOMETRY = Path(__file__).parent.parent / "geometry"
 RNG = np.random.default_rng(4)
 N = 12
 
@@ -87,11 +85,6 @@ def test_shapes_without_motion():
 
 
 # --------------------------------------------------------------------------- modes of a shaft
-@pytest.fixture(scope="module")
-def overhung():
-    return sg.load(GEOMETRY / "pinion_overhung.toml")
-
-
 @pytest.fixture(scope="module")
 def coarse_and_fine(overhung):
     return tuple(

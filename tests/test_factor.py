@@ -42,11 +42,6 @@ def shifted(body):
 
 
 @pytest.fixture(scope="module")
-def overhung():
-    return sg.load(GEOMETRY / "pinion_overhung.toml")
-
-
-@pytest.fixture(scope="module")
 def plane(overhung):
     return shifted(sg.build(overhung, "harmonic", order=2, layers=1))[0]
 

@@ -99,7 +99,7 @@ def test_a_shaft_that_is_turned_around_has_the_same_factors(found):
 def test_stress_grows_without_end_where_the_radius_goes_to_nothing():
     """As r^-0.456: Williams's exponent of a right-angled corner, 1 - 0.544."""
     values = [
-        fillet_factors(shoulder(2.0, r), "fillet", 0.02, orders=(4, 5)).factors["tension"].value
+        fillet_factors(shoulder(2.0, r), "fillet", 0.02, orders=(3, 4)).factors["tension"].value
         for r in (0.004, 0.002)
     ]
     assert np.log(values[1] / values[0]) / np.log(2) == pytest.approx(0.456, abs=0.025)

@@ -163,7 +163,12 @@ def test_what_the_fuzz_calls_a_bad_command(fuzz, main, monkeypatch):
     import solidgear.cli
 
     case, _, scenes = fuzz
-    good = case.Case("good", {scenes.FILE: GOOD.encode()}, partial(scenes.used, command=True))
+
+    def use(folder):
+        yield "command"
+        scenes.by_command(folder, None)
+
+    good = case.Case("good", {scenes.FILE: GOOD.encode()}, use)
     if main:
         monkeypatch.setattr(solidgear.cli, "main", main)
     assert case.one(scenes.SCENES, good).kind == ("finding" if main else "accepted")

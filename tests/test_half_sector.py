@@ -178,7 +178,7 @@ def test_pictures_of_all_copies():
         assert volume == pytest.approx(one.mesh["volume"], rel=1e-2)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_further_waves():
     """Two and three waves around: the pairs of the whole sector, of which the half has one each."""
     scene = shaft(TEETH, bore=0.034)

@@ -13,7 +13,7 @@ from solidgear.errors import SolidgearError
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Outline
-from tests.dense import every, whole
+from tests.dense import bearing_by_hand, every, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 NAMES = ("pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_hollow", "shaft_stepped")
@@ -21,20 +21,6 @@ NAMES = ("pinion_overhung", "pinion_straddle", "gear_shaft", "shaft_hollow", "sh
 
 def shipped(name):
     return sg.load(GEOMETRY / f"{name}.toml")
-
-
-@pytest.fixture(scope="module")
-def overhung():
-    return shipped("pinion_overhung")
-
-
-def bearing_by_hand(bearing):
-    """Bearing matrix with the springs in series with its axial stiffness."""
-    k = np.array(bearing.matrix)
-    if bearing.axial_series:
-        spring = 1 / sum(1 / s for s in bearing.axial_series)
-        k = k - np.outer(k[:, 1], k[1]) / (k[1, 1] + spring)
-    return k
 
 
 def dense_system(body, scene):

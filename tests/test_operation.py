@@ -82,11 +82,7 @@ COMMANDS = {
 
 @posix
 @pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(n, marks={"modes": (), "compare": pytest.mark.long}.get(n, pytest.mark.slow))
-        for n in COMMANDS
-    ],
+    "name", [pytest.param(n, marks=() if n == "modes" else pytest.mark.slow) for n in COMMANDS]
 )
 def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -47,13 +47,6 @@ def test_an_optimum_inside_a_range_is_found_and_one_at_its_end_is_told(span):
     assert any("at the end of its range" in sentence for sentence in found.sentences)
 
 
-@pytest.mark.slow
-def test_no_gain_is_claimed_within_the_bars():
-    found = sg.optimise(SHAFT, ["segment.right.diameter=59.9 mm:60.1 mm"], "max C_zz", tol=0.1)
-    assert found.gain.verdict == "not resolved"
-    assert any("No gain is claimed" in sentence for sentence in found.sentences)
-
-
 @pytest.mark.parametrize(
     ("bars", "verdict", "said"),
     [((0.3, 0.3), "not resolved", "No gain is claimed"), ((0.1, 0.1), "resolved", "+0.5 % from")],

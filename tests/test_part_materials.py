@@ -251,7 +251,7 @@ def numbers(body, scene):
     return np.array([compliance[2, 2], *sg.modes(body, scene, n=4).frequency_hz[1:2]])
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_two_solids_are_a_shaft_of_two_segments(tmp_path):
     """A STEP file of two solids end to end against the harmonic solid of a file of segments: what
     is left is the coarse mesh of tetrahedra, which is too stiff.

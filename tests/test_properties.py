@@ -73,7 +73,7 @@ def on_all_models(kind, **more):
         few = scenes(**{"most_segments": 2} | kind)
         tests = (
             BEAMS(given(scene=scenes(**kind), theory=theories, **more)(on_beams)),
-            pytest.mark.long(HARMONICS(given(scene=few, **more)(on_harmonic_solids))),
+            pytest.mark.slow(HARMONICS(given(scene=few, **more)(on_harmonic_solids))),
             pytest.mark.slow(SOLIDS(given(scene=few, **more)(on_solids))),
         )
         for test in tests:

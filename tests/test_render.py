@@ -33,20 +33,15 @@ RIGID = {"attachments": ("rigid",)}
 
 
 @pytest.fixture(scope="module")
-def pinion():
-    return sg.load(ROOT / "geometry" / "pinion_overhung.toml")
-
-
-@pytest.fixture(scope="module")
-def solved(pinion):
+def solved(overhung):
     """Bodies and modes, each built once."""
     made = {}
 
     def get(fidelity, **options):
         key = fidelity, tuple(sorted(options.items()))
         if key not in made:
-            body = sg.build(pinion, fidelity, **options)
-            made[key] = body, sg.modes(body, pinion, n=4)
+            body = sg.build(overhung, fidelity, **options)
+            made[key] = body, sg.modes(body, overhung, n=4)
         return made[key]
 
     return get
@@ -61,11 +56,7 @@ def unit_motion(body, component):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [
-        "pinion_overhung",
-        *(pytest.param(n, marks=pytest.mark.long) for n in ("shaft_hollow", "shaft_stepped")),
-    ],
+    "name", ["pinion_overhung", pytest.param("shaft_hollow", marks=pytest.mark.slow)]
 )
 @pytest.mark.parametrize(
     "fidelity, options",
@@ -74,7 +65,7 @@ def unit_motion(body, component):
         ("timoshenko", {}),
         ("harmonic", {"order": 1}),
         ("harmonic", {"order": 2} | RIGID),
-        pytest.param("harmonic", {"order": 5}, marks=pytest.mark.long),
+        pytest.param("harmonic", {"order": 5}, marks=pytest.mark.slow),
         ("solid", {"element": "hex8"} | SOLID),
         ("solid", {"element": "hex20"} | SOLID | RIGID),
         ("solid", {"element": "tet10", "size": 0.06, "graded_size": 0.06}),
@@ -107,8 +98,8 @@ def test_six_rigid_motions_and_a_closed_surface(name, fidelity, options):
     )
 
 
-def test_ovalising_shapes_move_as_their_harmonic(pinion):
-    body = sg.build(pinion, "harmonic", order=2, ovalising=(2,))
+def test_ovalising_shapes_move_as_their_harmonic(overhung):
+    body = sg.build(overhung, "harmonic", order=2, ovalising=(2,))
     index = next(i for i, b in enumerate(body.blocks) if b.name == "ovalising_2")
     s = body.surface({index: np.ones(body.blocks[index].size)})
     x, _, z = s.points.T
@@ -131,9 +122,9 @@ def shapes(scene, body, modes, name="bending 1"):
 @pytest.mark.parametrize(
     "fidelity, options, share", [("harmonic", FINE, 0.01), ("timoshenko", {}, 0.08)]
 )
-def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, share):
-    pair = shapes(pinion, *solved(fidelity, **options))
-    others = shapes(pinion, *solved("solid", **SOLID))
+def test_first_bending_moves_as_in_the_solid(overhung, solved, fidelity, options, share):
+    pair = shapes(overhung, *solved(fidelity, **options))
+    others = shapes(overhung, *solved("solid", **SOLID))
     distance, at = cKDTree(pair[0].points).query(others[0].points)
     near = distance < 1e-3
     assert near.sum() > 300
@@ -150,13 +141,13 @@ def test_first_bending_moves_as_in_the_solid(pinion, solved, fidelity, options, 
     np.testing.assert_allclose(np.array(turn) @ np.array(turn).T, np.eye(2), atol=2 * share)
 
 
-def test_what_does_not_fit_is_refused(pinion, solved):
+def test_what_does_not_fit_is_refused(overhung, solved):
     body, _ = solved("timoshenko")
     with pytest.raises(SolidgearError, match="block bending_z has"):
         body.surface({0: np.zeros(3)})
 
 
-def drawing(pinion, solved, folder):
+def drawing(overhung, solved, folder):
     jobs = []
     for fidelity, options in (("timoshenko", {}), ("harmonic", FINE)):
         body, modes = solved(fidelity, **options)
@@ -166,10 +157,10 @@ def drawing(pinion, solved, folder):
     return jobs
 
 
-def test_pictures(pinion, solved, tmp_path):
+def test_pictures(overhung, solved, tmp_path):
     from matplotlib.image import imread
 
-    jobs = drawing(pinion, solved, tmp_path)
+    jobs = drawing(overhung, solved, tmp_path)
     still = jobs[0].surface
     dead = RenderJob(
         type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines),
@@ -194,9 +185,11 @@ def test_pictures(pinion, solved, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["harmonic.png", "timoshenko.png"]
 
 
-def test_without_a_renderer_there_is_a_sentence_and_no_file(pinion, solved, tmp_path, monkeypatch):
+def test_without_a_renderer_there_is_a_sentence_and_no_file(
+    overhung, solved, tmp_path, monkeypatch
+):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
-    results = render_modes(drawing(pinion, solved, tmp_path))
+    results = render_modes(drawing(overhung, solved, tmp_path))
     assert len(results) == 2
     for r in results:
         assert not r.ok and r.no_renderer
@@ -212,21 +205,21 @@ def test_without_a_renderer_there_is_a_sentence_and_no_file(pinion, solved, tmp_
     ],
 )
 def test_a_child_that_dies_or_hangs_is_survived(
-    pinion, solved, tmp_path, monkeypatch, death, timeout
+    overhung, solved, tmp_path, monkeypatch, death, timeout
 ):
     fake = tmp_path / "python"
     fake.write_text(f"#!{sys.executable}\n{death}\n")
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
     out = tmp_path / "out"
-    results = render_modes(drawing(pinion, solved, out), timeout=timeout)
+    results = render_modes(drawing(overhung, solved, out), timeout=timeout)
     assert [r.ok for r in results] == [False, False]
     assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
     assert not out.exists()
 
 
-def test_a_child_is_gone_when_its_caller_has_left(pinion, solved, tmp_path, monkeypatch):
+def test_a_child_is_gone_when_its_caller_has_left(overhung, solved, tmp_path, monkeypatch):
     """Pictures are drawn beside what the caller does; Ctrl-C in there leaves no process behind."""
     fake, told = tmp_path / "python", tmp_path / "told"
     fake.write_text(
@@ -235,7 +228,7 @@ def test_a_child_is_gone_when_its_caller_has_left(pinion, solved, tmp_path, monk
     )
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
-    with pytest.raises(KeyboardInterrupt), Drawing(drawing(pinion, solved, tmp_path)):
+    with pytest.raises(KeyboardInterrupt), Drawing(drawing(overhung, solved, tmp_path)):
         while not (told.exists() and told.read_text()):
             time.sleep(0.01)
         os.kill(int(told.read_text()), 0)  # it is there
@@ -288,9 +281,9 @@ def volumes(points, cells, vtk_name):
         ("tet4", "tetra", "vtkTetra", 0.03),
     ],
 )
-def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_name, loss):
+def test_a_solid_comes_back_from_its_file(overhung, tmp_path, element, kind, vtk_name, loss):
     options = SOLID if element.startswith("hex") else {"size": 0.06, "graded_size": 0.06}
-    body = sg.build(pinion, "solid", element=element, **options)
+    body = sg.build(overhung, "solid", element=element, **options)
     made_up = [
         Mode(f"motion {c}", "", 1.5, 1, (unit_motion(body, c),), np.zeros((1, 1, 6)), 1.0)
         for c in range(6)
@@ -306,7 +299,7 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
     # A wrong order of nodes would turn some of every cell inside out.
     volume, least = volumes(back.points, back.cells[0].data, vtk_name)
     assert least.min() > 0
-    assert volume.sum() == pytest.approx(volume_of(Outline(pinion.segments)), rel=loss)
+    assert volume.sum() == pytest.approx(volume_of(Outline(overhung.segments)), rel=loss)
     # And VTK reads the same file; it measures curved cells by flat pieces, so up to 16 chords for a
     # circle (2.6 %).
     measured = pv.read(path).compute_cell_sizes(length=False, area=False)["Volume"]
@@ -315,7 +308,7 @@ def test_a_solid_comes_back_from_its_file(pinion, tmp_path, element, kind, vtk_n
 
 
 @pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", FINE)])
-def test_other_bodies_are_written_as_surfaces(pinion, solved, tmp_path, fidelity, options):
+def test_other_bodies_are_written_as_surfaces(overhung, solved, tmp_path, fidelity, options):
     body, modes = solved(fidelity, **options)
     back = meshio.read(write_vtu(body, modes, tmp_path / "body.vtu"))
     assert {c.type for c in back.cells} == {"quad", "triangle"}

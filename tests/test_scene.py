@@ -28,17 +28,12 @@ GEOMETRY = Path(__file__).parents[1] / "geometry"
 NEAR = dict(rel=0, abs=1e-9)
 
 
-@pytest.fixture(scope="module")
-def pinion():
-    return load(GEOMETRY / "pinion_overhung.toml")
-
-
-def test_overhung_pinion_against_closed_forms(pinion):
+def test_overhung_pinion_against_closed_forms(overhung):
     axial, small = 0.063 * math.cos(0.391), 0.067 - 0.063 * math.sin(0.391)
     back = axial + 0.010
-    head, backcone, shaft = pinion.segments
-    assert [s.part for s in pinion.segments] == ["frustum", "backcone", "shaft"]
-    assert [s.name for s in pinion.segments] == ["head", "head.backcone", "shaft"]
+    head, backcone, shaft = overhung.segments
+    assert [s.part for s in overhung.segments] == ["frustum", "backcone", "shaft"]
+    assert [s.name for s in overhung.segments] == ["head", "head.backcone", "shaft"]
     assert (head.y0, head.y1, head.outer0, head.outer1) == pytest.approx(
         (0, axial, small, 0.067), **NEAR
     )
@@ -48,41 +43,41 @@ def test_overhung_pinion_against_closed_forms(pinion):
     assert (shaft.y0, shaft.y1, shaft.outer0, shaft.inner0) == pytest.approx(
         (back, back + 0.208, 0.045, 0), **NEAR
     )
-    one, two = pinion.bearings
+    one, two = overhung.bearings
     assert (one.y, two.y) == pytest.approx((back + 0.028, back + 0.178), **NEAR)
     assert (one.lo, one.hi, two.lo, two.hi) == pytest.approx(
         (back + 0.008, back + 0.048, back + 0.158, back + 0.198), **NEAR
     )
-    assert (pinion.port.y, pinion.port.lo, pinion.port.hi) == pytest.approx(
+    assert (overhung.port.y, overhung.port.lo, overhung.port.hi) == pytest.approx(
         (axial / 2, 0, axial), **NEAR
     )
-    assert pinion.steps == pytest.approx((back,), **NEAR)
-    assert [s.name for s in pinion.stations] == ["pinion", "1", "2"]
+    assert overhung.steps == pytest.approx((back,), **NEAR)
+    assert [s.name for s in overhung.stations] == ["pinion", "1", "2"]
     assert (
-        pinion.housing_axial,
-        pinion.ask.modes,
-        pinion.ask.max_frequency,
-        pinion.ask.tolerance,
+        overhung.housing_axial,
+        overhung.ask.modes,
+        overhung.ask.max_frequency,
+        overhung.ask.tolerance,
     ) == (None, 10, 10e3, 0.05)
 
 
-def test_overhung_pinion_is_the_shaft_of_the_reference_numbers(pinion):
+def test_overhung_pinion_is_the_shaft_of_the_reference_numbers(overhung):
     # rounded as printed with them
-    assert [round(b.y, 5) for b in pinion.bearings] == [0.09625, 0.24625]
+    assert [round(b.y, 5) for b in overhung.bearings] == [0.09625, 0.24625]
     assert (
-        round(pinion.length, 5),
-        round(pinion.port.y, 6),
-        round(pinion.segments[0].outer0, 4),
+        round(overhung.length, 5),
+        round(overhung.port.y, 6),
+        round(overhung.segments[0].outer0, 4),
     ) == (0.27625, 0.029123, 0.0430)
 
 
-def test_neighbours_meet_exactly(pinion):
-    for a, b in zip(pinion.segments, pinion.segments[1:]):
+def test_neighbours_meet_exactly(overhung):
+    for a, b in zip(overhung.segments, overhung.segments[1:]):
         assert a.y1 == b.y0
-    assert pinion.port.hi == pinion.segments[0].y1
+    assert overhung.port.hi == overhung.segments[0].y1
 
 
-def test_published_bearing_one_is_the_published_matrix(pinion):
+def test_published_bearing_one_is_the_published_matrix(overhung):
     expected = np.zeros((6, 6))
     for i, j, value in [
         (0, 0, 8.823e9),
@@ -100,11 +95,11 @@ def test_published_bearing_one_is_the_published_matrix(pinion):
         (1, 5, 1.681),
     ]:
         expected[i, j] = expected[j, i] = value
-    np.testing.assert_allclose(pinion.bearings[0].stiffness, expected, rtol=1e-12)
+    np.testing.assert_allclose(overhung.bearings[0].stiffness, expected, rtol=1e-12)
 
 
-def test_stiffness_cannot_be_written_to(pinion):
-    for bearing in pinion.bearings:
+def test_stiffness_cannot_be_written_to(overhung):
+    for bearing in overhung.bearings:
         with pytest.raises(ValueError):
             bearing.stiffness[0, 0] = 1.0
 
@@ -205,7 +200,7 @@ def test_not_a_length(text):
         quantity(text, "length")
 
 
-def test_a_scene_does_not_depend_on_the_units_it_is_written_in(pinion, tmp_path):
+def test_a_scene_does_not_depend_on_the_units_it_is_written_in(overhung, tmp_path):
     text = (GEOMETRY / "pinion_overhung.toml").read_text(encoding="utf-8")
     for old, new in {
         '"90 mm"': f'"{90 / 25.4!r} in"',
@@ -220,7 +215,7 @@ def test_a_scene_does_not_depend_on_the_units_it_is_written_in(pinion, tmp_path)
     path.write_text(text, encoding="utf-8")
     other = load(path)
     assert other.segments[2].outer0 == pytest.approx(0.045, rel=1e-14)
-    assert other.with_changes(segments=pinion.segments) == pinion
+    assert other.with_changes(segments=overhung.segments) == overhung
 
 
 @pytest.mark.parametrize("unit", COMMON)
@@ -271,18 +266,18 @@ def test_radius_along_a_cone():
         cone.radius_at(0.9)
 
 
-def test_variants(pinion):
-    assert {s.attachment for s in pinion.with_attachment("section").stations} == {"section"}
-    assert {round(b.hi - b.lo, 9) for b in pinion.with_seat_width("20 mm").bearings} == {0.02}
-    softer = pinion.with_material(E=1e11)
+def test_variants(overhung):
+    assert {s.attachment for s in overhung.with_attachment("section").stations} == {"section"}
+    assert {round(b.hi - b.lo, 9) for b in overhung.with_seat_width("20 mm").bearings} == {0.02}
+    softer = overhung.with_material(E=1e11)
     assert {s.material.E for s in softer.segments} == {1e11} and softer.material.nu == 0.3
     assert {
-        s.material for s in pinion.with_changes(material=STEEL.with_changes(nu=0.2)).segments
+        s.material for s in overhung.with_changes(material=STEEL.with_changes(nu=0.2)).segments
     } == {STEEL.with_changes(nu=0.2)}
-    for a, b in zip(pinion.bearings, pinion.with_bearing_scale(3.0).bearings):
+    for a, b in zip(overhung.bearings, overhung.with_bearing_scale(3.0).bearings):
         np.testing.assert_allclose(b.stiffness, 3 * a.stiffness, rtol=1e-13)
-    assert pinion.with_port(y=0.03).port == Port(
-        name="pinion", y=0.03, lo=pinion.port.lo, hi=pinion.port.hi
+    assert overhung.with_port(y=0.03).port == Port(
+        name="pinion", y=0.03, lo=overhung.port.lo, hi=overhung.port.hi
     )
 
 
@@ -304,21 +299,21 @@ def test_variants(pinion):
         lambda s: s.with_attachment("rigid").with_port(y=0.1, lo=0.1, hi=0.11, attachment="rigid"),
     ],
 )
-def test_changes_are_validated(pinion, change):
+def test_changes_are_validated(overhung, change):
     with pytest.raises(SceneError) as caught:
-        change(pinion)
+        change(overhung)
     assert "\n" not in str(caught.value)
 
 
-def test_frozen(pinion):
+def test_frozen(overhung):
     with pytest.raises(Exception, match="frozen"):
-        pinion.title = "other"
+        overhung.title = "other"
 
 
-def test_a_seat_may_end_at_the_shoulder(pinion):
-    one, two = pinion.bearings
-    scene = pinion.with_changes(
-        bearings=(one.with_changes(y=pinion.steps[0] + one.seat_width / 2), two)
+def test_a_seat_may_end_at_the_shoulder(overhung):
+    one, two = overhung.bearings
+    scene = overhung.with_changes(
+        bearings=(one.with_changes(y=overhung.steps[0] + one.seat_width / 2), two)
     )
     assert scene.bearings[0].lo == scene.steps[0]
 
@@ -408,13 +403,13 @@ def test_a_seat_a_hair_beside_a_face_or_a_joint_ends_there():
 
 
 def test_fields_are_called_as_in_a_file_and_pydantic_is_not_shown():
-    pinion = sg.load("geometry/pinion_overhung.toml")
-    front = pinion.bearings[0]
+    overhung = sg.load("geometry/pinion_overhung.toml")
+    front = overhung.bearings[0]
     assert front.position == front.y and "position=0.096" in repr(front)
     assert front.with_changes(position="0.1 m").y == 0.1
     assert sg.Bearing(name="A", position=0.1, seat_width=0.02, hold="pinned").y == 0.1
-    assert pinion.segments[-1].diameter == pytest.approx(0.09)
-    for shown in (pinion, front, sg.Bearing, sg.Material):
+    assert overhung.segments[-1].diameter == pytest.approx(0.09)
+    for shown in (overhung, front, sg.Bearing, sg.Material):
         names = set(dir(shown))
         assert not names & {"copy", "json", "dict", "schema"}
         assert not any("pydantic" in name or name.startswith("model_") for name in names)
@@ -426,9 +421,9 @@ def test_fields_are_called_as_in_a_file_and_pydantic_is_not_shown():
     (("bearing", "bearings"), ("materal", "material"), ("with_change", "with_changes")),
 )
 def test_a_name_that_is_not_there_is_answered_by_the_one_that_is_meant(name, meant):
-    pinion = sg.load("geometry/pinion_overhung.toml")
+    overhung = sg.load("geometry/pinion_overhung.toml")
     with pytest.raises(AttributeError, match=f'a Scene has no .{name}.; did you mean "{meant}"'):
-        getattr(pinion, name)
+        getattr(overhung, name)
     with pytest.raises(AttributeError, match='did you mean "compare"'):
         sg.__getattr__("compar")
 

@@ -77,7 +77,7 @@ def test_long_cells_weigh_sections_as_a_bar_does(component, section):
     assert np.abs(gram[at::count, at::count] - exact).max() < 4e-3 * exact.max()
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_one_mode_is_the_same_on_long_cells_and_on_short_ones():
     scene = shipped("shaft_stepped")
     found = [

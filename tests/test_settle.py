@@ -263,7 +263,7 @@ def test_a_sweep_whose_ends_are_refused_is_judged_on_the_scene_alone(run):
     assert "on the bearing set of the scene alone (what lies at the ends is refused)" in out
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     """Clamped as hard as this, a compliance is all shaft, and errs as the shaft does."""
     hard = settled_for_sweep(scene, ["bearing.1.scale=1,1e4", "bearing.2.scale=1,1e4"], 0.01)

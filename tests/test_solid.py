@@ -26,11 +26,6 @@ K_ZZ, FIRST_BENDING = 4.70996e9, 2758.003
 
 
 @pytest.fixture(scope="module")
-def overhung():
-    return sg.load(GEOMETRY / "pinion_overhung.toml")
-
-
-@pytest.fixture(scope="module")
 def light(overhung):
     return sg.build(
         overhung,

@@ -17,7 +17,6 @@ from solidgear.nonlinear.motion import sweep
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import (
     backlash_model,
-    in_time,
     over_force,
     parting,
     teeth_of,
@@ -101,11 +100,6 @@ def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
     up, down = (branch.points[k].omega / (2 * np.pi) for k in branch.turning)
     # both lie between those at 6.4 and 9.6 kN
     assert 704.4 < up < 727.0 and 671.8 < down < up
-
-
-@pytest.mark.slow
-def test_sweeps_in_time_agree_with_the_branch(solids):
-    assert max(abs(one.off) for one in in_time(solids, 4)) < 1e-3
 
 
 @pytest.mark.parametrize("highest", [np.inf, 4000.0])

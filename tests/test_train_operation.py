@@ -382,14 +382,14 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
 # ----------------------------------------------------------------------- bars and verdict
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
-    coarse = Workshop(helical, settings={"harmonic": {"order": 2}})
-    finer = Workshop(helical, settings={"harmonic": {"order": 3}})
+    coarse = Workshop(helical, settings={"harmonic": {"order": 2, "layers": 1}})
+    finer = Workshop(helical, settings={"harmonic": {"order": 3, "layers": 1}})
     here, there = (deflection(w, point, "harmonic", "harmonic") for w in (coarse, finer))
     pairs = [*zip(here.misalignment, there.misalignment)]
     pairs += zip(here.displacement["pinion"][:4], there.displacement["pinion"][:4])
     for mine, fine in pairs:
         assert 0 < abs(mine.value - fine.value) <= mine.bar + fine.bar, mine.name
-        assert fine.bar < mine.bar < 0.02 * abs(mine.value), mine.name
+        assert fine.bar < mine.bar < 0.05 * abs(mine.value), mine.name
 
 
 def test_verdict_names_the_cheapest_model_that_holds(helical):

@@ -10,7 +10,6 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.orders import order_map
 from solidgear.studies.train.respond import Drive
-from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")
@@ -81,15 +80,3 @@ def test_names_are_moved_apart_and_stay_in_order():
     shown = spread(places, 0.02)
     assert np.diff(shown).min() > 0.02 - 1e-12 and shown.max() <= 1
     assert shown[3] == 0.5 and shown[1] == pytest.approx(0.101)
-
-
-@pytest.mark.long
-def test_the_command_writes_the_map(tmp_path):
-    args = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "euler", "--out"]
-    done = command(*args, str(tmp_path), "--orders", "2")
-    assert done.exit_code == 0, done.output
-    rows = table(tmp_path / "orders.csv")
-    assert {row["order"] for row in rows if row["order"].startswith("mesh")} == {"mesh 1", "mesh 2"}
-    assert all((row["mesh force [N]"] != "") == (row["order"] == "mesh 1") for row in rows)
-    assert "pinion speed in rpm" in (tmp_path / "orders.svg").read_text(encoding="utf-8")
-    assert (tmp_path / "orders.png").stat().st_size > 10_000

@@ -103,7 +103,14 @@ def test_a_diameter_changed_by_1e_7_moves_nothing_beyond_the_bars(tmp_path):
 
 
 def test_springs_of_the_other_plane_alone_are_seen():
-    scene = loose(sg.load(SCENE))
+    scene = sg.Scene.from_parts(
+        [sg.Segment.cylinder("rod", length=0.2, diameter=0.05)],
+        bearings=[
+            sg.Bearing(name=name, y=y, seat_width=0.02, stiffness=dict(kxx=1e8, kyy=1e8, kzz=1e8))
+            for name, y in (("a", 0.02), ("b", 0.18))
+        ],
+        port=sg.Port(name="gear", y=0.1, lo=0.08, hi=0.12),
+    )
     stiffness = scene.bearings[0].stiffness.copy()
     stiffness[0, 0] *= 1.2
     harder = scene.bearings[0].with_changes(matrix=stiffness.tolist())

@@ -24,19 +24,14 @@ KINDS = {"timoshenko": {}, "harmonic": {"order": 4}, "solid": {"refinement": 0.5
 
 
 @pytest.fixture(scope="module")
-def pinion():
-    return sg.load(ROOT / "geometry" / "pinion_overhung.toml")
-
-
-@pytest.fixture(scope="module")
-def solved(pinion):
+def solved(overhung):
     """Bodies and modes, each built once."""
     made = {}
 
     def get(kind):
         if kind not in made:
-            body = sg.build(pinion, kind, **KINDS[kind])
-            made[kind] = body, sg.modes(body, pinion, n=5)
+            body = sg.build(overhung, kind, **KINDS[kind])
+            made[kind] = body, sg.modes(body, overhung, n=5)
         return made[kind]
 
     return get
@@ -75,11 +70,11 @@ def closed_volume(points, triangles):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, solved, pinion):
+def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, solved, overhung):
     points, triangles, _ = drawn(viewer.viewer_fragment([turned(*solved(kind))]))
     # 48 sides for a circle are 0.3 % too little area; outward normals make it positive
     assert closed_volume(points, triangles) == pytest.approx(
-        volume_of(Outline(pinion.segments)), rel=0.01
+        volume_of(Outline(overhung.segments)), rel=0.01
     )
     assert len(np.unique(triangles)) == len(points)
 

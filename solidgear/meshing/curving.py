@@ -4,14 +4,16 @@ the volume of what they stand for.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from copy import copy
+from typing import TypeVar
 
 import numpy as np
-from skfem import MeshTet2
+from skfem import Mesh, MeshTet2
 
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.quality import element_ratios, element_volumes
 
+M = TypeVar("M", bound=Mesh)
 #: below this min/max det J the edges of an element are straightened
 FOLD = 0.05
 #: growth of a sagitta s over a chord of half length c, times (s / c)^2. A parabola through three points
@@ -21,6 +23,16 @@ FOLD = 0.05
 OUT = 0.25
 #: of a sagitta, how far an edge may move to give back volume: a fifth of what seats allow
 MOST_GIVEN = 0.02
+
+
+def with_nodes(mesh: M, doflocs: np.ndarray) -> M:
+    """The mesh with its nodes elsewhere: what belongs to what stays, and with it the tables of edges,
+    faces and unknowns, which take longer to make than all else of a mesh.
+    """
+    moved = copy(mesh)
+    moved.doflocs = np.ascontiguousarray(doflocs)
+    vars(moved).pop("_cached_mapping", None)  # it knows where nodes were
+    return moved
 
 
 def relaxed(mesh: MeshTet2) -> MeshTet2:
@@ -45,7 +57,7 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
         keep[edges] = np.minimum(keep[edges], part)
         doflocs = mesh.doflocs.copy()
         doflocs[:, middles] = straight + keep * curve
-        mesh = replace(mesh, doflocs=doflocs)
+        mesh = with_nodes(mesh, doflocs)
     return _given_back(mesh, whole, curve, keep)
 
 
@@ -65,7 +77,7 @@ def _given_back(mesh: MeshTet2, whole: MeshTet2, curve: np.ndarray, keep: np.nda
     share = lost * gain / able
     doflocs = mesh.doflocs.copy()
     doflocs[:, middles] += share * curve
-    given = replace(mesh, doflocs=doflocs)
+    given = with_nodes(mesh, doflocs)
     return mesh if (element_ratios(given) < FOLD).any() else given
 
 
@@ -103,4 +115,4 @@ def volume_preserved(mesh: MeshTet2) -> MeshTet2:
     steep = 4 * (curve**2).sum(axis=0) / ((b - a) ** 2).sum(axis=0)
     doflocs = mesh.doflocs.copy()
     doflocs[:, middles] = straight + (1 + OUT * steep) * curve
-    return replace(mesh, doflocs=doflocs)
+    return with_nodes(mesh, doflocs)

@@ -8,13 +8,14 @@ Where all features share a mirror plane, only one half is drawn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 from typing import Any
 
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
+from solidgear.meshing.curving import with_nodes
 from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
@@ -198,4 +199,4 @@ def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
     at = edge_places(mesh.edges, used[part.edges])
     doflocs = part.doflocs.copy()
     doflocs[:, part.dofs.edge_dofs[0]] = mesh.doflocs[:, mesh.dofs.edge_dofs[0][at]]
-    return replace(part, doflocs=doflocs)
+    return with_nodes(part, doflocs)

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 
+from solidgear.meshing.curving import with_nodes
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS
 from solidgear.meshing.edge_places import edge_places
@@ -251,7 +252,7 @@ def _with_middles(mesh: Any, corners, edges, middles) -> Any:
     doflocs = mesh.doflocs.copy()
     # nodes are listed cell by cell for each edge
     doflocs[:, mesh.dofs.edge_dofs[0]] = middles.reshape(3, -1)[:, at]
-    return replace(mesh, doflocs=doflocs)
+    return with_nodes(mesh, doflocs)
 
 
 def _serendipity(mesh: Any) -> Any:
@@ -268,4 +269,4 @@ def _serendipity(mesh: Any) -> Any:
         value = 0.5 * edges[:, on[1]].sum(axis=1) - 0.25 * corners[:, on[0]].sum(axis=1)
         doflocs[:, mesh.dofs.element_dofs[local]] = value
     doflocs[:, mesh.dofs.element_dofs[26]] = 0.25 * (edges.sum(axis=1) - corners.sum(axis=1))
-    return replace(mesh, doflocs=doflocs)
+    return with_nodes(mesh, doflocs)

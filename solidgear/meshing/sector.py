@@ -11,7 +11,7 @@ each other's image and volumes what they were.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos, gcd, pi, sin
 from typing import Any
 
@@ -20,6 +20,7 @@ from scipy.spatial import cKDTree
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.frames import rotation
+from solidgear.meshing.curving import with_nodes
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
@@ -205,7 +206,7 @@ def _turned(mesh: MeshTet2, by) -> MeshTet2:
     """The mesh with every section turned about +y, by an angle that depends on y."""
     x, y, z = mesh.doflocs
     c, s = np.cos(by(y)), np.sin(by(y))
-    return replace(mesh, doflocs=np.stack([c * x + s * z, y, c * z - s * x]))
+    return with_nodes(mesh, np.stack([c * x + s * z, y, c * z - s * x]))
 
 
 def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -297,4 +298,4 @@ def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total
     found = edge_places(np.hstack(ends), whole.edges)
     doflocs = whole.doflocs.copy()
     doflocs[:, whole.dofs.edge_dofs[0]] = np.hstack(middles)[:, found]
-    return replace(whole, doflocs=doflocs)
+    return with_nodes(whole, doflocs)

@@ -6,14 +6,14 @@ So they are moved beyond it (:mod:`solidgear.meshing.curving`), and some 2e-6 is
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 from skfem import MeshTet1, MeshTet2
 
 from solidgear.machine.interruptible import call
-from solidgear.meshing.curving import relaxed, volume_preserved
+from solidgear.meshing.curving import relaxed, volume_preserved, with_nodes
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
@@ -248,7 +248,7 @@ def to_skfem(gmsh):
     at = edge_places(pairs.reshape(-1, 2).T, mesh.edges)
     doflocs = mesh.doflocs.copy()
     doflocs[:, mesh.dofs.edge_dofs[0]] = position[cells[:, 4:].reshape(-1)[at]].T
-    return replace(mesh, doflocs=doflocs)
+    return with_nodes(mesh, doflocs)
 
 
 def _mid_node_corners(gmsh):
