@@ -238,7 +238,7 @@ def across(
 
 
 def _step(*pieces: Piece) -> float:
-    """How close circles lie beside the smaller of two pieces."""
+    """Distance of circles beside the smaller of two pieces."""
     return min(max(piece.outer) for piece in pieces) / FINE
 
 
