@@ -9,6 +9,7 @@ import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.motion import settled
+from solidgear.studies.train.contact import axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import backlash_model, teeth_of
 from solidgear.studies.train.operation import Operating
@@ -168,6 +169,20 @@ def test_a_triangle_of_wheels_is_refused_for_it_cannot_turn(tmp_path):
     shafts = {s: train.shafts[s] for s in ("input", "left", "output")}
     with pytest.raises(SceneError, match="turn the .* the other way: the loop cannot turn"):
         Workshop(train.with_changes(shafts=shafts, meshes=tuple(meshes)))
+
+
+def test_a_line_of_action_that_locks_a_loop_is_refused(tmp_path):
+    """A point typed to a millimetre; in a tree such lever arms turn."""
+    train = looped(tmp_path, BEARING)
+    last, contact = train.pairs[3], [*Workshop(train).contacts.values()][3]
+    met = contact.pinion
+    turn = axes_of(last, "pinion").T
+    given = {"line_of_action": turn @ met.normal, "point": (turn @ met.point).round(3)}
+    given["gear_position"] = contact.origin
+    typed = last.mesh.with_changes(pressure_angle=None, **{k: tuple(v) for k, v in given.items()})
+    with pytest.raises(SceneError, match="turn the output by .* % other than the rest of it"):
+        Workshop(train.with_changes(meshes=(*train.meshes[:3], typed)))
+    Workshop(train.with_changes(meshes=(*train.meshes[:2], typed)))
 
 
 BAD = {

@@ -1008,8 +1008,8 @@ MUTATIONS = (
         "torque passes a shaft as if both of its gears had one radius",
         "solidgear/studies/train/layout.py",
         "mesh_forces",
-        "(lever * train.turns[side])",
-        "lever",
+        "force_on(pair, side, found[pair.name])[4] * turns[side]",
+        "force_on(pair, side, found[pair.name])[4]",
         "tests/test_train_many.py"
         "::test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth",
     ),

@@ -20,6 +20,8 @@ from solidgear.studies.train.contact import Contact, axes_of, contact
 
 #: shafts of a loop of meshes that end this far from where they began, of the distance, do not meet
 CLOSES = 1e-6
+#: relative; speeds about a loop that differ by more strain teeth, which then turn nowhere
+LOCKED = 1e-10
 #: turn (3, 3) and origin (3,), m, of a shaft's scene in the axes of the first one
 Place = tuple[np.ndarray, np.ndarray]
 
@@ -73,6 +75,13 @@ def _turning(
                 "loop cannot turn; leave a mesh out, or put an idler into it",
                 path=("mesh", k, "between"),
             )
+        if (off := abs(one / two + 1)) > LOCKED:
+            raise SceneError(
+                f"closes a loop in which lever arms turn the {pair.shafts[1]} by {100 * off:.2g} % other "
+                "than the rest of it, so that it is locked: let lines of action follow from gear "
+                "geometry (pressure_angle), or give them all digits",
+                path=("mesh", k, "between"),
+            )
         out[pair.name] = -float(np.sign(one) * _away(train, pair))
     return turns, out
 
@@ -102,13 +111,19 @@ def mesh_forces(
     """Forces of the teeth along their lines of action without losses, N, by mesh; zero of one that the
     torque does not pass.  Meshes of a loop are not among them, for the teeth alone do not tell theirs.
     """
-    out, power = {}, abs(point.torque) * train.torque_turns[point.of]
+    turns, _ = _turning(train, found)
+    out, power = {}, _power(train, turns, point)
     for pair in train.pairs:
         if (flow := train.flows[pair.name]) is not None:
             side = pair.shafts[0]
-            lever = abs(force_on(pair, side, found[pair.name])[4])
-            out[pair.name] = float(abs(flow) * power / (lever * train.turns[side]))
+            speed = force_on(pair, side, found[pair.name])[4] * turns[side]
+            out[pair.name] = float(abs(flow) * power / abs(speed))
     return out
+
+
+def _power(train: Train, turns: Mapping[str, float], point: OperatingPoint) -> float:
+    """All of the power in one turn of the engine's shaft, by the lever arms, N m."""
+    return abs(point.torque * turns[point.of]) / train.carried[point.of]
 
 
 def rotor_torques(
@@ -116,9 +131,7 @@ def rotor_torques(
 ) -> dict[str, float]:
     """Torques of engines and loads about the axes of their shafts' scenes, N m."""
     turns, ways = _turning(train, found)
-    power = (
-        abs(point.torque) * train.torque_turns[point.of] * next(filter(None, ways.values()), 1.0)
-    )
+    power = _power(train, turns, point) * next(filter(None, ways.values()), 1.0)
     shares = shares_of(train).items()
     return {name: share * power / turns[train.rotors[name].shaft] for name, share in shares}
 
