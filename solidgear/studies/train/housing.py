@@ -221,8 +221,8 @@ def cautions_of(train: Train, places: Mapping[str, tuple[np.ndarray, np.ndarray]
         return []
     if (own := train.housing.matrices) is None:
         return [
-            "the housing is rigid: modes of its walls are in no number and in no bar; where they "
-            f"lie below {train.ask.max_frequency:g} Hz, give its matrices"
+            "the housing is rigid: what its walls give, and their modes, are in no number and in no "
+            "bar; matrices of it tell both"
         ]
     out = ["what the matrices of the housing leave out is in no bar and in no bound"]
     for side in train.housed:
