@@ -281,6 +281,26 @@ def boxes(train, folder):
     yield other.with_changes(housing=other.housing.with_changes(mounts=lossy)), "foot 1"
 
 
+def test_lines_of_shafts_are_told_against_a_housing_however_soft_it_stands(train):
+    """What teeth and torque do to bearings hangs on no mount; digits are lost to what mounts do."""
+    loaded = train.with_changes(operation=({"torque": 100.0},))
+    soft = tuple(
+        mount.with_changes(stiffness=(np.array(mount.stiffness) / 50).tolist())
+        for mount in train.housing.mounts
+    )
+    boxed = loaded.housing.with_changes(mounts=soft)
+    one, other = (
+        deflection(Workshop(each), each.operation[0], "euler")
+        for each in (loaded, loaded.with_changes(housing=boxed))
+    )
+    moved = [abs(found.displacement["housing"][2].value) for found in (one, other)]
+    assert moved[1] == pytest.approx(50 * moved[0], rel=1e-6)
+    for mine, its in zip(one.shafts, other.shafts):
+        off = np.abs(mine.line - its.line)[:, :3].max()
+        assert off < 1e-9 * moved[1] < 1e-3 * np.abs(mine.line[:, :3]).max()
+    assert "are told against the housing" in one.notes[-1]
+
+
 def test_what_bearings_mounts_and_inertia_do_to_a_housing_is_in_balance_at_every_frequency(
     train, tmp_path
 ):

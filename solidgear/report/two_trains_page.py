@@ -105,6 +105,7 @@ def charts_of(found: Any, units: Units) -> dict[str, Make]:
         ("response", [others(found)]),
         ("reactions", [[c for c in forces if c[0].endswith(f" {unit}")] for unit in REACTED]),
         ("motions", [[c for c in moved if _place(c[0]) == side] for side in found.models]),
+        ("housing", [train_tables.housing_columns(found)]),
     ):
         for k, own in enumerate(_pages(groups)):
             charts[f"{name}_{k}"] = partial(columns_chart, both, own, shared, units)
@@ -232,6 +233,12 @@ def _sections(
             MOTIONS,
             *tables.largest(found, motions(found), units),
         ),
+        section(
+            "housing",
+            "Housing",
+            "",
+            *tables.largest(found, train_tables.housing_columns(found), units),
+        ),
         section("shares", "Strain energy", "", tables.shares(found)),
         section(
             "rest",
@@ -251,6 +258,7 @@ OF_KIND = {
     "spring": ("#8a6d3b", "#5a3e8c", "#1f9bb8"),
     "shaft": ("#0072b2", "#00805e", "#c46200", "#444444"),
     "bearings": ("#9cc9e6", "#9fd3bf", "#f2c79b", "#c4c4c4"),
+    "mounts": ("#d9c94f",),
 }
 OF_MESHES = ("#b3305c", "#e07aa0", "#7a1f3d")
 LIGHT = OF_KIND["bearings"]

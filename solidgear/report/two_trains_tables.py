@@ -46,6 +46,16 @@ def _decibels(value: float | None) -> str | None:
     return None if value is None else f"{value:+.1f} dB"
 
 
+#: what columns of a unit are
+KINDS = {
+    "N": "forces",
+    "N m": "moments",
+    "m": "motions",
+    "rad": "rotations",
+    "m/s²": "accelerations",
+}
+
+
 def largest(
     found: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
 ) -> list[Table]:
@@ -57,7 +67,7 @@ def largest(
         Name with its unit, and what it is called.
     """
     out = []
-    for si, title in (("N", "forces"), ("N m", "moments"), ("m", "motions"), ("rad", "rotations")):
+    for si, title in KINDS.items():
         shown = f"{si} moved" if si in ("m", "rad") else si
         rows = [
             (name, *(one.largest(column) for one in found.both), found.decibels(column))

@@ -1,7 +1,7 @@
 """From a TOML file of a train to a `Train`, errors named by the keys of the file.
 
 The format is documented by ``geometry/axle_overhung.toml``, and that of more than two shafts by
-``geometry/gearbox_two_stage.toml``.
+``geometry/gearbox_two_stage.toml``, and of a housing by ``geometry/gearbox_housed.toml``.
 """
 
 from __future__ import annotations

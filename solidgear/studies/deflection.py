@@ -302,6 +302,7 @@ def shaft_deflection(
     found: SystemEquilibrium,
     body: Body | None,
     made: Mapping[str, Catalogued],
+    against: np.ndarray | None = None,
 ) -> ShaftDeflection:
     """Deflection of one part of a system at rest.
 
@@ -317,6 +318,8 @@ def shaft_deflection(
         That the part was reduced from; None of a rigid one, whose line has its two ends.
     made : mapping of str to Catalogued
         Bearings of catalogue data, by ``part.name``.
+    against : (6,) ndarray, optional
+        Motion of what it stands in, at the start of the shaft, that its line is told against.
     """
     ports = {
         station.name: system.motion(f"{part}.{station.name}") @ found.coordinates
@@ -334,6 +337,8 @@ def shaft_deflection(
         known = body.cache.get(_Sections, lambda: _sections(body, scene.length))
         stations = known.stations
         line = known.project(system.expand(part, found.coordinates))
+    if against is not None:
+        line = line - np.array([shift((0.0, y, 0.0)) @ against for y in stations])
     return ShaftDeflection(part, model, stations, line, ports, bearings)
 
 

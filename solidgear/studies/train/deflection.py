@@ -8,7 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.frames import DOF_NAMES
 from solidgear.judge.deviations import WITHIN, gap_verdict
 from solidgear.machine.threads import pinned
@@ -17,7 +17,7 @@ from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.components import FORCE_UNITS
-from solidgear.studies.train.housing import BOX, mount_rows
+from solidgear.studies.train.housing import BOX, carried_by, mount_rows
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
@@ -305,6 +305,10 @@ def _told(
         Measured(m.name, m.unit, m.meaning, float(m.row @ state.coordinates), bars.of(m.row))
         for m in measures
     )
+    housed = {
+        side: carried_by(system, workshop.places[side], state.coordinates)
+        for side in workshop.train.housed
+    }
     shafts = tuple(
         shaft_deflection(
             side,
@@ -314,10 +318,13 @@ def _told(
             state.equilibrium,
             None if rung.partition("/")[0] == RIGID else workshop.shaft(side, rung).body,
             state.made,
+            housed.get(side),
         )
         for side, rung in rungs.items()
     )
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
+    if housed:
+        notes.append(f"deflection lines of {listed(housed)} are told against the housing")
     moved = {}
     for side, shaft in workshop.train.shafts.items():
         for port in shaft.gears:

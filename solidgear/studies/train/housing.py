@@ -112,6 +112,23 @@ def seat_motion(train: Train, system: System, side: str, station: str) -> np.nda
     return apart(system.port(f"{side}.{station}"), *around)
 
 
+def carried_by(
+    system: System, place: tuple[np.ndarray, np.ndarray], coordinates: np.ndarray
+) -> np.ndarray:
+    """(6,) motion of the housing at the start of a shaft, in the axes of the shaft's scene, without
+    the rotation about it.
+
+    Parameters
+    ----------
+    place : ((3, 3) ndarray, (3,) ndarray)
+        Turn and origin of that scene in the axes of the train.
+    """
+    turn, origin = place
+    start = PortMotion(np.zeros((6, system.size)), origin, turn)
+    out = system.port(BOX).seen_from(start) @ coordinates
+    return out * np.array([1, 1, 1, 1, 0, 1])
+
+
 def mount_rows(train: Train, system: System) -> dict[str, np.ndarray]:
     """(6, N) rows of the load of the housing on every mount, by its name."""
     if (box := train.housing) is None:
@@ -221,8 +238,8 @@ def cautions_of(train: Train, places: Mapping[str, tuple[np.ndarray, np.ndarray]
         return []
     if (own := train.housing.matrices) is None:
         return [
-            "the housing is rigid: modes of its walls are in no number and in no bar; where they "
-            f"lie below {train.ask.max_frequency:g} Hz, give its matrices"
+            "the housing is rigid: what its walls give, and their modes, are in no number and in no "
+            "bar; matrices of it tell both"
         ]
     out = ["what the matrices of the housing leave out is in no bar and in no bound"]
     for side in train.housed:
