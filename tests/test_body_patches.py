@@ -205,6 +205,46 @@ def test_a_bad_station_of_a_body_is_refused_in_one_sentence(beam, more, field, s
         sg.load(scene(beam, "2.msh", more=more))
 
 
+#: corners of the faces S1 to S4 of a tetrahedron, as CalculiX counts them
+SIDES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+
+
+@pytest.mark.parametrize("sort", ["C3D4", "C3D8"])
+def test_surfaces_of_a_deck_are_patches(tmp_path, sort):
+    lines = [1e3 * np.linspace(0, e, n + 1) for e, n in zip(EDGES, (1, 2, 1))]
+    if sort == "C3D4":
+        mesh, sides = MeshTet.init_tensor(*lines), SIDES
+        turned = np.linalg.det(np.diff(mesh.p[:, mesh.t], axis=1).transpose(2, 0, 1)) < 0
+        mesh.t[:2, turned] = mesh.t[1::-1, turned]
+        cells = mesh.t
+    else:
+        mesh = MeshHex.init_tensor(*lines)
+        at = mesh.p[:, mesh.t] - mesh.p[:, mesh.t].mean(axis=1, keepdims=True)
+        corner = (at > 0).transpose(2, 1, 0)
+        around = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+        wanted = np.array([*around, *((a, b, 1) for a, b, _ in around)], bool)
+        order = [[int((c == w).all(axis=1).argmax()) for w in wanted] for c in corner]
+        cells = np.take_along_axis(mesh.t, np.array(order).T, axis=0)
+        # bottom, top, and the sides from the first corner on
+        sides = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
+    text = ["*NODE", *(f"{k}, {x}, {y}, {z}" for k, (x, y, z) in enumerate(mesh.p.T, 1))]
+    text += [f"*ELEMENT, TYPE={sort}"]
+    text += [", ".join(map(str, [k, *(1 + c)])) for k, c in enumerate(cells.T, 1)]
+    text += ["*ELSET, ELSET=all", ", ".join(str(k + 1) for k in range(cells.shape[1]))]
+    text += ["*SURFACE, NAME=foot, TYPE=ELEMENT"]
+    for k, own in enumerate(cells.T):
+        y = mesh.p[1, own]
+        text += [f"{k + 1}, S{s}" for s, c in enumerate(sides, 1) if np.all(y[list(c)] == 0)]
+    # inside of the part there is no surface
+    text += ["*SURFACE, NAME=whole, TYPE=ELEMENT", *(f"all, S{s + 1}" for s in range(len(sides)))]
+    (tmp_path / "beam.inp").write_text("\n".join(text) + "\n")
+    foot, whole = sg.load(scene(tmp_path, "beam.inp", more="")).body.patches
+    assert (foot.name, whole.name) == ("foot", "whole")
+    assert foot.point == pytest.approx((X / 2, 0, Z / 2), abs=1e-12)
+    assert foot.extent == pytest.approx(np.hypot(X, Z))
+    assert whole.point == pytest.approx((X / 2, Y / 2, Z / 2))
+
+
 def test_patches_are_not_of_a_shaft(tmp_path):
     path = tmp_path / "shaft.toml"
     path.write_text(

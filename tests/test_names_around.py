@@ -2,9 +2,12 @@
 by construction.
 """
 
+import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.body import as_supports
+from solidgear.solve.naming import Names, Projection
 
 STOUT = sg.Scene.from_parts([sg.Segment.cylinder("body", length=0.0134, diameter=0.019)])
 #: lowest shapes of the harmonic solid: 23 modes, of n = 0 to 4, axial, breathing and torsion among them
@@ -23,6 +26,21 @@ def test_meshes_name_the_modes_of_a_stout_cylinder_as_the_harmonic_solid_does(op
     meshed = elastic(STOUT, SHAPES + 4, "solid", **options)  # whose order may be another
     # a name given to another mode puts it off by 4 % and more here, these meshes by 2.3 % at most
     assert {name: meshed.get(name) for name in exact} == pytest.approx(exact, rel=0.03)
+
+
+def test_an_axial_mode_that_a_mesh_has_mixed_with_one_of_three_waves_is_axial():
+    body = sg.build(STOUT, "solid", element="tet10", refinement=0.4)
+    found = sg.modes(body, STOUT, n=30).modes
+    known = {str(mode.name): mode.vectors[0] for mode in found}
+    alone, waves = known["axial 2"][0], known["ovalising n=3 2"][0]
+    c, s = np.cos(0.7), np.sin(0.7)
+    mixed = [{0: c * alone + s * waves}, {0: c * waves - s * alone}]
+    names = Names(body, as_supports(STOUT), Projection(body, np.linspace(0, body.length, 9)))
+    shapes = [names.describe(one) for one in mixed]
+    # 48 % of it moves across the axis, and of three waves more
+    assert shapes[0].family == "breathing"
+    assert names.unmixed(shapes, mixed, np.ones(2))[0].family == "axial"
+    assert names.unmixed(shapes, mixed, np.array([1.0, 1.1]))[0].family == "breathing"
 
 
 def test_no_mode_of_a_keyed_shaft_bends_whose_sections_stand_still():

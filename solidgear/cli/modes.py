@@ -150,7 +150,7 @@ def modes(
             else "No bars: the model was given, and its mesh with it; -f auto has them."
         )
     if bars:
-        lines += unjudged(without_bar(found, bars), body.fidelity)
+        lines += unjudged(without_bar(found, bars), body.fidelity, second=settled is None)
     lines += beyond(bars, settled)
     say(*lines)
     say(*map(caution, said), soft_wrap=False)

@@ -75,11 +75,13 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     ]
 
 
-def unjudged(names: Sequence[str], model: str) -> list[str]:
-    """Sentences on modes without a bar."""
+def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> list[str]:
+    """Sentences on modes without a bar, of a second mesh where that told the others."""
     if not names:
         return []
     why = "the higher a mode, the more it asks of a mesh"
+    if second:
+        why = "the coarser mesh has no mode of that name, or no fewer cells around"
     if LADDER[model].bounded:
         why = "no further mode of their family was found above, which a bar needs; raise -n"
     return [f"No bar of their own: {listed(names, most=3)}; {why}."]

@@ -9,6 +9,7 @@ from solidgear.bounds.safety import REFINEMENT
 from solidgear.judge.body_bars import stepped_bars
 from solidgear.judge.sequence_bars import sharpest
 from solidgear.ladder import build
+from solidgear.meshing.quality import MeshError
 from solidgear.models.solid.plan import turns_of
 from solidgear.scene.shaft import without_axis
 from solidgear.solve.modes import ModeSet, modes
@@ -45,7 +46,10 @@ def second_bars(
         coarser = {"coarser": options.get("coarser", 0) + 1}
         if coarser["coarser"] > len(scene.body.coarser):
             return {}
-    before = build(scene, body.fidelity, **{**options, **coarser})
+    try:
+        before = build(scene, body.fidelity, **{**options, **coarser})
+    except MeshError:  # too coarse to be made
+        return {}
     sizes = [one.mesh["representative_size"] for one in (before, body)]
     if not sizes[0] > sizes[1]:
         return {}

@@ -65,6 +65,16 @@ def block_patches(edges: Triple) -> tuple[Patch, ...]:
     return tuple(out)
 
 
+def _tables(value: Any) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    """Tables of a list, or the one that stands for a list, with their places; what is none is refused
+    elsewhere.
+    """
+    listed = [value] if isinstance(value, Mapping) else value
+    for k, table in enumerate(listed if isinstance(listed, list) else ()):
+        if isinstance(table, Mapping):
+            yield k, table
+
+
 def refuse_elsewhere(raw: Mapping[str, Any], what: str) -> None:
     """Refuse what a body without an axis cannot have, and stations that name no patch."""
     found = [
@@ -73,14 +83,13 @@ def refuse_elsewhere(raw: Mapping[str, Any], what: str) -> None:
         if key in raw
     ]
     for key in ON_PATCHES:
-        of = raw.get(key, [])
-        for k, table in enumerate([of] if isinstance(of, Mapping) else of):
-            if isinstance(table, Mapping) and "patch" not in table:
+        for k, table in _tables(raw.get(key)):
+            if "patch" not in table:
                 reason = f"this key is missing: on a {what} name the faces, such as patch = "
                 example = '"+x"' if what == "block" else '"foot", a group of surfaces of the file'
                 found.append(SceneError(reason + example, path=(key, k, "patch")))
-    for k, table in enumerate(raw.get("mass", ())):
-        if isinstance(table, Mapping) and "on" not in table:
+    for k, table in _tables(raw.get("mass")):
+        if "on" not in table:
             reason = "this key is missing: name the port or bearing that carries the mass"
             found.append(SceneError(reason, path=("mass", k, "on")))
     if found:

@@ -306,7 +306,9 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
     whole = whole_to(parts)
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
-    groups, torn = names.pairs(shapes, np.array([r.value for r in raw]))
+    value = np.array([r.value for r in raw])
+    shapes = names.unmixed(shapes, [r.vectors for r in raw], value)
+    groups, torn = names.pairs(shapes, value)
     labels = numbered([shapes[group[0]].label for group in groups])
     listed: list[Mode] = []
     beyond: list[Mode] = []

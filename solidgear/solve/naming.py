@@ -14,7 +14,7 @@ are reported.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse.csgraph import connected_components
@@ -226,15 +226,43 @@ class Names:
     ) -> tuple[dict[tuple[int, str], float], np.ndarray]:
         profile, share = fit(displacements(vectors))
         radial, tangential, axial = share[0]
-        # bins lose what turns within them: both are weighed by all of the mass
-        breathes = all(self._radial_share(b, v) > 0.5 for b, v in vectors.items())
         energy = {
             (0, "torsion"): tangential,
-            (0, "breathing" if breathes else "axial"): axial + radial,
+            (0, self._along_or_across(vectors)): axial + radial,
             (1, "bending"): share[1].sum(),
         }
         energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
         return energy, profile
+
+    def _along_or_across(self, vectors: dict[int, np.ndarray]) -> str:
+        """Family of a shape of n = 0, weighed by all of the mass: bins lose what turns within them."""
+        breathes = all(self._radial_share(b, v) > 0.5 for b, v in vectors.items())
+        return "breathing" if breathes else "axial"
+
+    def unmixed(
+        self, shapes: list[Shape], vectors: list[dict[int, np.ndarray]], value: np.ndarray
+    ) -> list[Shape]:
+        """Shapes of n = 0 named by what is of n = 0 in them: a mesh that is not quite round mixes
+        neighbours that lie nearer than it splits twins, and any mixture of them is as good a solution.
+        """
+        if self._round is None:
+            return shapes
+        fit, displacements = self._round
+        out, tolerance = list(shapes), 2 * self.body.mesh.get("pair_tolerance", 0.0)
+        for i, shape in enumerate(shapes):
+            apart = np.abs(value - value[i]) <= tolerance * value[i]
+            near = [
+                j for j in range(len(value)) if apart[j] and vectors[j].keys() == vectors[i].keys()
+            ]
+            if shape.family not in ("axial", "breathing") or len(near) < 2:
+                continue
+            rows = np.array([fit(displacements(vectors[j]))[0][0] for j in near])
+            content, turn = np.linalg.eigh((rows @ rows.conj().T).real)
+            own = turn[:, content > content[-1] / 2]
+            weight = own @ own[near.index(i)]
+            alone = {b: sum(w * vectors[j][b] for w, j in zip(weight, near)) for b in vectors[i]}
+            out[i] = replace(shape, family=self._along_or_across(alone))
+        return out
 
     def _by_block(self, vectors) -> dict[tuple[int, str], float]:
         energy: dict[tuple[int, str], float] = {}

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import NamedTuple
+
+import numpy as np
 
 from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
 from solidgear.meshing.quality import MeshError
@@ -20,6 +23,14 @@ CONTINUUM = {
     15: "wedge15",
     20: "hexahedron20",
     27: "hexahedron27",
+}
+#: corners of the faces S1, S2 and so on of elements
+FACES = {
+    "tetra": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+    "hexahedron": (
+        *((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1)),
+        *((1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+    ),
 }
 #: entries that a line of data holds at most; what goes on after them needs no comma
 FULL = 16
@@ -71,9 +82,11 @@ def read(path: str) -> Deck:
         raise MeshError(
             f"part {name} is there {instances[name]} times in the assembly: write one part"
         )
-    _sets(lines, [b for where, b in late if where in ("", name)])
+    own = [b for where, b in late if where in ("", name)]
+    _sets(lines, own)
     _whole(text, lines)
-    return lines.deck()
+    deck = lines.deck()
+    return replace(deck, patches=dict(_surfaces(lines, own, deck)))
 
 
 def _blocks(text: str) -> Iterator[_Block]:
@@ -210,6 +223,26 @@ def _sets(lines: Lines, blocks: list[_Block]) -> None:
         name = material if same is None else f"material:{material}"
         lines.sets[name] = members
         lines.telling.add(name)
+
+
+def _surfaces(lines: Lines, blocks: list[_Block], deck: Deck) -> Iterator[tuple[str, np.ndarray]]:
+    """Corners of the faces of surfaces made of faces of elements."""
+    faces = FACES[deck.kind.rstrip("0123456789")]
+    sets = {name.upper(): members for name, members in lines.sets.items()}
+    place = {e.number: k for k, e in enumerate(lines.elements)}
+    for block in blocks:
+        if block.keyword != "SURFACE" or block.given.get("TYPE", "ELEMENT").upper() != "ELEMENT":
+            continue
+        found = []
+        for _, text in block.data:
+            who, _, face = (word.strip().upper() for word in text.partition(","))
+            if not (face[:1] == "S" and face[1:].isdigit() and 0 < int(face[1:]) <= len(faces)):
+                continue
+            own = [int(who)] if who.isdigit() else sets.get(who, ())
+            corners = list(faces[int(face[1:]) - 1])
+            found += [deck.cells[corners, place[n]] for n in own if n in place]
+        if found:
+            yield block.given.get("NAME", f"line {block.line}"), np.array(found).T
 
 
 def _members(block: _Block, sets: dict[str, list[int]]) -> Iterator[int]:

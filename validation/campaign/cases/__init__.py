@@ -9,6 +9,7 @@ from validation.campaign.cases.modes import Modes
 from validation.campaign.cases.pairing import Pairing
 from validation.campaign.cases.pairs import Pairs
 from validation.campaign.cases.points import Points
+from validation.campaign.cases.second_mesh import SecondMesh
 from validation.campaign.cases.shafts import Shafts
 
 DRAWN = (
@@ -22,5 +23,6 @@ DRAWN = (
     Fillets(),
     Identification(),
     Pairing(),
+    SecondMesh(),
 )
 CASES = {case.name: case for case in DRAWN}
