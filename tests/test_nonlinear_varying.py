@@ -148,3 +148,32 @@ def test_a_curved_law_has_multipliers_too():
     left = np.exp(-own.losses[0, 0] * 2 * np.pi / point.omega)
     # the product is what damping leaves (Liouville), whatever the law: within the midpoint rule
     assert abs(np.prod(multipliers(point))) == pytest.approx(left, rel=1e-3)
+
+
+def test_straight_laws_that_vary_are_told_in_one_go_as_law_by_law():
+    # two links, one of them damped in contact; a stiff mode that only gives way; unbalance
+    laws = Gap(1.0, 0.5, coast=0.7), Gap(2.0, 0.3, damper=0.2)
+    parts = {name: Inertia(size, "z") for name, size in (("a", 1.0), ("b", 0.5), ("c", 0.1))}
+    links = {
+        "first": RowSpring("a", ALONG, 1.0, law=laws[0]),
+        "second": RowSpring("b", ALONG, 2.0, "a", [-x for x in ALONG], law=laws[1]),
+        "stiff": RowSpring("c", ALONG, 90.0, "b", [-x for x in ALONG]),
+    }
+    own = remainder(
+        System(parts, links),
+        load=np.array([0.1, 0.2, 0.0]),
+        errors={"first": [0.2, 0.1j], "second": [0.05]},
+        cycles={"first": [0.2, 0.0, 0.1j], "second": [0.1]},
+        forces=[np.array([0.3, 0.2j, 0.1])],
+        unbalance=True,
+        loss={"first": 0.05, "stiff": 0.02},
+        kind="viscous",
+        matched_hz=1.0,
+        highest_hz=1.0,
+    )
+    assert len(own.omega) == 2 and own.flexible.all()
+    run, random = Integrated(own, 0.8, ramp=0.01), np.random.default_rng(3)
+    for beyond in np.ndindex(2, 2, 2, 2):
+        run._beyond = [bool(on) for on in beyond]
+        t, y = random.uniform(0, 9), random.normal(size=4)
+        np.testing.assert_allclose(run._straight_slope(t, y), run._slope(t, y), rtol=1e-12)

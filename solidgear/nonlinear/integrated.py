@@ -47,14 +47,16 @@ class Integrated:
         self.remainder, self.omega, self.looks = remainder, omega, looks
         self.tolerance, self.ramp = tolerance, ramp
         self._orders = 1j * np.arange(1, len(remainder.error) + 1)
+        self._soft, self._eye = bool(remainder.flexible.any()), np.eye(remainder.rows)
         self._beyond: list[bool] = []
         self._step: float | None = None
+        self._pieces: dict[tuple[bool, ...], tuple[np.ndarray, np.ndarray, np.ndarray]] = {}
 
-    def speed(self, t: np.ndarray) -> np.ndarray:
+    def speed(self, t):
         """Frequency of the excitation, rad/s."""
         return self.omega + self.ramp * t
 
-    def angle(self, t: np.ndarray) -> np.ndarray:
+    def angle(self, t):
         """Of the excitation, rad."""
         return t * (self.omega + self.ramp * t / 2)
 
@@ -102,9 +104,10 @@ class Integrated:
 
     def _solver(self, t: float, y: np.ndarray, end: float) -> DOP853:
         step = None if self._step is None else min(self._step, end - t)
-        return DOP853(
-            self._slope, t, y, end, rtol=self.tolerance, atol=self._least, first_step=step
-        )
+        own = self.remainder
+        straight = own.sway is None and all(law.pieces for law, _ in own.laws)
+        slope = self._straight_slope if straight else self._slope
+        return DOP853(slope, t, y, end, rtol=self.tolerance, atol=self._least, first_step=step)
 
     def _met(
         self, begin: float, at: np.ndarray, s: np.ndarray, between
@@ -191,6 +194,53 @@ class Integrated:
     def _grown(self, t: np.ndarray) -> np.ndarray:
         """(T, 1) what forces of unbalance are multiplied by."""
         return self.remainder.growth(self.speed(t))[:, None]
+
+    def _straight(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Stiffness, damper (m, m) and offset (m,) of all laws, continued beyond their kinks."""
+        beyond, own = tuple(self._beyond), self.remainder
+        if beyond not in self._pieces:
+            # anywhere but at an edge, where a law is on no side
+            at = 2 * max((abs(edge) for law, _ in own.laws for edge in law.edges), default=0.0)
+            far = np.full((1, own.rows), at or 1.0)
+            excess = continued(own, beyond, far, 0 * far, None, None)
+            stiffness = own.stiffness - excess.by_stretch[0]
+            offset = (far @ (own.stiffness - stiffness) - excess.value)[0]
+            self._pieces[beyond] = stiffness, own.damper - excess.by_rate[0], offset
+        return self._pieces[beyond]
+
+    @cached_property
+    def _table(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """Orders, all that goes round with them side by side, and where each of it ends: transmission
+        errors, their rates at 1 rad/s, what laws vary by, forces on the other modes and on these.
+        """
+        own = self.remainder
+        count = max(len(own.error), len(own.cycle))
+        orders = 1j * np.arange(1, count + 1)
+        parts = [own.error, self._orders[:, None] * own.error, own.cycle, own.gives, own.push]
+        whole = [np.vstack([one, np.zeros((count - len(one), one.shape[1]))]) for one in parts]
+        return orders, np.hstack(whole), np.cumsum([one.shape[1] for one in whole]).tolist()
+
+    def _straight_slope(self, t: float, y: np.ndarray) -> np.ndarray:
+        """The same as :meth:`_slope` where laws are straight and nothing but their size varies."""
+        own, r = self.remainder, len(self.remainder.omega)
+        angle, speed = self.angle(t), self.speed(t)
+        orders, table, (a, b, c, d, _) = self._table
+        around = (np.exp(angle * orders) @ table).real
+        e, rate, factor = around[:a], speed * around[a:b], 1 + around[b:c]
+        stiffness, damper, offset = self._straight()
+        offset = factor * offset
+        more, given = own.stiffness - factor[:, None] * stiffness, own.stiffness @ e
+        s = own.seen @ (y[:r] / own.omega) + own.mean - e
+        if self._soft:
+            s += own.flexible @ (given - offset) + own.growth(speed) * around[c:d]
+            left = self._eye - own.flexible @ more
+            s = s / left[0] if len(s) == 1 else np.linalg.solve(left, s)
+        push = more @ s - offset + given + own.drag @ rate
+        if own.drags:
+            push += (own.damper - factor[:, None] * damper) @ (own.seen @ y[r:] - rate)
+        out = own.state @ y
+        out[r:] += push @ own.seen + own.growth(speed) * around[d:]
+        return out
 
     def _slope(self, t: float, y: np.ndarray) -> np.ndarray:
         own, at = self.remainder, np.array([t])
