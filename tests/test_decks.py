@@ -245,7 +245,7 @@ def test_sound_parts_have_no_pits():
     from skfem import MeshTet1
 
     from solidgear.meshing.featured import without
-    from solidgear.meshing.lost_elements import lost_elements
+    from solidgear.meshing.mesh_file import lost_elements
     from solidgear.meshing.tetrahedra import tetrahedra
     from solidgear.models.solid.featured import meshed
     from solidgear.models.solid.plan import tetrahedra_plan

@@ -91,7 +91,7 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/compare.md", "guide/points.md", "guide/stress.md", "guide/uncertainty.md"}
+SECONDS = {"guide/compare.md", "guide/points.md", "guide/uncertainty.md"}
 
 
 @pytest.mark.parametrize(

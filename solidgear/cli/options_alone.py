@@ -12,7 +12,7 @@ from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from types import CodeType
 
-ROOM = "solidgear.cli."
+ROOM = "solidgear.cli"
 
 
 @contextmanager
@@ -26,17 +26,15 @@ def options_alone() -> Iterator[None]:
         yield
     finally:
         sys.meta_path.remove(here)
-        for name in {n for n in sys.modules if n.startswith(ROOM)} - known:
+        for name in [n for n in sys.modules if n.startswith(f"{ROOM}.") and n not in known]:
             del sys.modules[name]
-            vars(sys.modules[ROOM[:-1]]).pop(name.removeprefix(ROOM), None)
+            vars(sys.modules[ROOM]).pop(name.rpartition(".")[2], None)
 
 
 class _Finder(MetaPathFinder):
-    """Modules of this room."""
-
     def find_spec(self, fullname, path, target=None) -> ModuleSpec | None:
-        found = PathFinder.find_spec(fullname, path) if fullname.startswith(ROOM) else None
-        if found is not None and found.origin is not None:
+        found = PathFinder.find_spec(fullname, path) if fullname.startswith(f"{ROOM}.") else None
+        if found and found.origin:
             found.loader = _Loader(fullname, found.origin)
         return found
 
@@ -46,12 +44,13 @@ class _Loader(SourceFileLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         tree = ast.parse(self.get_data(self.path))
-        work = {f.name: f.body for f in tree.body if isinstance(f, ast.FunctionDef)}
-        told, seen = _told(tree), set[str]()
-        # functions that make options are called as the module is read
-        while new := (told & set(work)) - seen:
-            seen |= new
-            told |= {name for one in new for node in work[one] for name in _told(node)}
+        told, before = _told(tree), 0
+        # functions that make options are called as the module is read, and those that they call
+        while len(told) > before:
+            before = len(told)
+            for node in tree.body:
+                if isinstance(node, ast.FunctionDef) and node.name in told:
+                    told |= set().union(*map(_told, node.body))
         for node in tree.body:
             if isinstance(node, ast.ImportFrom) and node.module != "__future__":
                 node.names = [a for a in node.names if (a.asname or a.name) in told]
@@ -63,10 +62,8 @@ def _told(node: ast.AST) -> set[str]:
     """Names that are looked up when a statement runs: of a command those of its head, of another
     function its defaults.
     """
+    parts: list[ast.AST] = list(ast.iter_child_nodes(node))
     if isinstance(node, ast.FunctionDef):
         head = [node.args] if node.decorator_list else [*node.args.defaults, *node.args.kw_defaults]
-        parts: list[ast.AST] = [*node.decorator_list, *filter(None, head)]
-    else:
-        parts = list(ast.iter_child_nodes(node))
-    own = {node.id} if isinstance(node, ast.Name) else set()
-    return own.union(*map(_told, parts))
+        parts = [*node.decorator_list, *filter(None, head)]
+    return set().union([node.id] if isinstance(node, ast.Name) else [], *map(_told, parts))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -11,15 +11,18 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
 
+from solidgear.errors import listed, nearest, show
 from solidgear.meshing.curving import with_nodes
 from solidgear.meshing.decks import Deck, read
-from solidgear.meshing.decks.deck import KINDS
+from solidgear.meshing.decks.deck import KINDS, Group
 from solidgear.meshing.edge_places import edge_places
-from solidgear.meshing.groups import material_groups, owners
-from solidgear.meshing.lost_elements import lost_elements
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
 
+#: groups that a sentence names
+TOLD = 12
+#: sine of the angle by which two faces must turn to be no smooth surface
+TURN = 0.1
 #: corners between which the middle nodes of VTK's cells lie, in its order
 _TET_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 _HEX_EDGES = (
@@ -270,3 +273,108 @@ def _serendipity(mesh: Any) -> Any:
         doflocs[:, mesh.dofs.element_dofs[local]] = value
     doflocs[:, mesh.dofs.element_dofs[26]] = 0.25 * (edges.sum(axis=1) - corners.sum(axis=1))
     return with_nodes(mesh, doflocs)
+
+
+def there_are(names: Sequence[str]) -> str:
+    """Groups of a file in a sentence.
+
+    Examples
+    --------
+    >>> there_are(["core", "sleeve"])
+    'there are "core", "sleeve"'
+    """
+    if not names:
+        return "there are no groups of volume elements in it"
+    shown = [show(name) for name in names[:TOLD]]
+    more = [f"{len(names) - TOLD} more"] if len(names) > TOLD else []
+    return f"there are {listed([*shown, *more])}"
+
+
+def _named(name: str, known: Sequence[str]) -> str | None:
+    """The name of a group as the file writes it, which the scene may in letters of either size;
+    None where there is none.
+    """
+    if name in known:
+        return name
+    alike = [other for other in known if other.lower() == name.lower()]
+    return alike[0] if len(alike) == 1 else None
+
+
+def owners(deck: Deck, named: Sequence[str]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Place (ne,) of the group of each element among those with materials of their own, one more
+    for the rest; and the groups with elements of the rest. MeshError for a group that is not there,
+    or two that share elements.
+    """
+    by_name = {group.name: group for group in deck.groups}
+    owner = np.full(deck.cells.shape[1], len(named))
+    for place, name in enumerate(named):
+        own = _named(name, list(by_name))
+        if own is None:
+            raise MeshError(
+                f"has no group {show(name)}{nearest(name, by_name)}; {there_are(list(by_name))}"
+            )
+        elements = by_name[own].elements
+        taken = np.flatnonzero(owner[elements] != len(named))
+        if len(taken):
+            other = named[owner[elements[taken[0]]]]
+            both = "element is" if len(taken) == 1 else "elements are"
+            raise MeshError(
+                f"{len(taken)} {both} in both {show(other)} and {show(name)}, one of them "
+                f"{_short(deck, int(elements[taken[0]]))}: groups with materials must not overlap; "
+                f"{there_are(list(by_name))}"
+            )
+        owner[elements] = place
+    return owner, tuple(g.name for g in deck.groups if (owner[g.elements] == len(named)).any())
+
+
+def _short(deck: Deck, place: int) -> str:
+    return f"in {deck.named(place)}" if deck.lines is not None else deck.named(place)
+
+
+def material_groups(deck: Deck) -> tuple[str, ...]:
+    """Groups that tell materials, where there are at least two that share nothing."""
+    groups: list[Group] = [g for g in deck.groups if g.tells]
+    apart = [g for g in groups if len(g.elements) < deck.cells.shape[1]]
+    return tuple(g.name for g in apart) if len(apart) > 1 else ()
+
+
+def lost_elements(mesh: Any) -> np.ndarray:
+    """Points (3, n), m, where the surface is as if an element were lost; one with three faces has
+    three.
+
+    A lost element at the surface leaves two or three faces that meet in a re-entrant edge, while the
+    two nodes across that edge are still joined, by an edge of the elements beside it. In a sound mesh
+    they are not: re-entrant edges of a part have air between their two sides. But for the corner of a
+    pocket, where a third wall may join them; there the walls go on beyond the three faces, where a
+    lost element leaves a rim.
+    """
+    p, outside = mesh.p, mesh.boundary_facets()
+    faces, inside = mesh.facets[:, outside], mesh.t[:, mesh.f2t[0, outside]]
+    ab, ac = p[:, faces[1]] - p[:, faces[0]], p[:, faces[2]] - p[:, faces[0]]
+    normal = np.cross(ab.T, ac.T).T
+    normal /= np.linalg.norm(normal, axis=0)
+    # away from the middle of the element behind
+    behind = p[:, inside].mean(axis=1) - p[:, faces[0]]
+    normal *= -np.sign((normal * behind).sum(axis=0))
+    # every edge of the surface with the face on either side, and the corner across
+    corners = np.array([(0, 1, 2), (0, 2, 1), (1, 2, 0)])
+    pairs = np.sort(faces[corners[:, :2]], axis=1)
+    total = p.shape[1]
+    key = (pairs[:, 0].astype(np.int64) * total + pairs[:, 1]).ravel()
+    across, face = faces[corners[:, 2]].ravel(), np.tile(np.arange(faces.shape[1]), 3)
+    order = np.argsort(key, kind="stable")
+    first = np.flatnonzero(np.r_[True, np.diff(key[order]) != 0])
+    two = first[np.diff(np.r_[first, len(order)]) == 2]
+    one, other = order[two], order[two + 1]
+    a, b = np.divmod(key[one], total)
+    along = (p[:, b] - p[:, a]) / np.linalg.norm(p[:, b] - p[:, a], axis=0)
+    reach = p[:, across[other]] - p[:, a]
+    wide = np.linalg.norm(reach - along * (reach * along).sum(axis=0), axis=0)
+    turn = np.zeros(len(key))  # above zero where re-entrant
+    turn[one] = turn[other] = (normal[:, face[one]] * reach).sum(axis=0) / wide
+    lo, hi = np.sort([across[one], across[other]], axis=0)
+    own = np.sort(mesh.edges.astype(np.int64), axis=0)
+    joined = np.isin(lo.astype(np.int64) * total + hi, own[0] * total + own[1])
+    rim = np.abs(turn.reshape(3, -1)).min(axis=0) > TURN
+    found = (turn[one] > TURN) & joined & rim[face[one]] & rim[face[other]]
+    return (p[:, a[found]] + p[:, b[found]]) / 2
