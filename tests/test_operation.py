@@ -126,7 +126,7 @@ def test_ctrl_c_while_modules_are_read(module):
         + "': os.kill(os.getpid(), signal.SIGINT)\n"
     )
     code += "sys.meta_path.insert(0, Finder())\nimport solidgear.cli\n"
-    code += "sys.argv[1:] = ['modes', '--help']\nsolidgear.cli.main()\n"
+    code += "sys.argv[1:] = ['modes', 'shaft.toml']\nsolidgear.cli.main()\n"
     child = started(code)
     out, err = child.communicate(timeout=PATIENCE)
     assert (child.returncode, out, err) == (130, "", "solidgear: interrupted\n")
