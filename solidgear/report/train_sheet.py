@@ -49,6 +49,10 @@ WORDS = {
         "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
         "contact over the cycle, and the orders of the largest force."
     ),
+    "waterfall": (
+        "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
+        "orders of the mesh."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
