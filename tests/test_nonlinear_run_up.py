@@ -153,6 +153,19 @@ def test_a_run_of_two_links_is_that_of_the_equations_written_out():
         np.testing.assert_allclose(one.swing, swing, rtol=5e-3, atol=1e-5)
 
 
+@pytest.mark.parametrize(("begin", "end"), [(0.6, 1.4), (1.4, 0.6)])
+def test_spectra_of_a_linear_run_have_the_first_order_at_its_swing_and_no_other(begin, end):
+    found = run_up(pair(10.0, gap=0.0), begin, end, 4e-4)
+    own = found.spectra
+    (first,) = np.flatnonzero(own.order == 1.0)
+    near = np.interp(own.omega, *zip(*sorted(zip(found.omega, found.swing))))
+    # over the cycles of a spectrum, a twentieth of the speed, the peak is a bend of a few hundredths
+    np.testing.assert_allclose(own.size[:, first], near, rtol=5e-2)
+    assert np.median(abs(own.size[:, first] / near - 1)) < 5e-3
+    # beside it rings the oscillator itself, at frequencies that are no multiples
+    assert own.size[:, own.order > 1.8].max() < 1e-3 * near.max()
+
+
 @pytest.mark.parametrize(
     ("ramp", "says"),
     [(0.0, "a ramp above zero"), (1.0, "in 0 cycles"), (1e-8, "give one that takes 10 to")],

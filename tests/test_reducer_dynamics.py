@@ -229,3 +229,10 @@ def test_measured_lines_are_orders_or_the_bench_and_one_is_neither():
     assert lines[8000, 137] == lines[6000, 100] == "shaft"
     assert (lines[8000, 1113], lines[8000, 2008]) == ("planets", "bevel")
     assert [pair for pair, name in lines.items() if name == "none"] == [(8000, 876)]
+
+
+def test_what_planets_push_on_is_the_carrier_and_not_the_housing():
+    own = Reducer(Design(), 3)
+    aloft = own.basis[own.system.place("planet 2")].any(axis=0)
+    held = own.basis[own.system.place("shaft")].any(axis=0)
+    assert not own.on_housing[aloft].any() and own.on_housing[held].any()

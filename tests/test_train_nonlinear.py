@@ -137,6 +137,7 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
     assert {p.name for p in (tmp_path / "out").iterdir()} == {
         *(f"nonlinear.{kind}" for kind in ("html", "csv", "json", "png", "svg")),
         "run_down_2000.csv",
+        *(f"waterfall_run_down_2000.{kind}" for kind in ("png", "svg")),
     }
     (ran,) = told["runs"]
     # a run down keeps the upper motion beyond where it jumps at rest, 523.4 Hz

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import factorial
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as sla
@@ -20,8 +21,19 @@ from solidgear.nonlinear.pieces import TERMS, Piece, Pieces
 FEWEST_CYCLES, MOST_CYCLES = 10, 20_000
 #: steps between two looks at what is crossed, and powers of time that tell the excitation in a step
 BLOCK, POWERS = 64, 9
+#: spectra of a run; least and most cycles of the excitation, and looks at each, that one is made of;
+#: orders that it has
+SPECTRA, WINDOW, SEEN, HIGHEST = 40, (16, 64), 64, 8
 #: cycles between two words on how far a run is
 TOLD = 50
+
+
+class Spectra(NamedTuple):
+    """Amplitudes of a force by orders of the excitation, each over some cycles (Hann's window)."""
+
+    omega: np.ndarray  #: (n,) in the middle of each, rad/s
+    order: np.ndarray  #: (k,)
+    size: np.ndarray  #: (n, k) N
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +50,8 @@ class RunUp:
         Its stretch, m.
     state : (2r,) ndarray
         At the end.
+    spectra : Spectra
+        Of this force, at speeds that are evenly apart.
     others : tuple of RunUp
         The same of the other links with a law.
     """
@@ -48,6 +62,7 @@ class RunUp:
     least: np.ndarray
     most: np.ndarray
     state: np.ndarray
+    spectra: Spectra
     others: tuple[RunUp, ...] = ()
 
     @property
@@ -122,8 +137,30 @@ def run_up(
         force = forces[:, at.start]
         least, most = np.minimum.reduceat(along, first), np.maximum.reduceat(along, first)
         ends = np.minimum.reduceat(force, first), np.maximum.reduceat(force, first)
-        runs.append(RunUp(speed, *ends, least, most, modal))
+        heard = _spectra(angle, force, cycles, begin, slope)
+        runs.append(RunUp(speed, *ends, least, most, modal, heard))
     return replace(runs[0], others=tuple(runs[1:]))
+
+
+def _spectra(
+    angle: np.ndarray, force: np.ndarray, cycles: int, begin: float, slope: float
+) -> Spectra:
+    """Of a force over the angle of the excitation."""
+    long = min(int(np.clip(cycles // SPECTRA, *WINDOW)), cycles // 2)
+    count = min(SPECTRA, cycles // long)
+
+    def speed(cycle):
+        return np.sqrt(begin**2 + 4 * np.pi * slope * cycle)
+
+    omega = np.linspace(speed(long / 2), speed(cycles - long / 2), count)
+    first = (omega**2 - begin**2) / (4 * np.pi * slope) - long / 2
+    inside = np.arange(long * SEEN) / SEEN
+    waves = np.interp(2 * np.pi * (first[:, None] + inside), angle, force)
+    bell = 1 - np.cos(2 * np.pi * inside / long)
+    size = 2 * np.abs(np.fft.rfft(waves * bell, axis=1)) / bell.sum()
+    # a window ends between orders: the mean leaks into the first two
+    kept = np.arange(2, HIGHEST * long + 1)
+    return Spectra(omega, kept / long, size[:, kept])
 
 
 def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, told):

@@ -11,6 +11,7 @@ import numpy as np
 from solidgear.report.panel import GREY, Axis, Panel, Series, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
+from solidgear.report.waterfall import DEEP, waterfall
 from solidgear.report.words import hertz
 
 STABLE, UNSTABLE, LINEAR, APART = "stable", "unstable", "linear: no backlash", "stable, apart"
@@ -23,6 +24,8 @@ LOOKS = {
     LINEAR: Series(GREY),
 }
 CONTACT = {DRIVE: Series("#00805e"), NONE: Series("#d9d9d9"), BACK: Series("#b3305c")}
+#: orders of the mesh drawn over a run, and up to which frequencies are, of the highest of the mesh
+MESH_ORDERS, MESH_SEEN = (0.5, 1, 2, 3, 4), 2.0
 #: bins of the speed in which shares of the cycle are drawn
 BINS = 160
 
@@ -149,6 +152,19 @@ def _branch(panel: Panel, one: Any, rpm: np.ndarray, units: Units, calm: str) ->
             a, b = max(a - 1, 0), min(b + 1, len(rpm))
             rows = _line(rpm[a:b], force[a:b], name, part)
             panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
+
+
+def waterfall_chart(found: Any, one: Any, title: str, width: float = WIDE) -> Chart:
+    """Spectra of the mesh force over a run through the speeds, with orders of the mesh."""
+    own, teeth = one.run.spectra, found.teeth_a_turn
+    rising = np.argsort(own.omega)
+    rpm = 60 * own.omega[rising] / (2 * np.pi * teeth)
+    hertz = own.omega[rising, None] / (2 * np.pi) * own.order
+    orders = {f"order {order:g}": order * teeth for order in MESH_ORDERS}
+    highest = MESH_SEEN * float(own.omega.max()) / (2 * np.pi)
+    words = f"{_run_name(one, teeth).capitalize()}: mesh force, each spectrum {DEEP:g} dB high"
+    panel = waterfall(rpm, hertz, own.size[rising], orders, teeth.of, highest, words)
+    return Chart([[panel]], width, title)
 
 
 def _run_name(one: Any, teeth: int) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.report import train_tables
-from solidgear.report.nonlinear_chart import backlash_chart
+from solidgear.report.nonlinear_chart import backlash_chart, waterfall_chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Column, Table, text
 from solidgear.report.train_files import figures
@@ -68,7 +68,13 @@ def write_nonlinear(
         [mixes(found, shown), over_force(found, shown), train_tables.facts(train, shown)],
         {"title": title, **found.as_dict(), "cautions": list(cautions)},
         lines={"nonlinear": branch(found, found.judge), **apart(found), **runs(found)},
-        charts={"nonlinear": partial(backlash_chart, found, title, shown)},
+        charts={
+            "nonlinear": partial(backlash_chart, found, title, shown),
+            **{
+                f"waterfall_{stem}": partial(waterfall_chart, found, one, title)
+                for stem, one in _stems(found).items()
+            },
+        },
         cautions=cautions,
         verdict=found.sentences(),
     )
@@ -105,7 +111,7 @@ def branch(found: Any, one: Any) -> Table:
 def runs(found: Any) -> dict[str, Table]:
     """Each run through the range, mesh cycle by mesh cycle, in SI, by the names of their files."""
     out = {}
-    for one in found.runs:
+    for stem, one in _stems(found).items():
         there = {
             "frequency [Hz]": one.frequency_hz,
             f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
@@ -119,9 +125,16 @@ def runs(found: Any) -> dict[str, Table]:
                 f"{other.found.teeth.mesh} largest force [N]": other.run.highest,
             }
         rows = np.column_stack(list(there.values())).tolist()
-        rpm = 60 * abs(one.ramp) / found.teeth_a_turn
-        stem = f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")
         out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
+    return out
+
+
+def _stems(found: Any) -> dict[str, Any]:
+    """Runs by the names of their files."""
+    out = {}
+    for one in found.runs:
+        rpm = 60 * abs(one.ramp) / found.teeth_a_turn
+        out[f"run_{'up' if one.ramp > 0 else 'down'}_{rpm:g}".replace(".", "_")] = one
     return out
 
 

@@ -53,6 +53,10 @@ WORDS = {
         "Loads on the mounts of the housing and accelerations of its points, each of all three "
         "directions together."
     ),
+    "waterfall": (
+        "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
+        "orders of the mesh."
+    ),
     "receptance": "Amplitude and phase of the receptance of every model drawn.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "

@@ -324,7 +324,7 @@ class Reducer:
         """(n,) force of all bearings on the housing along z, beyond that at rest, N."""
         system, out = self.system, np.zeros(self.system.size)
         for link in system.links.values():
-            if isinstance(link, sg.BearingSpring):
+            if isinstance(link, sg.BearingSpring) and link.to is None:
                 out += (link.stiffness @ system.motion(link.at))[2]
         return out @ self.basis
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from solidgear.report.panel import Axis, Panel, Series
 from solidgear.report.plot import Chart
+from solidgear.report.waterfall import waterfall
 from validation.reducer.design import Design
 from validation.reducer.dynamics import EVERY, RUNOUT, STEPS, amplitudes, moved
 from validation.reducer.multibody import Reducer
@@ -17,8 +18,6 @@ from validation.reducer.stepping import run, together
 SPEEDS = np.arange(4000, 10001, 500)
 #: Hz; of the chart over speed
 HIGHEST = 2600.0
-#: dB below the largest line at which a spectrum begins, and r/min that these are high
-DEEP, TALL = 50.0, 900.0
 #: of the chart by orders, N
 WEAKEST, LOUDEST = 1e-2, 300.0
 #: that the source says are its test bench's
@@ -91,26 +90,10 @@ def over_speed() -> Panel:
     some = [Reducer(Design(), 3, float(rpm), RUNOUT) for rpm in SPEEDS]
     motion = run(together([one.bodies for one in some]), 2 * STEPS, every=2 * EVERY)
     size = amplitudes(motion.place @ some[0].on_housing)
-    level = 20 * np.log10(np.maximum(size / size[1:].max(), 1e-12))
-    panel = Panel(
-        Axis("frequency, Hz", (0.0, HIGHEST)),
-        Axis("speed of the pinion, r/min", (SPEEDS[0] - 200.0, SPEEDS[-1] + TALL + 200)),
-        480.0,
-    )
     turn = some[0].orders["shaft"]
-    ends = np.array([SPEEDS[0], SPEEDS[-1] + TALL])
-    for name, order in (("1", 1), ("2", 2), ("8.4", 8.4), ("15", 15), ("16.8", 16.8)):
-        rows = [{"x": float(order * rpm / 60), "y": float(rpm)} for rpm in ends]
-        panel.draw({"type": "line", "color": "#cccccc"}, rows)
-        at = min(ends[1], HIGHEST * 60 / order * 0.99)
-        look = {"type": "text", "color": "#777777", "dx": -4, "dy": -6, "align": "right"}
-        panel.draw(look, [{"x": float(order * at / 60), "y": float(at), "text": f"order {name}"}])
-    for k, rpm in enumerate(SPEEDS):
-        hertz = np.arange(len(size)) * rpm / 60 / turn
-        here = (hertz > 0) & (hertz < HIGHEST)
-        heights = rpm + TALL * np.maximum(1 + level[:, k] / DEEP, 0.0)
-        rows = [{"x": float(x), "y": float(y)} for x, y in zip(hertz[here], heights[here])]
-        panel.draw({"type": "line", "color": "#0072b2", "strokeWidth": 1}, rows)
+    hertz = np.arange(1, len(size)) / turn * SPEEDS[:, None] / 60
+    named = {f"order {order:g}": order for order in (1, 2, 8.4, 15, 16.8)}
+    panel = waterfall(SPEEDS.astype(float), hertz, size[1:].T, named, "pinion", HIGHEST)
     for line in measured(Design()):
         place = {"x": line.hertz, "y": float(line.rpm)}
         panel.draw({"type": "point", "color": "#c2185b", "filled": True, "size": 45}, [place])
