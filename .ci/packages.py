@@ -17,7 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent
 #: tracked, and of use only in a checkout
 CHECKOUT = (".ci/", ".git", ".pre-commit")
 #: into documentation, notebooks, examples, scenes, validation and what tests share
-REACHING = [f"tests/test_{name}.py" for name in ("docs", "notebooks", "examples", "campaign", "report")]
+REACHING = [
+    f"tests/test_{name}.py" for name in ("docs", "notebooks", "examples", "campaign", "report")
+]
 
 
 def tracked() -> list[str]:

@@ -205,7 +205,7 @@ OFFERED = (
     # hexahedra that fall into pieces: on this mesh neither takes less than what did not fit
     pytest.param(
         *("pinion_overhung", {}, ["-f harmonic", "--set refinement="], SMALLER),
-        marks=pytest.mark.long,
+        marks=pytest.mark.slow,
     ),
     (
         "pinion_keyed",
