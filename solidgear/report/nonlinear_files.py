@@ -181,7 +181,7 @@ def over_force(found: Any, units: Units = ENGINEERING) -> Table:
         Column(f"largest, {units.unit('N')}", lambda one: _force(one.largest, units)),
     ]
     return Table(
-        f"Jumps over the torque of the {found.train.reference}",
+        f"Jumps over the torque of the {found.train.reference}, on the branch from low speed",
         columns,
         found.over_force,
         style="bare",

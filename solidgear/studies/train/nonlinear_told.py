@@ -42,7 +42,9 @@ class Sufficiency:
     count : int
         Of its jumps.
     force : float
-        Relative error of the largest dynamic mesh force, of several meshes the worst.
+        Relative error of the largest dynamic mesh force, of several meshes the worst in decibels.
+    mesh : str
+        That mesh.
     at : float
         Relative error of where that of the driven mesh is.
     lost : float or None
@@ -55,6 +57,7 @@ class Sufficiency:
     jumps: float | None
     count: int
     force: float
+    mesh: str
     at: float
     lost: float | None
     enough: bool
@@ -250,17 +253,18 @@ class BacklashTold:
             _worst(*([e for r in f.lost for e in (r.low, r.high)] for f in two)) for two in both
         ]
         lost = None if None in ends else max(e for e in ends if e is not None)
-        force = max((a.worst.loudest[1] / b.worst.loudest[1] - 1 for a, b in both), key=abs)
-        factor = 10 ** (ask.decibels / 20)
-        close = 1 / factor <= 1 + force <= factor
+        ratio = [a.worst.loudest[1] / b.worst.loudest[1] for a, b in both]
+        levels = [abs(20 * np.log10(one)) for one in ratio]
+        worst = int(np.argmax(levels))
         return Sufficiency(
             one.label,
             jumps,
             len(ours),
-            force,
+            ratio[worst] - 1,
+            one.every[worst].teeth.mesh,
             one.worst.loudest[0] / judge.worst.loudest[0] - 1,
             lost,
-            jumps is not None and jumps <= ask.tolerance and close,
+            jumps is not None and jumps <= ask.tolerance and bool(levels[worst] <= ask.decibels),
             one.seconds,
         )
 
@@ -276,8 +280,9 @@ class BacklashTold:
             else:
                 jumps = f"jumps off by {100 * one.jumps:.1f} %" if expected else "no jump, as here"
             what = "enough" if one.enough else "not enough"
+            of = f" of the {one.mesh}" if len(self.train.meshes) > 1 else ""
             lines.append(
-                f"{one.label[0].upper()}{one.label[1:]}: {what} ({jumps}, largest force "
+                f"{one.label[0].upper()}{one.label[1:]}: {what} ({jumps}, largest force{of} "
                 f"{100 * one.force:+.1f} %; asked {100 * ask.tolerance:g} % and {ask.decibels:g} dB)."
             )
         return lines
