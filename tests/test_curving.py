@@ -8,7 +8,7 @@ import pytest
 from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.meshing.curving import volume_preserved
+from solidgear.meshing.curving import volume_preserved, with_nodes
 from solidgear.meshing.quality import element_volumes
 from solidgear.meshing.sector import volume_of_sector
 from solidgear.meshing.tetrahedra import tetrahedra
@@ -73,3 +73,12 @@ def test_a_wedge_of_a_cylinder():
         sagitta, chord = 1 - np.cos(a), np.sin(a)
         assert moved.max() == pytest.approx(0.25 * (sagitta / chord) ** 2 * sagitta, rel=1e-9)
         assert element_volumes(kept)[0].sum() > element_volumes(true)[0].sum()
+
+
+def test_a_mesh_with_its_nodes_elsewhere_is_the_one_made_there():
+    mesh, middle = MeshTet2.from_mesh(MeshTet1().refined(1)), np.full((3, 1), 0.25)
+    size = mesh.mapping().detDF(middle)
+    moved = with_nodes(mesh, 2 * mesh.doflocs)
+    assert moved.edges is mesh.edges
+    np.testing.assert_allclose(moved.mapping().detDF(middle), 8 * size)
+    np.testing.assert_allclose(mesh.mapping().detDF(middle), size)
