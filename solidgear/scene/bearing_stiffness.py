@@ -31,6 +31,8 @@ def _entry_names() -> dict[str, tuple[int, int, str]]:
 
 #: name of a stiffness entry -> (row, column, dimension); 21 names make the symmetric 6x6
 STIFFNESS_NAMES = _entry_names()
+#: words of catalogues -> entries, for those who write them here
+SPOKEN = {"radial": "kxx and kzz", "axial": "kyy", "tilting": "kthx and kthz", "torsional": "kthy"}
 
 
 def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
@@ -48,6 +50,7 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     for name, value in entries.items():
         if name not in STIFFNESS_NAMES:
             near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
+            near = f"; {name} is {SPOKEN[name]}" if name in SPOKEN else near
             problems.append(
                 SceneError(
                     f"unknown stiffness entry{near}; valid are {', '.join(STIFFNESS_NAMES)}",
