@@ -132,6 +132,7 @@ SLIPS = {
     "unknown datum of a housing": (('position = "112.5 mm"', 'position = "1 mm"\nfrom = "bering.A"'), "housing.from", "unknown datum"),
     "a rigid motion coupled": ((STIFF, "stiffness = {kzz = 8e8, kz_thx = 1e7}"), "housing.stiffness.kz_thx", "couples thx, which is rigid as long as kthx is not given"),
     "an unknown entry": ((STIFF, 'stiffness = {kzx = "8e8 N/m"}'), "housing.stiffness.kzx", 'unknown stiffness entry; did you mean "kzz"'),
+    "a word of catalogues": ((STIFF, 'stiffness = {radial = "8e8 N/m"}'), "housing.stiffness.radial", "radial is kxx and kzz"),
     "an entry of another dimension": ((STIFF, 'stiffness = {kzz = "8 mm"}'), "housing.stiffness.kzz", "is not a unit of force per length"),
     "an indefinite housing": (
         (STIFF, "stiffness = {kzz = 8e8, kthx = 1e5, kz_thx = 1e8}"),
