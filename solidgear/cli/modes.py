@@ -60,7 +60,7 @@ def modes(
         bool,
         typer.Option(
             "--bars/--no-bars",
-            help="Of -f solid: tell bars by a coarser second mesh, which takes a quarter more time.",
+            help="Of -f solid: tell bars by a coarser second mesh, a quarter to two thirds more time.",
         ),
     ] = True,
     run: Run,
