@@ -101,7 +101,7 @@ def nonlinear(
     run: Shown,
 ) -> None:
     shop = models.workshop(reduced, train)
-    first, driver = tuple(models.by_shaft(shop.train).values()), shop.train.named_mesh(mesh)
+    first, driver = tuple(models.by_shaft(shop.train).values()), shop.train.named_pair(mesh)
     others = _usual(shop) if against is None else [_mix(shop, text) for text in against]
     shop = _with_teeth(shop, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:

@@ -60,7 +60,7 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """
     if not train.operation:
         return
-    if len(train.meshes) >= len(train.shafts):
+    if len(train.joints) >= len(train.shafts):
         reason = "how meshes in a loop share a torque is not told by their teeth; leave it out"
         yield SceneError(reason, path=("operation",))
         return

@@ -26,6 +26,7 @@ from solidgear.scene.layout import (
 from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
@@ -34,6 +35,8 @@ from solidgear.scene.typed import Model
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
+#: what turns one shaft with another
+Joint = Pair | Stage
 
 
 class Train(Model):
@@ -47,6 +50,8 @@ class Train(Model):
     meshes : tuple of Mesh
     rotors : dict of str to Rotor
         ``engine`` and ``load``, between which torque passes, and others.
+    planetary : dict of str to Planetary
+        Stages by name.
     losses : Losses
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
@@ -76,6 +81,7 @@ class Train(Model):
     shafts: dict[str, Shaft]
     meshes: tuple[Mesh, ...]
     rotors: dict[str, Rotor]
+    planetary: dict[str, Planetary] = {}
     losses: Losses = Losses()
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
@@ -174,12 +180,27 @@ class Train(Model):
             paths = {role: self.gear_path(*end) for role, end in zip(("pinion", "gear"), ends)}
             paths["mesh"] = ("mesh",) if short else ("mesh", k)
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
-            alone = len(self.meshes) == 1
+            alone = len(self.meshes) == 1 and not self.planetary
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
             pinion, gear = (self.shafts[side].member(port) for side, port in ends)
             pinion, gear = with_flanks(self, ends, pinion, gear)
             out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point))
         return tuple(out)
+
+    @cached_property
+    def stages(self) -> tuple[Stage, ...]:
+        """Planetary stages on their shafts."""
+        return tuple(stage_of(self, name) for name in self.planetary)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """All that turns one shaft with another: pairs, then planetary stages."""
+        return (*self.pairs, *self.stages)
+
+    @cached_property
+    def drivers(self) -> tuple[Pair | PlanetMesh, ...]:
+        """Meshes whose errors drive the train: those of pairs, then those of planets."""
+        return (*self.pairs, *(mesh for stage in self.stages for mesh in stage.meshes))
 
     @property
     def short(self) -> bool:
@@ -196,11 +217,16 @@ class Train(Model):
         """Keys of a file under which a shaft stands."""
         return (side,) if self.short else ("shaft", side)
 
-    def per_turn(self, pair: Pair) -> PerTurn:
-        """Teeth of a mesh that pass in one turn of the engine's shaft."""
+    def per_turn(self, pair: Pair | PlanetMesh) -> PerTurn:
+        """Teeth of a mesh that pass in one turn of the engine's shaft; of a ring as its planets
+        pass them.
+        """
+        if isinstance(pair, PlanetMesh):
+            turns = self.turns[pair.stage.shafts[1]]
+            return PerTurn(pair.stage.teeth.ring * turns, self.reference)
         return PerTurn(pair.pinion.teeth * self.turns[pair.shafts[0]], self.reference)
 
-    def named_mesh(self, word: str | None) -> Pair:
+    def named_mesh(self, word: str | None) -> Pair | PlanetMesh:
         """A mesh by its name, with or without the word mesh before it; the first by default.
 
         Raises
@@ -208,15 +234,31 @@ class Train(Model):
         SolidgearError
             If it has no such mesh.
         """
-        for pair in self.pairs:
+        for pair in self.drivers:
             if word in (None, pair.name, pair.label.strip()):
                 return pair
-        known = listed(pair.label.strip() or pair.name for pair in self.pairs)
+        known = listed(pair.label.strip() or pair.name for pair in self.drivers)
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
 
+    def named_pair(self, word: str | None) -> Pair:
+        """A mesh of two shafts by its name, as :meth:`named_mesh`.
+
+        Raises
+        ------
+        SolidgearError
+            Of a train with planets, whose teeth are linear so far.
+        """
+        found = self.named_mesh(word)
+        if self.planetary or isinstance(found, PlanetMesh):
+            raise SolidgearError(
+                f"{self.name} has a planetary stage, and teeth with backlash are there for trains "
+                "without one"
+            )
+        return found
+
     @cached_property
-    def power(self) -> tuple[Pair, ...]:
-        """Meshes that torque passes from the engine to the load, in turn."""
+    def power(self) -> tuple[Joint, ...]:
+        """Meshes and planetary stages that torque passes from the engine to the load, in turn."""
         return path_between(self, self.reference, self.rotors["load"].shaft)
 
     def only(self) -> Pair:
@@ -226,9 +268,9 @@ class Train(Model):
         ------
         SolidgearError
         """
-        if len(self.meshes) > 1:
+        if len(self.drivers) > 1:
             raise SolidgearError(
-                f"{self.name} has {len(self.meshes)} meshes, and what is asked is there for a "
+                f"{self.name} has {len(self.drivers)} meshes, and what is asked is there for a "
                 "train of one mesh only"
             )
         return self.pairs[0]
@@ -283,7 +325,7 @@ class Train(Model):
         none of its ports; tied as the others are, where all of them are tied alike.
         """
         own = self.shafts[side]
-        scene = own.scene if len(own.gears) > 1 else own.member().scene
+        scene = own.member().scene if len(own.gears) == 1 else own.scene
         ties = {s.attachment for s in scene.stations}
         datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
         stations = [
@@ -321,6 +363,10 @@ class Train(Model):
         for name, rotor in self.rotors.items():
             out[f"{name}.inertia"] = rotor.status
             out[f"{name}.spring.stiffness"] = rotor.spring.status
+        for name, table in self.planetary.items():
+            out |= {f"{name}.mesh": table.mesh.status, f"{name}.planet": table.planet.status}
+            if table.ring is not None:
+                out[f"{name}.ring"] = table.ring.status
         out["losses"] = self.losses.status
         for side, shaft in self.shafts.items():
             for end, (_, head) in self.heads(side).items():

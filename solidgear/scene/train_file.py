@@ -19,6 +19,7 @@ from solidgear.scene.file import load
 from solidgear.scene.gears import Member, Shaft
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
+from solidgear.scene.planetary import Planetary
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
@@ -82,13 +83,15 @@ class _Tables(Model):
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
-    def train(self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping) -> Train:
+    def train(
+        self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
+    ) -> Train:
         """The train that they describe."""
         rest = {
             key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
         }
         both = {"engine": self.engine, "load": self.load}
-        return Train(shafts=shafts, meshes=meshes, rotors={**both, **rotors}, **rest)
+        return Train(shafts=shafts, meshes=meshes, rotors={**both, **rotors}, **rest, **more)
 
 
 class ShortFile(_Tables):
@@ -113,12 +116,13 @@ class LongFile(_Tables):
     """File of a train of any number of shafts."""
 
     shaft: dict[str, Shaft]
-    mesh: tuple[Mesh, ...]
+    mesh: tuple[Mesh, ...] = ()
+    planetary: dict[str, Planetary] = {}
     rotor: dict[str, Rotor] = {}
 
     def whole(self) -> Train:
         """The train."""
-        return self.train(self.shaft, self.mesh, self.rotor)
+        return self.train(self.shaft, self.mesh, self.rotor, planetary=self.planetary)
 
 
 def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written) -> Train:
@@ -136,7 +140,7 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
         problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
-            data["shaft"] = _shafts(problems, raw["shaft"], read_scene)
+            data["shaft"] = _shafts(problems, raw["shaft"], read_scene, _carriers(raw))
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
@@ -166,7 +170,17 @@ def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
     return error
 
 
-def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, Shaft]:
+def _carriers(raw: Mapping[str, Any]) -> set[str]:
+    """Shafts that are the carrier of a planetary stage, and may have no gear."""
+    stages = raw.get("planetary")
+    tables = stages.values() if isinstance(stages, Mapping) else ()
+    words = [table.get("carrier") for table in tables if isinstance(table, Mapping)]
+    return {word.partition(".")[0] for word in words if isinstance(word, str)}
+
+
+def _shafts(
+    problems: Gathered, tables: Any, read_scene: Callable, carriers: set[str]
+) -> dict[str, Shaft]:
     """Shafts by their names: with a table for each of several gears, or the one gear in their own."""
     if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
         reason = "holds a table for each shaft, such as [shaft.input]"
@@ -177,7 +191,7 @@ def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, 
         whole = _read(problems, partial(read_scene, table, path))
         if whole is None:
             continue
-        one = "gears" not in table
+        one = "gears" not in table and (name not in carriers or "teeth" in table)
         made = problems.read(
             lambda: Member(**whole).shaft if one else Shaft(**whole),  # noqa: B023  read at once
             path,

@@ -13,7 +13,8 @@ from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.layout import outward
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.train import Train
+from solidgear.scene.planetary import Stage
+from solidgear.scene.train import Joint, Train
 from solidgear.studies.train.contact import Contact, axes_of, contact
 
 #: shafts of a loop of meshes that end this far from where they began, of the distance, do not meet
@@ -32,11 +33,13 @@ def contacts(train: Train, coast: bool | None = None) -> dict[str, Contact]:
         shaft between them the same way, so that no torque passes.
     """
     found = {pair.name: contact(pair, coast) for pair in train.pairs}
-    way = train.power
+    ways, way = sun_ways(train, found, coast), train.power
     for before, after in zip(way, way[1:]):
-        side = next(side for side in before.shafts if side in after.shafts)
-        pushes = [force_on(pair, side, found[pair.name])[4] for pair in (before, after)]
+        side = _between(before, after)
+        pushes = [torque_on(joint, side, found, ways) for joint in (before, after)]
         if pushes[0] * pushes[1] > 0:
+            after = after if isinstance(after, Pair) else before
+            assert isinstance(after, Pair)  # stages turn to what is beside them
             role = "pinion" if after.shafts[0] == side else "gear"
             raise SceneError(
                 f"the flanks of {before.name} and of {after.name} turn the {side} the same way, so "
@@ -53,21 +56,60 @@ def force_on(pair: Pair, side: str, met: Contact) -> np.ndarray:
     return met.pinion.vector if side == pair.shafts[0] else -met.gear.vector
 
 
+def _between(one: Joint, other: Joint) -> str:
+    """Shaft that two neighbours on the way of a torque share."""
+    return next(side for side in one.shafts if side in other.shafts)
+
+
+def torque_on(
+    joint: Joint, side: str, found: Mapping[str, Contact], ways: Mapping[str, float]
+) -> float:
+    """Torque on a shaft about y of its scene for 1 N in a mesh, or in that of every planet with the
+    sun, N m.
+    """
+    if isinstance(joint, Stage):
+        return ways[joint.name] * joint.levers[side == joint.shafts[1]]
+    return float(force_on(joint, side, found[joint.name])[4])
+
+
+def sun_ways(
+    train: Train, found: Mapping[str, Contact], coast: bool | None = None
+) -> dict[str, float]:
+    """Way in which the sun of each stage drives its planets, 1 about +y of its scene or -1: as the
+    flanks of other meshes pass the torque on; without any, about +y where it is positive.
+    """
+    point = train.point
+    coast = coast if coast is not None else point is not None and point.coast
+    out = {stage.name: -1.0 if coast else 1.0 for stage in train.stages}
+    way = train.power
+    known = {joint.name for joint in way if isinstance(joint, Pair)}
+    known = known or {joint.name for joint in way[:1]}
+    for one, other in [*zip(way, way[1:]), *zip(way[::-1], way[-2::-1])]:
+        if one.name in known and other.name not in known:
+            side = _between(one, other)
+            if torque_on(one, side, found, out) * torque_on(other, side, found, out) > 0:
+                out[other.name] *= -1
+            known.add(other.name)
+    return out
+
+
 def mesh_forces(
     train: Train, found: Mapping[str, Contact], point: OperatingPoint
 ) -> dict[str, float]:
     """Forces of the teeth along their lines of action without losses, N, by mesh, each in balance with
-    the next on the shaft between them; zero of one that the torque does not pass.
+    the next on the shaft between them; zero of one that the torque does not pass; of a planetary
+    stage the mean over its planets, by its name.
     """
-    out = dict.fromkeys(found, 0.0)
+    out = dict.fromkeys((joint.name for joint in train.joints), 0.0)
+    ways = dict.fromkeys(out, 1.0)
     reached = {point.of: abs(point.torque)}
     for _ in train.power:
-        for pair in train.power:
-            for side, other in (pair.shafts, pair.shafts[::-1]):
+        for joint in train.power:
+            for side, other in (joint.shafts, joint.shafts[::-1]):
                 if side in reached and other not in reached:
-                    near, far = (force_on(pair, s, found[pair.name])[4] for s in (side, other))
-                    out[pair.name] = float(reached[side] / abs(near))
-                    reached[other] = out[pair.name] * abs(far)
+                    near, far = (torque_on(joint, s, found, ways) for s in (side, other))
+                    out[joint.name] = float(reached[side] / abs(near))
+                    reached[other] = out[joint.name] * abs(far)
     return out
 
 
@@ -86,7 +128,7 @@ def places(
         if pair is None:
             out[side] = np.eye(3), np.zeros(3)
             continue
-        turn, at = _across(pair, found[pair.name], scenes)
+        turn, at = _across(pair, found, scenes)
         one, other = pair.shafts
         if side == other:
             turned, origin = out[one]
@@ -95,7 +137,7 @@ def places(
             turned, origin = out[other]
             out[side] = turned @ turn.T, origin - turned @ turn.T @ at
     for k, pair in enumerate(train.pairs):
-        turn, at = _across(pair, found[pair.name], scenes)
+        turn, at = _across(pair, found, scenes)
         (turned, origin), (there, end) = (out[side] for side in pair.shafts)
         off = np.linalg.norm(origin + turned @ at - end) / np.linalg.norm(at)
         if off > CLOSES or np.abs(turned @ turn - there).max() > CLOSES:
@@ -107,15 +149,20 @@ def places(
     return out
 
 
-def _across(pair: Pair, met: Contact, scenes: Mapping[str, Scene]) -> Place:
-    """Place of the second shaft of a mesh in the axes of the first one's scene."""
-    c, s = np.cos(pair.mesh.shaft_angle), np.sin(pair.mesh.shaft_angle)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    turn = axes_of(pair, "pinion") @ turn @ axes_of(pair, "gear").T
+def _across(pair: Joint, found: Mapping[str, Contact], scenes: Mapping[str, Scene]) -> Place:
+    """Place of the second shaft of a mesh in the axes of the first one's scene; of a stage, where
+    both are on one axis and their axes parallel.
+    """
     y = [
         next(p.y for p in scenes[side].ports if p.name == port)
         for side, port in zip(pair.shafts, pair.ports)
     ]
+    if isinstance(pair, Stage):
+        return np.eye(3), np.array([0.0, y[0] - y[1], 0.0])
+    met = found[pair.name]
+    c, s = np.cos(pair.mesh.shaft_angle), np.sin(pair.mesh.shaft_angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = axes_of(pair, "pinion") @ turn @ axes_of(pair, "gear").T
     pinion = np.array([0.0, y[0], 0.0]) + met.pinion.point
     gear = np.array([0.0, y[1], 0.0]) + met.gear.point
     return turn, pinion - turn @ gear

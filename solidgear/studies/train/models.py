@@ -24,6 +24,7 @@ from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import TEETH, local_teeth
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
+from solidgear.studies.train.stages import StageAtWork, stages_at_work
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -78,6 +79,7 @@ class Workshop:
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
         self.contacts: dict[str, Contact] = contacts(train)
         self.places = places(train, self.contacts, self.scenes)
+        self.stages: dict[str, StageAtWork] = stages_at_work(train, self.contacts, self.scenes)
         point = train.point
         self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
 
@@ -91,6 +93,11 @@ class Workshop:
             For a train of several.
         """
         return self.contacts[self.train.only().name]
+
+    @property
+    def ways(self) -> dict[str, float]:
+        """Way in which the sun of each stage drives, 1 about +y of its scene or -1."""
+        return {name: stage.way for name, stage in self.stages.items()}
 
     def mix(self, models: Sequence[str]) -> dict[str, str]:
         """Models by shaft, from one each in the sequence of the file, or one for all.
@@ -270,6 +277,7 @@ class Workshop:
         if coast not in self._flanks:
             other = copy(self)
             other.contacts, other.bars = contacts(self.train, coast), {}
+            other.stages = stages_at_work(self.train, other.contacts, self.scenes, coast)
             self._flanks[coast] = other
         return self._flanks[coast]
 
@@ -323,6 +331,9 @@ class Workshop:
         for pair in train.pairs:
             ends = self.teeth(pair, parts)
             links[pair.name] = mesh_spring(*ends[0], *ends[1], self.contacts[pair.name].stiffness)
+        for stage in self.stages.values():
+            parts |= stage.parts(*self.places[stage.stage.shafts[0]])
+            links |= stage.links
         return System(parts, links)
 
     def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
@@ -376,7 +387,9 @@ class Workshop:
         for side in train.shafts:
             out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
-        return out | {pair.name: loss.mesh for pair in train.pairs}
+        for stage in self.stages.values():
+            out |= dict.fromkeys(stage.links, loss.bearings)
+        return out | {mesh.name: loss.mesh for mesh in train.drivers}
 
     def seconds(self, *models: str) -> float:
         """To build and reduce all shafts."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
@@ -221,6 +221,8 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
     refuse_unresolved(workshop, system, limit)
     names = mode_names(workshop, system, found)
+    for stage in workshop.stages.values():
+        found = replace(found, energy=stage.strained(found.energy))
     most = found.dominant()
     moved = driven(system, found)
     elastic = len(found.frequency_hz) - found.rigid
@@ -229,7 +231,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
-        rpm = 60 * float(hz) / train.per_turn(train.pairs[0])
+        rpm = 60 * float(hz) / train.per_turn(train.drivers[0])
         bound = float(found.error_bound[k])
         modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
     still = {}

@@ -26,6 +26,8 @@ from solidgear.system.system import System
 #: a share of the kinetic energy that names a mode alone
 ALONE = 0.4
 TRAIN = "train rotation"
+#: ends of names of motions about an axis
+TURNING = ("torsion", "rotational")
 #: a shaft all of whose ports move with less than this of the energy of the mode does not move
 #: there: cells around a ring let some 1e-6 through
 UNDRIVEN = 1e-4
@@ -36,7 +38,11 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
     """Fractions of the kinetic energy of every mode, by part and kind of motion."""
     out: dict[str, np.ndarray] = {}
     momentum = system.mass @ shapes
+    for stage in workshop.stages.values():
+        out |= stage.kinetic(system, shapes)
     for part in system.parts:
+        if part not in workshop.scenes and part not in workshop.train.rotors:
+            continue  # of a planetary stage
         place = system.place(part)
         each = shapes[place] * momentum[place]
         own = np.maximum(each.sum(axis=0), 0.0)
@@ -111,7 +117,7 @@ def mode_names(workshop: Workshop, system: System, found: SystemModes) -> list[s
     for k, frequency in enumerate(found.frequency_hz):
         order = np.argsort(-table[:, k], kind="stable")
         if frequency == 0:
-            turns = all("torsion" in labels[i] for i in order if table[i, k] > 1e-6)
+            turns = all(labels[i].endswith(TURNING) for i in order if table[i, k] > 1e-6)
             name = TRAIN if turns else "free motion"
         elif table[order[0], k] >= ALONE:
             name = labels[order[0]]

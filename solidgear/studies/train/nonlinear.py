@@ -69,7 +69,7 @@ def teeth_of(
         meshes share a torque by their stiffness, or another mesh varies over its own cycle.
     """
     train = workshop.train
-    pair, point = train.named_mesh(mesh), train.point
+    pair, point = train.named_pair(mesh), train.point
     if not any(one.mesh.backlash is not None for one in train.pairs):
         raise SolidgearError(
             'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
@@ -171,7 +171,7 @@ def backlash_model(
     highest_hz : float
         Modes above it give way like springs.
     """
-    pair, loss, damped = workshop.train.named_mesh(teeth.mesh), workshop.losses(), 0.0
+    pair, loss, damped = workshop.train.named_pair(teeth.mesh), workshop.losses(), 0.0
     if teeth.contact_loss_hz:
         damped = [loss.pop(one.mesh) for one in teeth.every][0]
     system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name

@@ -26,7 +26,7 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
-from solidgear.studies.train.layout import force_on, mesh_forces
+from solidgear.studies.train.layout import force_on, mesh_forces, torque_on
 from solidgear.studies.train.models import Workshop
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
 from solidgear.system.port_forces import port_forces
@@ -217,8 +217,8 @@ def torques(workshop: Workshop, forces: Mapping[str, float]) -> dict[str, np.nda
     """(6,) torques of engine and load that hold the mesh forces."""
     train, out = workshop.train, {}
     for name, pair in (("engine", train.power[0]), ("load", train.power[-1])):
-        push = force_on(pair, train.rotors[name].shaft, workshop.contacts[pair.name])
-        out[name] = np.array([0, 0, 0, 0, -forces[pair.name] * push[4], 0.0])
+        push = torque_on(pair, train.rotors[name].shaft, workshop.contacts, workshop.ways)
+        out[name] = np.array([0, 0, 0, 0, -forces[pair.name] * push, 0.0])
     return out
 
 

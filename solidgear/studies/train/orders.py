@@ -142,10 +142,13 @@ def order_map(
             force = np.abs(drive.mesh(hz, n)[1])
             own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
         lines.append(own)
-    for pair in train.pairs:
-        if pair.name != driven.name:
-            orders = of_mesh(pair.name, train.per_turn(pair), range(1, count + 1))
-            lines += [OrderLine(o.name, o.per_turn) for o in orders]
+    others = {pair.name: train.per_turn(pair) for pair in train.pairs if pair.name != driven.name}
+    for stage in train.stages:
+        if driven not in stage.meshes:
+            others[stage.name] = train.per_turn(stage.meshes[0])
+    for name, passing in others.items():
+        orders = of_mesh(name, passing, range(1, count + 1))
+        lines += [OrderLine(o.name, o.per_turn) for o in orders]
     for side, turns in train.turns.items():
         lines += [OrderLine(o.name, o.per_turn) for o in of_shaft(side, turns, shaft_orders)]
     modes = train_modes(workshop, *models, max_frequency=highest).modes

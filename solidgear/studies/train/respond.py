@@ -22,6 +22,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.stages import mesh_row
 from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks
 from solidgear.system.system import System
@@ -147,13 +148,9 @@ class Drive:
             loss = {name: eta / 2 for name, eta in loss.items()}
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
         self.steady = SteadyState(self.system, loss, kind, matched_hz)
-        self.rows: dict[str, np.ndarray] = {}
-        for pair in workshop.train.pairs:
-            ends = workshop.teeth(pair, self.system.parts)
-            stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
-            self.rows[pair.name] = stretch[0] - stretch[1]
-        self.row = self.rows[self.pair.name]
-        self.stiffness = workshop.contacts[self.pair.name].stiffness
+        self.meshes = {one.name: mesh_row(self.system, one.name) for one in workshop.train.drivers}
+        self.rows = {name: row for name, (row, _) in self.meshes.items()}
+        self.row, self.stiffness = self.meshes[self.pair.name]
         self.forces = dict(forces or {})
         self.error = self.pair.mesh.transmission_error
         self.load = self.system.load(self.forces) if self.forces else self.stiffness * self.row
@@ -222,7 +219,7 @@ class Drive:
         ports = {side: f"{side}.{scene.port.name}" for side, scene in scenes.items()}
         rows = [self.row[None], *(force for _, force in reactions.values())]
         rows += [self.system.motion(port) for port in ports.values()]
-        others = [pair for pair in self.workshop.train.pairs if pair.name != self.pair.name]
+        others = [one for one in self.workshop.train.drivers if one.name != self.pair.name]
         rows += [self.rows[pair.name][None] for pair in others]
         found = self.motion(frequency_hz, np.vstack(rows))
         dte, force = self._teeth(frequency_hz, found[:, 0])
@@ -235,8 +232,7 @@ class Drive:
             for c, (dof, unit) in enumerate(zip(DOF_NAMES, MOTION_UNITS)):
                 out[f"{side} {dof} [{unit}]"] = moved[:, 6 * k + c]
         for pair, stretch in zip(others, moved.T[6 * len(ports) :]):
-            stiff = self.workshop.contacts[pair.name].stiffness
-            factor = stiff * self.steady.factor(pair.name, frequency_hz)
+            factor = self.meshes[pair.name][1] * self.steady.factor(pair.name, frequency_hz)
             out[f"mesh force{pair.label} [N]"] = factor * stretch
         return out
 

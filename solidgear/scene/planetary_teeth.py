@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import atan, cos, isclose, pi, radians, sin, tan
+from math import atan, cos, isclose, isfinite, pi, radians, sin, tan
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.system.matrices import positive
 
 #: a ratio that is typed with four digits may differ from that of the teeth by this
 RATIO_TYPED = 1e-3
@@ -65,7 +64,8 @@ class PlanetaryTeeth:
             value = getattr(self, one.name)
             if not (isinstance(value, int) and value > 0):
                 raise SolidgearError(f"{one.name} has {value!r} teeth; give a whole number")
-        positive("module", self.module)
+        if not (isfinite(self.module) and self.module > 0):
+            raise SolidgearError(f"module is {self.module}; it must be finite and above zero")
         if not abs(self.helix) < pi / 2:
             raise SolidgearError(f"helix is {self.helix} rad; it lies between -pi/2 and pi/2")
         wanted = self.sun + 2 * self.planet

@@ -1,0 +1,178 @@
+"""Planetary stages in a train file, against matrices written by hand from rigid bodies and textbook
+forces, closed forms and statics.
+"""
+
+from math import atan, cos, pi, radians, sin, tan
+
+import numpy as np
+import pytest
+import scipy.linalg as sla
+
+import solidgear as sg
+from solidgear.studies.train.kinematics import train_orders
+from solidgear.studies.train.layout import mesh_forces
+from solidgear.studies.train.models import Workshop
+
+REDUCER = "geometry/reducer.toml"
+#: both are eigenvalues of the same coordinates, whose stiffness spans five decades
+ROUNDING = 1e-9
+TEETH, MODULE, PRESSURE = (17, 34, 85), 2e-3, radians(20)
+#: length and diameter, m; density
+SUN, CARRIER, DENSITY = (0.04, 0.03), (0.03, 0.16), 7850.0
+BEARING = [8e7, 5e7, 9e7, 2e4, 0.0, 3e4]
+PLANET = {"mass": 0.6, "torsional": 4e-4, "bending": 2.5e-4}
+PIN = {"radial": 1e8, "axial": 3e7, "tilting": 2e4}
+RING = {"mass": 2.0, "torsional": 0.02, "bending": 0.012}
+SUPPORT = {"radial": 2e8, "axial": 1e8, "tilting": 3e5, "turning": 4e5}
+UNEQUAL = f"angles = [0.0, {2 * pi * 33 / 102}, {2 * pi * 70 / 102}]"
+MESHES, ROTORS = {"sun": 2e8, "ring": 3e8}, {"engine": (0.01, 3e3), "load": (0.5, 4e4)}
+
+
+def scene_text(length, diameter, port):
+    keys = ("kxx", "kyy", "kzz", "kthx", "kthy", "kthz")
+    springs = ", ".join(f"{key} = {value}" for key, value in zip(keys, BEARING))
+    return (
+        f'[material]\nE = "206 GPa"\nnu = 0.3\ndensity = {DENSITY}\n'
+        f'[[segment]]\nkind = "cylinder"\nname = "s"\nlength = {length}\ndiameter = {diameter}\n'
+        f'[[bearing]]\nname = "b"\nposition = {length / 2}\nseat_width = 0.01\n'
+        f"stiffness = {{{springs}}}\n"
+        f'[port]\nname = "{port}"\nposition = {length / 2}\nspan = [{length / 4}, {3 * length / 4}]\n'
+    )
+
+
+def table(name, values):
+    return f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in values.items())
+
+
+def train_text(helix=0.0, planets="planets = 3", ring=False, position=0.0):
+    stage = "planetary.stage"
+    out = f'[shaft.sun]\nscene = "sun.toml"\nteeth = {TEETH[0]}\nmodule = {MODULE}\n'
+    out += f'helix_angle = {helix}\nhand = "right"\n' if helix else ""
+    out += '[shaft.carrier]\nscene = "carrier.toml"\n'
+    out += f'[{stage}]\nsun = "sun"\ncarrier = "carrier"\nring_teeth = {TEETH[2]}\n{planets}\n'
+    out += f"position = {position}\n" if position else ""
+    out += table(f"{stage}.planet", {"teeth": TEETH[1], **PLANET})
+    out += table(f"{stage}.planet.pin", PIN)
+    stiff = {f"{mate}_stiffness": value for mate, value in MESHES.items()}
+    out += table(f"{stage}.mesh", {**stiff, "pressure_angle": PRESSURE, "transmission_error": 1e-6})
+    if ring:
+        out += table(f"{stage}.ring", RING) + table(f"{stage}.ring.support", SUPPORT)
+    for name, (inertia, spring) in ROTORS.items():
+        side, port = ("sun", "sun") if name == "engine" else ("carrier", "flange")
+        out += f'[{name}]\nshaft = "{side}"\ninertia = {inertia}\n'
+        out += f'[{name}.spring]\nstiffness = {spring}\nat = "{port}"\n'
+    return out
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(text):
+        (tmp_path / "sun.toml").write_text(scene_text(*SUN, "sun"))
+        (tmp_path / "carrier.toml").write_text(scene_text(*CARRIER, "flange"))
+        (tmp_path / "train.toml").write_text(text)
+        return tmp_path / "train.toml"
+
+    return write
+
+
+def cylinder(length, diameter):
+    mass, radius = DENSITY * pi * diameter**2 / 4 * length, diameter / 2
+    across = mass * (3 * radius**2 + length**2) / 12
+    return [mass] * 3 + [across, mass * radius**2 / 2, across]
+
+
+def by_hand(helix, azimuths, ring, way=1.0):
+    """Natural frequencies, Hz, of rigid bodies with six motions each in the axes of the sun, the
+    sun driving about ``way`` y: a spring pushes along n at p with ``n . (u + t x (p - c))``.
+    """
+    normal = atan(tan(PRESSURE) / cos(helix))
+    base = atan(tan(helix) * cos(normal))
+    pitch = [MODULE / cos(helix) * z / 2 for z in TEETH]
+    y = np.array([0.0, 1.0, 0.0])
+    mass = cylinder(*SUN) + cylinder(*CARRIER)
+    mass += [RING["mass"]] * 3 + [RING["bending"], RING["torsional"], RING["bending"]]
+    for _ in azimuths:
+        mass += [PLANET["mass"]] * 3 + [PLANET["bending"], PLANET["torsional"], PLANET["bending"]]
+    mass += [inertia for inertia, _ in ROTORS.values()]
+    one = np.eye(len(mass))
+    sun, carrier, rim = one[:6], one[6:12], one[12:18]
+    springs = [(k, row) for body in (sun, carrier) for k, row in zip(BEARING, body)]
+    still = [SUPPORT[k] for k in "radial axial radial tilting turning tilting".split()]
+    springs += list(zip(still, rim))
+    for body, rotor, (_, stiffness) in zip((sun, carrier), one[-2:], ROTORS.values()):
+        springs.append((stiffness, body[4] - rotor))
+
+    def moved(body, centre, point, n):
+        return n @ body[:3] + np.cross(point - centre, n) @ body[3:]
+
+    nought = np.zeros(3)
+    for k, psi in enumerate(azimuths):
+        planet = one[18 + 6 * k : 24 + 6 * k]
+        out = np.array([cos(psi), 0.0, -sin(psi)])
+        forward = way * np.cross(y, out)
+        centre = (pitch[0] + pitch[1]) * out
+        # teeth of a right-handed sun run along cos y + sin (y x out): their force is across
+        lean = way * sin(base) * y
+        at_sun = cos(base) * (cos(normal) * forward + sin(normal) * out) - lean
+        at_ring = cos(base) * (cos(normal) * forward - sin(normal) * out) + lean
+        for stiff, mate, n, point in (
+            (MESHES["sun"], sun, at_sun, pitch[0] * out),
+            (MESHES["ring"], rim, at_ring, pitch[2] * out),
+        ):
+            row = moved(planet, centre, point, n)
+            grounded = mate is rim and not ring
+            springs.append((stiff, row if grounded else row - moved(mate, nought, point, n)))
+        for axis, k_moves, k_turns in (
+            (out, PIN["radial"], PIN["tilting"]),
+            (y, PIN["axial"], 0.0),
+            (forward, PIN["radial"], PIN["tilting"]),
+        ):
+            row = moved(planet, centre, centre, axis) - moved(carrier, nought, centre, axis)
+            springs += [(k_moves, row), (k_turns, axis @ (planet[3:] - carrier[3:]))]
+    keep = [i for i in range(len(mass)) if ring or not 12 <= i < 18]
+    stiffness = sum(k * np.outer(row, row) for k, row in springs)[np.ix_(keep, keep)]
+    found = sla.eigvalsh(stiffness, np.diag(np.array(mass)[keep]))
+    return np.sqrt(np.abs(found[1:])) / (2 * pi)  # the first turns freely
+
+
+@pytest.mark.parametrize(
+    "helix, planets, ring, position",
+    [
+        (0.0, "planets = 3", False, 0.0),
+        (0.3, "planets = 3", True, 0.2),
+        (0.3, UNEQUAL, False, 0.0),
+    ],
+)
+def test_a_stage_on_rigid_shafts_has_the_frequencies_of_matrices_written_by_hand(
+    written, helix, planets, ring, position
+):
+    train = sg.load_train(written(train_text(helix, planets, ring, position)))
+    azimuths = np.array(train.stages[0].teeth.azimuths) + position
+    found = Workshop(train).system("rigid").modes()
+    assert found.rigid == 1
+    known = by_hand(helix, azimuths, ring)
+    np.testing.assert_allclose(found.frequency_hz[1:], known, rtol=ROUNDING)
+
+
+def test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back(written):
+    train = sg.load_train(written(train_text(0.3, UNEQUAL)))
+    azimuths = train.stages[0].teeth.azimuths
+    found = Workshop(train).on_flank(True).system("rigid").modes().frequency_hz[1:]
+    known = by_hand(0.3, azimuths, False, way=-1.0)
+    np.testing.assert_allclose(found, known, rtol=ROUNDING)
+    assert abs(found / by_hand(0.3, azimuths, False) - 1).max() > 1e-3  # not the drive flank's
+
+
+def test_speeds_ratio_and_mean_forces_are_those_of_the_teeth():
+    train = sg.load_train(REDUCER)
+    point, turns = train.point, train.turns
+    assert train.ratio == pytest.approx(10, rel=1e-14)
+    carrier = point.speed_of("output", turns) / (2 * pi)
+    assert carrier == pytest.approx(8000 / 60 / 10, rel=1e-14)
+    hertz = {order.name: order.per_turn * 8000 / 60 for order in train_orders(train)}
+    assert hertz["mesh stage 1"] == pytest.approx(85 * carrier, rel=1e-14)
+    assert hertz["stage planets 1"] == pytest.approx(3 * carrier, rel=1e-14)
+    assert hertz["stage planet 1"] == pytest.approx(85 / 34 * carrier, rel=1e-14)
+    forces = mesh_forces(train, Workshop(train).contacts, point)
+    base = 1.25e-3 * 17 * cos(radians(20)) / 2
+    assert forces["mesh stage"] == pytest.approx(4 * 25 / 15 / (3 * base), rel=1e-10)
