@@ -69,6 +69,7 @@ def _train(
     found = of_train.deflect_train(Workshop(train), at, models or of_train.MODELS, progress, every)
     shown, judge = units_named(units), found.judge
     over = tables.over_points(found.points, shown)
+    turning = tables.over_a_turn(judge.turns, shown)
     force = ", ".join(
         shown.text(size, "N", 5) + name.removeprefix("mesh")
         for name, size in judge.mesh_forces.items()
@@ -80,6 +81,7 @@ def _train(
         tables.misalignment(found, shown),
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
+        *turning,
         *over,
         found.verdict(),
         *judge.notes,
@@ -92,9 +94,10 @@ def _train(
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",
-            [tables.misalignment(found, shown), *over],
+            [tables.misalignment(found, shown), *turning, *over],
             [*judge.notes, *found.cautions],
             shown,
+            judge.turns,
         )
         lines.append(f"Written: {', '.join(map(str, files))}")
     return found.as_dict(), lines

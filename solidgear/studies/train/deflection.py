@@ -19,6 +19,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, told_mix
 from solidgear.studies.train.static_bars import StaticBars
+from solidgear.studies.train.turn import StageTurn, over_a_turn
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
@@ -61,6 +62,8 @@ class TrainDeflection:
         components; rotations about the axis are against the port of the engine's spring.
     seconds : float
         To settle, once bodies are there.
+    turns : tuple of StageTurn
+        Of planetary stages.
     """
 
     point: OperatingPoint
@@ -71,6 +74,7 @@ class TrainDeflection:
     shafts: tuple[ShaftDeflection, ...]
     notes: tuple[str, ...]
     seconds: float
+    turns: tuple[StageTurn, ...] = ()
 
     @property
     def mesh_force(self) -> float:
@@ -95,6 +99,7 @@ class TrainDeflection:
                 side: {m.name: _plain(m) for m in six} for side, six in self.displacement.items()
             },
             "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
+            "turns": {one.stage: one.as_dict() for one in self.turns},
             "notes": list(self.notes),
             "seconds": self.seconds,
         }
@@ -320,6 +325,7 @@ def _told(
         shafts,
         tuple(notes),
         seconds,
+        over_a_turn(workshop, state, rungs),
     )
 
 

@@ -14,6 +14,7 @@ from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.turn import frequencies_over_a_turn
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -77,6 +78,8 @@ class TrainModes:
         What harmonics at a local mesh point add, in words.
     speeds : str
         Shaft that the speeds of modes are told of.
+    turn : str
+        What a turn of a carrier changes, in words.
     """
 
     train: str
@@ -95,6 +98,7 @@ class TrainModes:
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
     local: tuple[str, ...] = ()
     speeds: str = "pinion"
+    turn: str = ""
 
     def as_dict(self) -> dict:
         """Plain data that JSON can hold."""
@@ -119,7 +123,7 @@ class TrainModes:
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
-        lines += [*self._still(), *self.local]
+        lines += [*self._still(), *self.local, *filter(None, [self.turn])]
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven"
             + "; it says nothing of the meshes of the shafts." * (not meshed)
@@ -256,6 +260,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
         train.reference,
+        frequencies_over_a_turn(workshop, rungs, names),
     )
 
 

@@ -95,6 +95,12 @@ class StageAtWork:
         return {name: f"{self.stage.called} {name}" for name in names}
 
     @property
+    def ends(self) -> tuple[str, str]:
+        """Ports of sun and carrier in the system of the train."""
+        sun, carrier = zip(self.stage.shafts, self.stage.ports)
+        return ".".join(sun), ".".join(carrier)
+
+    @property
     def ring(self) -> str | None:
         """Name of the part that the ring is; None of a fixed one."""
         return None if self.stage.table.ring is None else f"{self.stage.called} ring"
@@ -116,9 +122,8 @@ class StageAtWork:
             if member == "ring":
                 whole = PortMotion(np.eye(6), np.zeros(3), np.eye(3))
                 return None if self.ring is None else (f"{self.ring}.centre", whole)
-            k = member == "carrier"
-            end = f"{stage.shafts[k]}.{stage.ports[k]}"
-            return end, PortMotion(np.eye(6), np.zeros(3), self.axes.T)
+            here = PortMotion(np.eye(6), np.zeros(3), self.axes.T)
+            return self.ends[member == "carrier"], here
 
         out: dict[str, Link] = {}
         joints = self.model.joints(port, f"{stage.called} ")
