@@ -2,6 +2,7 @@
 forces, closed forms and statics.
 """
 
+import re
 from math import atan, cos, pi, radians, sin, tan
 
 import numpy as np
@@ -9,11 +10,18 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
+from solidgear.errors import SceneError
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.planetary import MATES, turned
+from solidgear.studies.train.deflection import deflection
 from solidgear.studies.train.kinematics import train_orders
 from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from solidgear.studies.train.operation import Operating
+from solidgear.studies.train.stages import mesh_row
 
-REDUCER = "geometry/reducer.toml"
+REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"
 #: both are eigenvalues of the same coordinates, whose stiffness spans five decades
 ROUNDING = 1e-9
 TEETH, MODULE, PRESSURE = (17, 34, 85), 2e-3, radians(20)
@@ -28,9 +36,9 @@ UNEQUAL = f"angles = [0.0, {2 * pi * 33 / 102}, {2 * pi * 70 / 102}]"
 MESHES, ROTORS = {"sun": 2e8, "ring": 3e8}, {"engine": (0.01, 3e3), "load": (0.5, 4e4)}
 
 
-def scene_text(length, diameter, port):
+def scene_text(length, diameter, port, bearing=BEARING):
     keys = ("kxx", "kyy", "kzz", "kthx", "kthy", "kthz")
-    springs = ", ".join(f"{key} = {value}" for key, value in zip(keys, BEARING))
+    springs = ", ".join(f"{key} = {value}" for key, value in zip(keys, bearing))
     return (
         f'[material]\nE = "206 GPa"\nnu = 0.3\ndensity = {DENSITY}\n'
         f'[[segment]]\nkind = "cylinder"\nname = "s"\nlength = {length}\ndiameter = {diameter}\n'
@@ -44,14 +52,14 @@ def table(name, values):
     return f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in values.items())
 
 
-def train_text(helix=0.0, planets="planets = 3", ring=False, position=0.0):
+def train_text(helix=0.0, planets="planets = 3", ring=False, position=0.0, teeth=TEETH):
     stage = "planetary.stage"
-    out = f'[shaft.sun]\nscene = "sun.toml"\nteeth = {TEETH[0]}\nmodule = {MODULE}\n'
+    out = f'[shaft.sun]\nscene = "sun.toml"\nteeth = {teeth[0]}\nmodule = {MODULE}\n'
     out += f'helix_angle = {helix}\nhand = "right"\n' if helix else ""
     out += '[shaft.carrier]\nscene = "carrier.toml"\n'
-    out += f'[{stage}]\nsun = "sun"\ncarrier = "carrier"\nring_teeth = {TEETH[2]}\n{planets}\n'
+    out += f'[{stage}]\nsun = "sun"\ncarrier = "carrier"\nring_teeth = {teeth[2]}\n{planets}\n'
     out += f"position = {position}\n" if position else ""
-    out += table(f"{stage}.planet", {"teeth": TEETH[1], **PLANET})
+    out += table(f"{stage}.planet", {"teeth": teeth[1], **PLANET})
     out += table(f"{stage}.planet.pin", PIN)
     stiff = {f"{mate}_stiffness": value for mate, value in MESHES.items()}
     out += table(f"{stage}.mesh", {**stiff, "pressure_angle": PRESSURE, "transmission_error": 1e-6})
@@ -66,9 +74,9 @@ def train_text(helix=0.0, planets="planets = 3", ring=False, position=0.0):
 
 @pytest.fixture
 def written(tmp_path):
-    def write(text):
-        (tmp_path / "sun.toml").write_text(scene_text(*SUN, "sun"))
-        (tmp_path / "carrier.toml").write_text(scene_text(*CARRIER, "flange"))
+    def write(text, sun=BEARING, carrier=BEARING):
+        (tmp_path / "sun.toml").write_text(scene_text(*SUN, "sun", sun))
+        (tmp_path / "carrier.toml").write_text(scene_text(*CARRIER, "flange", carrier))
         (tmp_path / "train.toml").write_text(text)
         return tmp_path / "train.toml"
 
@@ -148,7 +156,7 @@ def test_a_stage_on_rigid_shafts_has_the_frequencies_of_matrices_written_by_hand
 ):
     train = sg.load_train(written(train_text(helix, planets, ring, position)))
     azimuths = np.array(train.stages[0].teeth.azimuths) + position
-    found = Workshop(train).system("rigid").modes()
+    found = Workshop(train).system(RIGID).modes()
     assert found.rigid == 1
     known = by_hand(helix, azimuths, ring)
     np.testing.assert_allclose(found.frequency_hz[1:], known, rtol=ROUNDING)
@@ -157,7 +165,7 @@ def test_a_stage_on_rigid_shafts_has_the_frequencies_of_matrices_written_by_hand
 def test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back(written):
     train = sg.load_train(written(train_text(0.3, UNEQUAL)))
     azimuths = train.stages[0].teeth.azimuths
-    found = Workshop(train).on_flank(True).system("rigid").modes().frequency_hz[1:]
+    found = Workshop(train).on_flank(True).system(RIGID).modes().frequency_hz[1:]
     known = by_hand(0.3, azimuths, False, way=-1.0)
     np.testing.assert_allclose(found, known, rtol=ROUNDING)
     assert abs(found / by_hand(0.3, azimuths, False) - 1).max() > 1e-3  # not the drive flank's
@@ -176,3 +184,119 @@ def test_speeds_ratio_and_mean_forces_are_those_of_the_teeth():
     forces = mesh_forces(train, Workshop(train).contacts, point)
     base = 1.25e-3 * 17 * cos(radians(20)) / 2
     assert forces["mesh stage"] == pytest.approx(4 * 25 / 15 / (3 * base), rel=1e-10)
+
+
+def planet_forces(state, planets=3):
+    rows = [
+        mesh_row(state.system, f"mesh stage {m} {k}") for m in MATES for k in range(1, planets + 1)
+    ]
+    return np.array([k * (row @ state.coordinates) for row, k in rows]).reshape(2, planets)
+
+
+def test_equal_planets_on_a_train_that_holds_the_sun_share_equally_and_torques_balance(written):
+    point = OperatingPoint(torque=50.0, of="sun")
+    train = sg.load_train(written(train_text(0.3)), point)
+    state = Operating(Workshop(train), RIGID).at(point)
+    base = train.stages[0].teeth.base_radii[0] * cos(train.stages[0].teeth.base_helix)
+    np.testing.assert_allclose(planet_forces(state), 50 / (3 * base), rtol=1e-10)
+    assert state.outside["engine"][4] == pytest.approx(50, rel=1e-10)
+    assert state.outside["load"][4] == pytest.approx(-50 * 6, rel=1e-10)
+
+
+def test_a_force_on_the_sun_modulates_every_mesh_by_the_closed_form(written):
+    # the carrier gives by 1e-6 of what the sun's support does, and springs that stiff leave 1e-7
+    springs, load, still = 4e7, 800.0, 1e14
+    sun = [springs, 1e8, springs, 1e5, 0.0, 1e5]
+    carrier = [still, still, still, still, 0.0, still]
+    force = {"at": "sun.sun", "x": load}
+    point = OperatingPoint(torque=300.0, of="sun", force=(force,))
+    train = sg.load_train(written(train_text(), sun, carrier), point)
+    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    give = 1 / MESHES["sun"] + 1 / MESHES["ring"] + (2 + 2 * cos(2 * PRESSURE)) / PIN["radial"]
+    shift, path = load / springs, 1 / give
+    once = path * shift * springs / (springs + 3 / 2 * path)
+    assert [planet.once for planet in turn.planets] == pytest.approx([once] * 3, rel=1e-5)
+    mean = 300 / (3 * train.stages[0].teeth.base_radii[0])
+    assert [planet.mean for planet in turn.planets] == pytest.approx([mean] * 3, rel=1e-10)
+
+
+def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_position():
+    train = sg.load_train(REDUCER)
+    shop = Workshop(train)
+    (turn,) = deflection(shop, train.point, "timoshenko").turns
+    assert turn.planets[0].once > 0.03 * turn.planets[0].mean  # the sun hangs on a cantilever
+    assert turn.planets[0].once == pytest.approx(turn.planets[2].once, rel=1e-6)
+    for k in (0, 25):  # bearings settle anew, and carry the same
+        there = shop.with_train(turned(train, "stage", turn.angle[k]))
+        state = Operating(there, "timoshenko").at(train.point)
+        np.testing.assert_allclose(planet_forces(state), [turn.force[k]] * 2, rtol=1e-7)
+
+
+def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
+    train = sg.load_train(written(train_text()))
+    at = [
+        Workshop(turned(train, "stage", by)).system(RIGID).modes().frequency_hz
+        for by in (0.0, 0.7)
+    ]
+    np.testing.assert_allclose(at[1][1:], at[0][1:], rtol=ROUNDING)
+    assert "do not hang on the position" in train_modes(Workshop(train), RIGID).turn
+    pair = sg.load_train(written(train_text(planets="planets = 2")))
+    told = train_modes(Workshop(pair), RIGID).turn
+    assert "solved at 6 positions" in told
+    share = float(told.split(" up to ")[1].split(" %")[0]) / 100
+    hz = [
+        Workshop(turned(pair, "stage", k * pi / 3)).system(RIGID).modes().frequency_hz[1:]
+        for k in range(6)
+    ]
+    count = len(train_modes(Workshop(pair), RIGID).modes) - 1
+    assert share == pytest.approx((np.ptp(hz, axis=0) / hz[0])[:count].max(), rel=0.05)
+    assert share > 1e-3
+
+
+def test_modes_of_planets_are_named_as_the_theory_does(written):
+    train = sg.load_train(written(train_text(planets="planets = 6", teeth=(30, 18, 66)) + ASK))
+    modes = train_modes(Workshop(train), RIGID).modes
+    words = {"train", "sun", "carrier", "stage", "load", "engine"}
+    assert {mode.name.split()[0] for mode in modes} <= words
+    own = [mode for mode in modes if mode.name.startswith("stage planet ")]
+    hz = [mode.frequency_hz for mode in own]
+    # each three times, for six planets at equal angles leave 6 - 3 phases in which all else rests
+    assert len(hz) == 9 and hz[::3] == pytest.approx(hz[2::3], rel=ROUNDING)
+    assert {mode.strained.split(" ")[0] for mode in own} <= {"mesh", "stage"}
+
+
+ASK = "[ask]\nmax_frequency = 20e3\n"
+BAD = {
+    "ring_teeth = 85": ("ring_teeth = 86", "a ring of 86 teeth does not fit a sun of 17"),
+    "planets = 3": ("planets = 4", "4 planets at equal angles do not assemble: 17 + 85 teeth"),
+    "planets = 3 ": ("angles = [0.0, 2.05, 4.1]", "planet 2 does not assemble at 117.456 deg"),
+    "planets = 3  ": ("angles = [0.0, 1.4784, 3.69599]", "planets 84.71 deg apart overlap"),
+    "planets = 3   ": ("", "give either planets, how many at equal angles, or the angles"),
+    "ring_teeth = 85 ": ("ring_teeth = 85\nratio = 5.0", "1 + 85/17 = 6"),
+    'sun = "sun"': ('sun = "sun.b"', "the sun has no gear at 'b'; it has sun"),
+    'sun = "sun" ': ('sun = "shaft"', "names no shaft 'shaft'"),
+    'carrier = "carrier"': ('carrier = "career"', "names no shaft 'career'"),
+    'carrier = "carrier" ': ('carrier = "sun"', "sun and carrier are one shaft"),
+    'carrier = "carrier"  ': ('carrier = "carrier.rim"', "has no lumped point at 'rim'"),
+    f"module = {MODULE}\n": ("", "the gear sun.sun, the sun, needs its module"),
+    "radial = 100000000.0": ("radial = 0.0", "must be greater than zero"),
+    "[planetary.stage.planet.pin]": ("[planetary.stage.ring.pin]", "planets are on no pins"),
+}
+
+
+@pytest.mark.parametrize("right", BAD)
+def test_a_stage_that_cannot_be_is_refused_in_one_sentence(written, right):
+    wrong, said = BAD[right]
+    text = train_text().replace(right.rstrip(" "), wrong, 1)
+    with pytest.raises(SceneError, match=re.escape(said)) as found:
+        sg.load_train(written(text))
+    lines = [line for line in str(found.value).splitlines() if said in line]
+    assert len(lines) == 1 and "train.toml: planetary.stage" in lines[0]
+
+
+def test_the_speeds_of_an_operating_point_are_held_against_the_stage(written):
+    text = (
+        train_text() + '[operation]\ntorque = 50.0\nspeed = "600 rpm"\noutput_speed = "120 rpm"\n'
+    )
+    with pytest.raises(SceneError, match="the teeth turn the carrier at 100 rpm"):
+        sg.load_train(written(text))

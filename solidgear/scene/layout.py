@@ -102,7 +102,7 @@ def _meshes(train: Train) -> Iterator[SceneError]:
             yield SceneError(
                 f"both gears are on the {one}; teeth mesh with another shaft", path=path
             )
-        if mesh.local_harmonics and len(train.meshes) > 1:
+        if mesh.local_harmonics and len(train.meshes) + len(train.planetary) > 1:
             reason = "are there for a train of one mesh only; leave them out"
             yield SceneError(reason, path=("mesh", k, "local_harmonics"))
 

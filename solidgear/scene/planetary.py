@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.gears import Gear, HeadInertia, Teeth
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.scene.stations import Status
@@ -163,11 +163,14 @@ class PlanetMesh:
         ``mesh stage sun 1`` of the first planet of the stage of that name.
     stage : Stage
     mesh : PlanetMeshes
+    stiffness : float
+        N/m.
     """
 
     name: str
     stage: Stage
     mesh: PlanetMeshes
+    stiffness: float
 
     @property
     def label(self) -> str:
@@ -204,7 +207,7 @@ class Stage:
 
         Raises
         ------
-        SolidgearError
+        SceneError
             For teeth that do not mesh or assemble, planets that overlap, or another ratio.
         """
         assert self.sun.module is not None
@@ -236,9 +239,12 @@ class Stage:
     @cached_property
     def meshes(self) -> tuple[PlanetMesh, ...]:
         """Those of all planets with the sun, then those with the ring."""
-        numbers = range(1, len(self.teeth.azimuths) + 1)
-        names = [f"{self.name} {mate} {k}" for mate in MATES for k in numbers]
-        return tuple(PlanetMesh(name, self, self.table.mesh) for name in names)
+        mesh, numbers = self.table.mesh, range(1, len(self.teeth.azimuths) + 1)
+        return tuple(
+            PlanetMesh(f"{self.name} {mate} {k}", self, mesh, getattr(mesh, f"{mate}_stiffness"))
+            for mate in MATES
+            for k in numbers
+        )
 
 
 def stage_of(train: Train, name: str) -> Stage:
@@ -311,8 +317,10 @@ def _teeth(train: Train, name: str) -> Iterator[SceneError]:
     else:
         try:
             _ = stage.teeth
-        except SolidgearError as error:
-            yield SceneError(str(error))
+        except SceneError as error:
+            keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
+            for one in error.problems:
+                yield one.located(None, path=tuple(keys.get(str(key), key) for key in one.path))
 
 
 def turned(train: Train, name: str, by: float) -> Train:

@@ -140,7 +140,7 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
         problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
-            data["shaft"] = _shafts(problems, raw["shaft"], read_scene, _carriers(raw))
+            data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
@@ -170,18 +170,12 @@ def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
     return error
 
 
-def _carriers(raw: Mapping[str, Any]) -> set[str]:
-    """Shafts that are the carrier of a planetary stage, and may have no gear."""
-    stages = raw.get("planetary")
-    tables = stages.values() if isinstance(stages, Mapping) else ()
-    words = [table.get("carrier") for table in tables if isinstance(table, Mapping)]
-    return {word.partition(".")[0] for word in words if isinstance(word, str)}
-
-
 def _shafts(
-    problems: Gathered, tables: Any, read_scene: Callable, carriers: set[str]
+    problems: Gathered, tables: Any, read_scene: Callable, carriers: bool
 ) -> dict[str, Shaft]:
-    """Shafts by their names: with a table for each of several gears, or the one gear in their own."""
+    """Shafts by their names: with a table for each of several gears, or the one gear in their own;
+    a carrier may have none.
+    """
     if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
         reason = "holds a table for each shaft, such as [shaft.input]"
         raise SceneError(reason, path=("shaft",))
@@ -191,7 +185,7 @@ def _shafts(
         whole = _read(problems, partial(read_scene, table, path))
         if whole is None:
             continue
-        one = "gears" not in table and (name not in carriers or "teeth" in table)
+        one = "gears" not in table and (not carriers or "teeth" in table)
         made = problems.read(
             lambda: Member(**whole).shaft if one else Shaft(**whole),  # noqa: B023  read at once
             path,

@@ -11,6 +11,7 @@ from typing import Any
 from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
 from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import Stage
 from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
 from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
@@ -143,6 +144,7 @@ def described(workshop: Workshop) -> dict[str, Any]:
         "ratio": train.ratio,
         "shafts": [*train.shafts],
         "meshes": [_mesh(workshop, pair) for pair in train.pairs],
+        "stages": [_stage(stage) for stage in train.stages],
         "rotors": [*train.rotors],
         "losses": train.losses.model_dump(mode="json", exclude={"status"}),
         "statuses": train.statuses(),
@@ -156,6 +158,22 @@ def described(workshop: Workshop) -> dict[str, Any]:
     for side, shaft in train.shafts.items():
         out[side] = {"turns": train.turns[side], "scene": shaft.scene.as_dict()}
     return out
+
+
+def _stage(stage: Stage) -> dict[str, Any]:
+    """A planetary stage as plain data."""
+    teeth, ends = stage.teeth, zip(stage.shafts, stage.ports)
+    sun, carrier = (f"{side}.{port}" for side, port in ends)
+    return {
+        "name": stage.called,
+        "sun": sun,
+        "carrier": carrier,
+        "teeth": [teeth.sun, teeth.planet, teeth.ring],
+        "ratio": stage.ratio,
+        "angles": [*teeth.azimuths],
+        "pin_radius": teeth.pin_radius,
+        **stage.table.model_dump(mode="json", include={"position", "planet", "mesh", "ring"}),
+    }
 
 
 def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:

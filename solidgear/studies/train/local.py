@@ -118,7 +118,7 @@ def local_give(workshop: Workshop, system: System) -> dict[str, float]:
 
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
     """Share of the harmonics at the mesh point, in words; empty without any."""
-    asked = workshop.train.meshes[0].local_harmonics  # of several meshes there are none
+    asked = [n for mesh in workshop.train.meshes for n in mesh.local_harmonics]
     if not asked:
         return ()
     give = local_give(workshop, system)

@@ -105,6 +105,11 @@ class StageAtWork:
         """Name of the part that the ring is; None of a fixed one."""
         return None if self.stage.table.ring is None else f"{self.stage.called} ring"
 
+    @property
+    def bodies(self) -> list[str]:
+        """Names of all its parts in the system of the train."""
+        return [*self.planets.values(), *([] if self.ring is None else [self.ring])]
+
     def parts(self, turn: np.ndarray, origin: np.ndarray) -> dict[str, Part]:
         """Planets, and the ring that gives way, with the sun's scene at a place of the train."""
         named = self.planets | ({} if self.ring is None else {"ring": self.ring})

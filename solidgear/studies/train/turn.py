@@ -96,9 +96,8 @@ def over_a_turn(
     whole = workshop.with_train(settled(workshop.train, state)).system(*models.values())
     out = []
     for one in carrying:
-        named = {*one.planets.values(), one.ring}
         rest = System(
-            {name: part for name, part in whole.parts.items() if name not in named},
+            {name: part for name, part in whole.parts.items() if name not in one.bodies},
             {name: link for name, link in whole.links.items() if name not in one.links},
         )
         pushed = port_forces(System(state.system.parts, one.links), state.coordinates)
