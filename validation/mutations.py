@@ -658,6 +658,33 @@ MUTATIONS = (
         "tests/test_planetary.py::test_three_planets_have_the_published_frequencies_to_every_digit",
     ),
     Mutation(
+        "planetary: a ring that stands still pulls its planets",
+        "solidgear/system/planetary.py",
+        "PlanetaryStage.joints",
+        "RowSpring(centre, -own, stiffness)",
+        "RowSpring(centre, own, stiffness)",
+        "tests/test_train_planetary.py::"
+        "test_equal_planets_on_a_train_that_holds_the_sun_share_equally_and_torques_balance",
+    ),
+    Mutation(
+        "planetary: teeth of a sun that is driven back touch by the same flank",
+        "solidgear/studies/train/stages.py",
+        "StageAtWork.axes",
+        "np.diag([1.0, self.way, self.way])",
+        "np.eye(3)",
+        "tests/test_train_planetary.py::"
+        "test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back",
+    ),
+    Mutation(
+        "planetary: a sun rests where its planets have pushed it",
+        "solidgear/studies/train/turn.py",
+        "_support",
+        "state.motion(end)[HELD] - give @ pushed[HELD]",
+        "state.motion(end)[HELD]",
+        "tests/test_train_planetary.py::"
+        "test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_position",
+    ),
+    Mutation(
         "planetary: planets lie in the axes of the carrier",
         "solidgear/system/planetary.py",
         "PlanetaryStage.parts",

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, cos, pi, tan
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.gears import Gear, HeadInertia, Teeth
+from solidgear.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.scene.gears import Gear, HeadInertia, Pair, Teeth
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.scene.stations import Status
 from solidgear.scene.train_tables import ErrorTable, constant_or_table
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 MATES = ("sun", "ring")
 MOST_PLANETS = 20
+#: relative, of inertias
+TYPED = 1e-6
 
 
 class Seat(Model):
@@ -63,7 +65,21 @@ class HeldSeat(Seat):
         return held
 
 
-class PlanetTable(HeadInertia):
+class Round(HeadInertia):
+    """A rigid body of revolution."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.bending < (1 - TYPED) * self.torsional / 2:
+            raise SceneError(
+                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
+                "no body has",
+                path=("bending",),
+            )
+        return self
+
+
+class PlanetTable(Round):
     """Each of the planets, rigid.
 
     Attributes
@@ -84,7 +100,7 @@ class PlanetTable(HeadInertia):
         return self
 
 
-class RingTable(HeadInertia):
+class RingTable(Round):
     """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
 
     support: HeldSeat
@@ -328,3 +344,21 @@ def turned(train: Train, name: str, by: float) -> Train:
     table = train.planetary[name]
     here = table.with_changes(position=(table.position + by) % (2 * pi))
     return train.with_changes(planetary={**train.planetary, name: here})
+
+
+def named_pair(train: Train, word: str | None) -> Pair:
+    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`.
+
+    Raises
+    ------
+    SolidgearError
+        Of a mesh of planets, whose teeth have no backlash.
+    """
+    found = train.named_mesh(word)
+    if isinstance(found, PlanetMesh):
+        known = listed(pair.label.strip() for pair in train.pairs) or "none"
+        raise SolidgearError(
+            f"teeth of planets have no backlash and do not drive motions with it; of {train.name} "
+            f"these may: {known}"
+        )
+    return found

@@ -218,13 +218,13 @@ class Train(Model):
         return (side,) if self.short else ("shaft", side)
 
     def per_turn(self, pair: Pair | PlanetMesh) -> PerTurn:
-        """Teeth of a mesh that pass in one turn of the engine's shaft; of a ring as its planets
-        pass them.
-        """
-        if isinstance(pair, PlanetMesh):
-            turns = self.turns[pair.stage.shafts[1]]
-            return PerTurn(pair.stage.teeth.ring * turns, self.reference)
-        return PerTurn(pair.pinion.teeth * self.turns[pair.shafts[0]], self.reference)
+        """Teeth of a mesh that pass in one turn of the engine's shaft; of planets, those of the ring."""
+        teeth, side = (
+            (pair.stage.teeth.ring, pair.stage.shafts[1])
+            if isinstance(pair, PlanetMesh)
+            else (pair.pinion.teeth, pair.shafts[0])
+        )
+        return PerTurn(teeth * self.turns[side], self.reference)
 
     def named_mesh(self, word: str | None) -> Pair | PlanetMesh:
         """A mesh by its name, with or without the word mesh before it; the first by default.
@@ -239,22 +239,6 @@ class Train(Model):
                 return pair
         known = listed(pair.label.strip() or pair.name for pair in self.drivers)
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
-
-    def named_pair(self, word: str | None) -> Pair:
-        """A mesh of two shafts by its name, as :meth:`named_mesh`.
-
-        Raises
-        ------
-        SolidgearError
-            Of a train with planets, whose teeth are linear so far.
-        """
-        found = self.named_mesh(word)
-        if self.planetary or isinstance(found, PlanetMesh):
-            raise SolidgearError(
-                f"{self.name} has a planetary stage, and teeth with backlash are there for trains "
-                "without one"
-            )
-        return found
 
     @cached_property
     def power(self) -> tuple[Joint, ...]:
@@ -305,12 +289,16 @@ class Train(Model):
         """Turns of the engine's shaft in one turn of the load's."""
         return self.turns[self.reference] / self.turns[self.rotors["load"].shaft]
 
-    def member(self, side: str) -> Member:
-        """A shaft by its name, and the first of its gears."""
+    def named_shaft(self, side: str) -> Shaft:
+        """A shaft by its name."""
         if side not in self.shafts:
             known = listed(self.shafts)
             raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {known}")
-        return self.shafts[side].member()
+        return self.shafts[side]
+
+    def member(self, side: str) -> Member:
+        """A shaft by its name, and the first of its gears."""
+        return self.named_shaft(side).member()
 
     def rotors_of(self, side: str) -> dict[str, Rotor]:
         """Rotors that turn with a shaft."""

@@ -76,14 +76,18 @@ def sun_ways(
     train: Train, found: Mapping[str, Contact], coast: bool | None = None
 ) -> dict[str, float]:
     """Way in which the sun of each stage drives its planets, 1 about +y of its scene or -1: as the
-    flanks of other meshes pass the torque on; without any, about +y where it is positive.
+    flanks of other meshes pass the torque on; without any, so that a positive one of the engine is
+    about +y.
     """
     point = train.point
     coast = coast if coast is not None else point is not None and point.coast
-    out = {stage.name: -1.0 if coast else 1.0 for stage in train.stages}
+    out = {stage.name: 1.0 for stage in train.stages}
     way = train.power
     known = {joint.name for joint in way if isinstance(joint, Pair)}
-    known = known or {joint.name for joint in way[:1]}
+    if way and not known:
+        known = {way[0].name}
+        if (torque_on(way[0], train.reference, found, out) > 0) is not coast:
+            out[way[0].name] = -1.0
     for one, other in [*zip(way, way[1:]), *zip(way[::-1], way[-2::-1])]:
         if one.name in known and other.name not in known:
             side = _between(one, other)

@@ -94,11 +94,6 @@ class Workshop:
         """
         return self.contacts[self.train.only().name]
 
-    @property
-    def ways(self) -> dict[str, float]:
-        """Way in which the sun of each stage drives, 1 about +y of its scene or -1."""
-        return {name: stage.way for name, stage in self.stages.items()}
-
     def mix(self, models: Sequence[str]) -> dict[str, str]:
         """Models by shaft, from one each in the sequence of the file, or one for all.
 

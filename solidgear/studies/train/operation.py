@@ -216,8 +216,9 @@ class Operating:
 def torques(workshop: Workshop, forces: Mapping[str, float]) -> dict[str, np.ndarray]:
     """(6,) torques of engine and load that hold the mesh forces."""
     train, out = workshop.train, {}
+    ways = {name: stage.way for name, stage in workshop.stages.items()}
     for name, pair in (("engine", train.power[0]), ("load", train.power[-1])):
-        push = torque_on(pair, train.rotors[name].shaft, workshop.contacts, workshop.ways)
+        push = torque_on(pair, train.rotors[name].shaft, workshop.contacts, ways)
         out[name] = np.array([0, 0, 0, 0, -forces[pair.name] * push, 0.0])
     return out
 
