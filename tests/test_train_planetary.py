@@ -28,6 +28,8 @@ TEETH, MODULE, PRESSURE = (17, 34, 85), 2e-3, radians(20)
 #: length and diameter, m; density
 SUN, CARRIER, DENSITY = (0.04, 0.03), (0.03, 0.16), 7850.0
 BEARING = [8e7, 5e7, 9e7, 2e4, 0.0, 3e4]
+#: between x and z of both bearings, so that no mirror leaves them as they are
+ACROSS = 3e7
 PLANET = {"mass": 0.6, "torsional": 4e-4, "bending": 2.5e-4}
 PIN = {"radial": 1e8, "axial": 3e7, "tilting": 2e4}
 RING = {"mass": 2.0, "torsional": 0.02, "bending": 0.012}
@@ -39,6 +41,7 @@ MESHES, ROTORS = {"sun": 2e8, "ring": 3e8}, {"engine": (0.01, 3e3), "load": (0.5
 def scene_text(length, diameter, port, bearing=BEARING):
     keys = ("kxx", "kyy", "kzz", "kthx", "kthy", "kthz")
     springs = ", ".join(f"{key} = {value}" for key, value in zip(keys, bearing))
+    springs += f", kxz = {ACROSS}" * (bearing is BEARING)
     return (
         f'[material]\nE = "206 GPa"\nnu = 0.3\ndensity = {DENSITY}\n'
         f'[[segment]]\nkind = "cylinder"\nname = "s"\nlength = {length}\ndiameter = {diameter}\n'
@@ -104,7 +107,9 @@ def by_hand(helix, azimuths, ring, way=1.0):
     mass += [inertia for inertia, _ in ROTORS.values()]
     one = np.eye(len(mass))
     sun, carrier, rim = one[:6], one[6:12], one[12:18]
-    springs = [(k, row) for body in (sun, carrier) for k, row in zip(BEARING, body)]
+    alone = BEARING - ACROSS * np.array([1, 0, 1, 0, 0, 0])
+    springs = [(k, row) for body in (sun, carrier) for k, row in zip(alone, body)]
+    springs += [(ACROSS, body[0] + body[2]) for body in (sun, carrier)]
     still = [SUPPORT[k] for k in "radial axial radial tilting turning tilting".split()]
     springs += list(zip(still, rim))
     for body, rotor, (_, stiffness) in zip((sun, carrier), one[-2:], ROTORS.values()):
@@ -299,3 +304,35 @@ def test_the_speeds_of_an_operating_point_are_held_against_the_stage(written):
     )
     with pytest.raises(SceneError, match="the teeth turn the carrier at 100 rpm"):
         sg.load_train(written(text))
+
+
+def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
+    text = train_text(0.2)
+    for name, old, new in (("engine", "sun", "carrier"), ("load", "carrier", "sun")):
+        text = text.replace(f'[{name}]\nshaft = "{old}"', f'[{name}]\nshaft = "{new}"')
+    text = text.replace('at = "sun"', 'at = "x"').replace('at = "flange"', 'at = "sun"')
+    train = sg.load_train(written(text.replace('at = "x"', 'at = "flange"')))
+    for torque in (60.0, -60.0):
+        point = OperatingPoint(torque=torque, of="carrier")
+        state = Operating(Workshop(train), RIGID).at(point)
+        assert state.outside["load"][4] == pytest.approx(-torque / 6, rel=1e-10)
+        assert planet_forces(state).min() > 0  # teeth press either way
+    stage = train_text().split("[planetary.stage]")[1].split("[engine]")[0]
+    between = scene_text(0.08, 0.05, "flange").replace("[port]", "[[port]]")
+    between += '[[port]]\nname = "next"\nposition = 0.07\nspan = [0.065, 0.075]\n'
+    (tmp_path / "between.toml").write_text(between)
+    text = train_text().replace(
+        "[shaft.carrier]",
+        '[shaft.between]\nscene = "between.toml"\n[shaft.between.gears.next]\nteeth = 17\n'
+        "module = 0.003\n[shaft.carrier]",
+    )
+    text = text.replace('carrier = "carrier"', 'carrier = "between.flange"')
+    last = stage.replace("planetary.stage", "planetary.last").replace('"sun"', '"between"')
+    text = text.replace("[engine]", f"[planetary.last]{last}[engine]")
+    train = sg.load_train(written(text))
+    assert train.ratio == pytest.approx(36, rel=1e-14)
+    state = Operating(Workshop(train), RIGID).at(OperatingPoint(torque=10.0, of="sun"))
+    assert state.outside["load"][4] == pytest.approx(-360, rel=1e-10)
+    row, stiffness = mesh_row(state.system, "mesh last ring 2")
+    base = train.stages[1].teeth.base_radii[0]
+    assert stiffness * (row @ state.coordinates) == pytest.approx(60 / (3 * base), rel=1e-9)
