@@ -1035,7 +1035,7 @@ MUTATIONS = (
         "torque passes a shaft as if both of its gears had one radius",
         "solidgear/studies/train/layout.py",
         "mesh_forces",
-        "out[pair.name] * abs(far)",
+        "out[joint.name] * abs(far)",
         "reached[side]",
         "tests/test_train_many.py"
         "::test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth",
