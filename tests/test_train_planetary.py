@@ -19,6 +19,7 @@ from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.operation import Operating
+from solidgear.studies.train.respond import Drive, respond
 from solidgear.studies.train.stages import mesh_row
 
 REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"
@@ -336,3 +337,31 @@ def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
     row, stiffness = mesh_row(state.system, "mesh last ring 2")
     base = train.stages[1].teeth.base_radii[0]
     assert stiffness * (row @ state.coordinates) == pytest.approx(60 / (3 * base), rel=1e-9)
+
+
+@pytest.mark.parametrize("teeth, still, moved", [((18, 33, 84), "xz", "thy"), (TEETH, "thy", "xz")])
+def test_phases_of_planets_let_a_mesh_turn_the_shafts_or_shift_them(written, teeth, still, moved):
+    """Errors in phase cancel across the axis, those that follow one another cancel about it
+    (Parker, Journal of Sound and Vibration 236, 2000).
+    """
+    train = sg.load_train(written(train_text(teeth=teeth)))
+    found = respond(Workshop(train), RIGID, mesh="stage sun", frequency_hz=np.array([150.0, 900.0]))
+    across = {dof: found.columns[f"sun {dof} [m]"] for dof in ("x", "z")}
+    about = found.columns["sun thy [rad]"] * MODULE * teeth[0] / 2
+    size = {"xz": np.hypot(*map(abs, across.values())), "thy": np.abs(about)}
+    assert np.all(size[still] < 1e-9 * size[moved])
+
+
+def test_a_planet_alone_drives_as_a_part_of_all_together(written):
+    shop = Workshop(sg.load_train(written(train_text())))
+    hz = np.array([400.0])
+    alone = [respond(shop, RIGID, mesh=f"stage ring {k}", frequency_hz=hz) for k in (1, 2, 3)]
+    every = respond(shop, RIGID, mesh="stage ring", frequency_hz=hz)
+    behind = np.exp(-1j * TEETH[0] * 2 * pi / 3 * np.arange(3))
+    for name in ("sun x [m]", "carrier z [m]", "mesh force stage sun 2 [N]"):
+        parts = [turn * one.columns[name] for turn, one in zip(behind, alone)]
+        np.testing.assert_allclose(every.columns[name], np.sum(parts, axis=0), rtol=1e-9)
+    drive = Drive(shop, RIGID, mesh="stage ring")
+    own = np.sum([turn * one.columns["mesh force stage ring 3 [N]"] for turn, one in
+                  zip(behind[:2], alone[:2])], axis=0) + behind[2] * alone[2].force  # fmt: skip
+    np.testing.assert_allclose(drive.columns(hz)["mesh force stage ring 3 [N]"], own, rtol=1e-9)

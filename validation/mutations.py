@@ -676,6 +676,15 @@ MUTATIONS = (
         "test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back",
     ),
     Mutation(
+        "planetary: errors of all planets come at once",
+        "solidgear/scene/planetary.py",
+        "PlanetMesh.phases",
+        "way * teeth.sun * teeth.azimuths[k - 1]",
+        "0.0",
+        "tests/test_train_planetary.py::"
+        "test_phases_of_planets_let_a_mesh_turn_the_shafts_or_shift_them",
+    ),
+    Mutation(
         "planetary: a sun rests where its planets have pushed it",
         "solidgear/studies/train/turn.py",
         "_support",

@@ -171,22 +171,47 @@ class Planetary(Model):
 
 @dataclass(frozen=True)
 class PlanetMesh:
-    """Mesh of one planet with sun or ring, told as a `Pair` is.
+    """Mesh of planets with sun or ring, told as a `Pair` is.
 
     Attributes
     ----------
     name : str
-        ``mesh stage sun 1`` of the first planet of the stage of that name.
+        ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the first.
     stage : Stage
-    mesh : PlanetMeshes
-    stiffness : float
-        N/m.
+    mate : str
+    planets : tuple of int
+        Counted from 1.
     """
 
     name: str
     stage: Stage
-    mesh: PlanetMeshes
-    stiffness: float
+    mate: str
+    planets: tuple[int, ...]
+
+    @property
+    def mesh(self) -> PlanetMeshes:
+        """Table of the teeth."""
+        return self.stage.table.mesh
+
+    @property
+    def stiffness(self) -> float:
+        """Of each, N/m."""
+        return float(getattr(self.mesh, f"{self.mate}_stiffness"))
+
+    def phases(self, way: float) -> dict[str, float]:
+        """Angle by which the error at each planet is behind the first, rad, by the name of its mesh.
+
+        Teeth of the sun reach a planet at the azimuth psi later by ``z_s psi``, and of the ring, for
+        planets assemble, by as much (Parker, Journal of Sound and Vibration 236, 2000, p. 561-573).
+
+        Parameters
+        ----------
+        way : float
+            1 where the sun turns about +y of its scene, else -1.
+        """
+        teeth, name = self.stage.teeth, f"{self.stage.name} {self.mate}"
+        at = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
+        return {f"{name} {k}": at[k] - at[self.planets[0]] for k in self.planets}
 
     @property
     def label(self) -> str:
@@ -254,13 +279,18 @@ class Stage:
 
     @cached_property
     def meshes(self) -> tuple[PlanetMesh, ...]:
-        """Those of all planets with the sun, then those with the ring."""
-        mesh, numbers = self.table.mesh, range(1, len(self.teeth.azimuths) + 1)
+        """Those of each planet with the sun, then those with the ring."""
         return tuple(
-            PlanetMesh(f"{self.name} {mate} {k}", self, mesh, getattr(mesh, f"{mate}_stiffness"))
-            for mate in MATES
-            for k in numbers
+            PlanetMesh(f"{one.name} {k}", self, one.mate, (k,))
+            for one in self.together
+            for k in one.planets
         )
+
+    @property
+    def together(self) -> tuple[PlanetMesh, ...]:
+        """Those of all planets with the sun, and with the ring."""
+        every = tuple(range(1, len(self.teeth.azimuths) + 1))
+        return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, every) for mate in MATES)
 
 
 def stage_of(train: Train, name: str) -> Stage:

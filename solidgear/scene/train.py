@@ -198,9 +198,14 @@ class Train(Model):
         return (*self.pairs, *self.stages)
 
     @cached_property
-    def drivers(self) -> tuple[Pair | PlanetMesh, ...]:
-        """Meshes whose errors drive the train: those of pairs, then those of planets."""
+    def teeth(self) -> tuple[Pair | PlanetMesh, ...]:
+        """Meshes one by one: those of pairs, then those of planets."""
         return (*self.pairs, *(mesh for stage in self.stages for mesh in stage.meshes))
+
+    @cached_property
+    def drivers(self) -> tuple[Pair | PlanetMesh, ...]:
+        """Meshes whose errors drive the train: those of pairs, then those of all planets together."""
+        return (*self.pairs, *(mesh for stage in self.stages for mesh in stage.together))
 
     @property
     def short(self) -> bool:
@@ -234,7 +239,7 @@ class Train(Model):
         SolidgearError
             If it has no such mesh.
         """
-        for pair in self.drivers:
+        for pair in (*self.drivers, *self.teeth):
             if word in (None, pair.name, pair.label.strip()):
                 return pair
         known = listed(pair.label.strip() or pair.name for pair in self.drivers)
@@ -252,9 +257,9 @@ class Train(Model):
         ------
         SolidgearError
         """
-        if len(self.drivers) > 1:
+        if len(self.teeth) > 1:
             raise SolidgearError(
-                f"{self.name} has {len(self.drivers)} meshes, and what is asked is there for a "
+                f"{self.name} has {len(self.teeth)} meshes, and what is asked is there for a "
                 "train of one mesh only"
             )
         return self.pairs[0]

@@ -84,8 +84,8 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     # those of the shafts are told with their guards
     cautions = [*workshop.cautions, *slips_of_meshes(workshop), *_losses(train)]
     for pair in train.drivers:
-        if isinstance(pair, PlanetMesh) and pair is not pair.stage.meshes[0]:
-            continue  # planets have one table
+        if isinstance(pair, PlanetMesh) and pair.mate == "ring":
+            continue  # it has the table of the sun
         of = f"{pair.name}: " if pair.label else ""
         cautions += [of + line for line in _error(pair, limit)]
     try:

@@ -384,7 +384,7 @@ class Workshop:
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
         for stage in self.stages.values():
             out |= dict.fromkeys(stage.links, loss.bearings)
-        return out | {mesh.name: loss.mesh for mesh in train.drivers}
+        return out | {mesh.name: loss.mesh for mesh in train.teeth}
 
     def seconds(self, *models: str) -> float:
         """To build and reduce all shafts."""

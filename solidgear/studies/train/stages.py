@@ -15,7 +15,8 @@ import numpy as np
 
 from solidgear.reduction.superelement import PortMotion
 from solidgear.scene import Scene
-from solidgear.scene.planetary import MATES, Stage
+from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import MATES, PlanetMesh, Stage
 from solidgear.scene.train import Train
 from solidgear.solve.families import FAMILIES
 from solidgear.studies.train.contact import Contact
@@ -185,6 +186,13 @@ def mesh_row(system: System, name: str) -> tuple[np.ndarray, float]:
     assert isinstance(spring, RowSpring)
     rows = spring.stretch(*map(system.port, spring.ends))
     return rows.mean(axis=0), len(rows) * spring.stiffness
+
+
+def phases_of(driver: Pair | PlanetMesh, stages: Mapping[str, StageAtWork]) -> dict[str, float]:
+    """Meshes whose errors drive, each with the angle by which it is behind the first, rad."""
+    if isinstance(driver, Pair):
+        return {driver.name: 0.0}
+    return driver.phases(stages[driver.stage.name].way)
 
 
 def stages_at_work(

@@ -127,7 +127,7 @@ class TwoTrains:
     @property
     def forces(self) -> dict[str, str]:
         """Columns of mesh forces that both have, that of the mesh which drives first, and their names."""
-        pairs = self.a.workshop.train.drivers
+        pairs = self.a.workshop.train.teeth
         out = {FORCE: _force_of(self.a.workshop.train.named_mesh(self.mesh))}
         out |= {f"mesh force{p.label} [N]": _force_of(p) for p in pairs if p.name != self.mesh}
         return {c: name for c, name in out.items() if c in self.b.response.columns}
