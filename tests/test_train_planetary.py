@@ -21,6 +21,7 @@ from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.operation import Operating
 from solidgear.studies.train.respond import Drive, respond
 from solidgear.studies.train.stages import mesh_row
+from validation.reducer.design import FACE, Design
 
 REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"
 #: both are eigenvalues of the same coordinates, whose stiffness spans five decades
@@ -365,3 +366,28 @@ def test_a_planet_alone_drives_as_a_part_of_all_together(written):
     own = np.sum([turn * one.columns["mesh force stage ring 3 [N]"] for turn, one in
                   zip(behind[:2], alone[:2])], axis=0) + behind[2] * alone[2].force  # fmt: skip
     np.testing.assert_allclose(drive.columns(hz)["mesh force stage ring 3 [N]"], own, rtol=1e-9)
+
+
+def test_a_reducer_put_together_by_hand_modulates_as_that_of_the_file():
+    """Balance of one shaft between bearing laws and a spring for all planets, by `validation`."""
+    design = Design(teeth=(15, 25, 17, 34, 85), hand="right", stiffening=206 / 210)
+    train = sg.load_train(REDUCER)
+    cone = atan(15 / 25)
+    flanks = {"pitch_angle": cone, "face_width": FACE * 19.5e-3 / sin(cone)}
+    pinion, wheel, output = train.shafts.values()
+    gear = pinion.gears["pinion"].with_changes(**flanks)
+    *others, sun = wheel.scene.segments  # up to the roots of its teeth, as the design has it
+    root = design.module * (17 - 2.5)
+    sun = sun.with_changes(outer0=root / 2, outer1=root / 2)
+    still = np.diag([1e14, 1e14, 1e14, 1e14, 0.0, 1e14]).tolist()
+    held = [b.with_changes(catalogue=None, matrix=still) for b in output.scene.bearings]
+    train = train.with_changes(
+        pinion=pinion.with_changes(gears={"pinion": gear}),
+        wheel=wheel.with_changes(scene=wheel.scene.with_changes(segments=(*others, sun))),
+        output=output.with_changes(scene=output.scene.with_changes(bearings=tuple(held))),
+    )
+    models = "rigid/timoshenko", "timoshenko", "rigid/timoshenko"
+    (turn,) = deflection(Workshop(train), train.point, *models).turns
+    # the design's shaft goes on to a third seat, so that its beam has other elements
+    assert turn.planets[1].once == pytest.approx(design.modulation(third=False), rel=1e-4)
+    assert turn.planets[1].mean == pytest.approx(design.mean_force, rel=1e-10)
