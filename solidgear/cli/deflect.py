@@ -78,7 +78,7 @@ def _train(
     lines: list[Any] = [
         f"{found.title} at {at.label}",
         f"Mesh force {force} along the line of action, {'coast' if at.coast else 'drive'} flank.",
-        tables.misalignment(found, shown),
+        *filter(None, [tables.misalignment(found, shown)]),  # none of planets alone
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
         *turning,

@@ -162,6 +162,8 @@ class Deflections:
 
     def verdict(self) -> str:
         """Sentence on the cheapest model for the misalignment."""
+        if not self.judge.misalignment:
+            return "No gears of two shafts mesh, by whose misalignment models are judged."
         if not self.standings:
             return "One model was solved: which is enough is not judged."
         asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"

@@ -293,10 +293,11 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    if count == 1 and len(turning) == len(system.parts):
+    held = {*turning, *(stage.ring for stage in workshop.stages.values())}
+    still = [part for part in system.parts if part not in held]
+    if count == 1 and not still:
         return ()
     if count == 1:
-        still = [part for part in system.parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
     loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
     where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"

@@ -27,6 +27,8 @@ HELD = [0, 1, 2, 3, 5]
 POSITIONS = 72
 #: positions at which frequencies of planets that are not alike all around are solved
 LOOKED_AT = 6
+#: of the largest force
+ROUNDING = 1e-9
 #: planets at equal angles that make a stage the same all around
 ALIKE = 3
 
@@ -52,6 +54,7 @@ class StageTurn:
     def planets(self) -> list[PlanetTurn]:
         """Planet by planet."""
         once = 2 * np.abs(np.fft.rfft(self.force, axis=0)[1]) / len(self.angle)
+        once[once < ROUNDING * np.abs(self.force).max()] = 0.0
         return [
             PlanetTurn(k, *map(float, (own[0], own.mean(), own.min(), own.max(), amplitude)))
             for k, (own, amplitude) in enumerate(zip(self.force.T, once), 1)
