@@ -314,11 +314,15 @@ def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
         text = text.replace(f'[{name}]\nshaft = "{old}"', f'[{name}]\nshaft = "{new}"')
     text = text.replace('at = "sun"', 'at = "x"').replace('at = "flange"', 'at = "sun"')
     train = sg.load_train(written(text.replace('at = "x"', 'at = "flange"')))
-    for torque in (60.0, -60.0):
-        point = OperatingPoint(torque=torque, of="carrier")
+    for torque in (60.0, -60.0):  # the engine turns about +y, and so do sun and carrier
+        point = OperatingPoint(torque=torque, of="carrier", force=({"at": "sun.sun", "x": 5e3},))
         state = Operating(Workshop(train), RIGID).at(point)
         assert state.outside["load"][4] == pytest.approx(-torque / 6, rel=1e-10)
-        assert planet_forces(state).min() > 0  # teeth press either way
+        (turn,) = deflection(Workshop(train), point, RIGID).turns
+        there = Workshop(turned(train, "stage", turn.angle[20]))
+        found = planet_forces(Operating(there, RIGID).at(point))
+        np.testing.assert_allclose(found, [turn.force[20]] * 2, rtol=1e-7)
+        assert np.ptp(turn.force[20]) > 100 and turn.force.mean() > 0  # teeth press either way
     stage = train_text().split("[planetary.stage]")[1].split("[engine]")[0]
     between = scene_text(0.08, 0.05, "flange").replace("[port]", "[[port]]")
     between += '[[port]]\nname = "next"\nposition = 0.07\nspan = [0.065, 0.075]\n'

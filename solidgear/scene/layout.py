@@ -20,8 +20,8 @@ RATIO_TYPED = 1e-3
 RESERVED = (
     "caution cautions cause contact coordinates damping error facts faults files free ground kept "
     "load local losses mesh meshes mesh_force mesh_forces misalignment displacement mode model "
-    "models modes name notes operation peaks planetary point points ratio reduction response rigid rotor "
-    "rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
+    "models modes name notes operation peaks planetary point points ratio reduction response rigid "
+    "rotor rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
     "unpublished verdict verdicts"
 ).split()
 

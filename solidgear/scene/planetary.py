@@ -296,11 +296,11 @@ class Stage:
 def stage_of(train: Train, name: str) -> Stage:
     """A planetary stage on its shafts."""
     table = train.planetary[name]
-    (sun, port), (carrier, flange) = (word.split(".", 1) if "." in word else (word, "")
-                                      for word in (table.sun, table.carrier))  # fmt: skip
-    port = port or next(iter(train.shafts[sun].gears))
-    flange = flange or train.shafts[carrier].scene.port.name
-    return Stage(name, (sun, carrier), (port, flange), train.shafts[sun].gears[port], table)
+    sun, _, port = table.sun.partition(".")
+    carrier, _, flange = table.carrier.partition(".")
+    gears, flange = train.shafts[sun].gears, flange or train.shafts[carrier].scene.port.name
+    port = port or next(iter(gears))
+    return Stage(name, (sun, carrier), (port, flange), gears[port], table)
 
 
 def stage_problems(train: Train) -> Iterator[SceneError]:

@@ -16,6 +16,7 @@ import numpy as np
 from solidgear.reduction.superelement import PortMotion
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
+from solidgear.scene.layout import outward
 from solidgear.scene.planetary import MATES, PlanetMesh, Stage
 from solidgear.scene.train import Train
 from solidgear.solve.families import FAMILIES
@@ -39,14 +40,16 @@ class StageAtWork:
     Attributes
     ----------
     stage : Stage
-    way : float
-        1 where the sun drives about +y of its scene, else -1.
+    way, turns : float
+        1 where the sun drives, and turns, about +y of its scene, else -1; a sun that is driven turns
+        against its torque on the planets.
     y : float
         Of the middle of the sun in its scene, m.
     """
 
     stage: Stage
     way: float
+    turns: float
     y: float
 
     @property
@@ -192,7 +195,7 @@ def phases_of(driver: Pair | PlanetMesh, stages: Mapping[str, StageAtWork]) -> d
     """Meshes whose errors drive, each with the angle by which it is behind the first, rad."""
     if isinstance(driver, Pair):
         return {driver.name: 0.0}
-    return driver.phases(stages[driver.stage.name].way)
+    return driver.phases(stages[driver.stage.name].turns)
 
 
 def stages_at_work(
@@ -202,10 +205,15 @@ def stages_at_work(
     coast: bool | None = None,
 ) -> dict[str, StageAtWork]:
     """Planetary stages of a train by name, on the flanks that its contacts are those of."""
-    ways = sun_ways(train, found, coast)
+    ways, point = sun_ways(train, found, coast), train.point
+    coasting = coast if coast is not None else point is not None and point.coast
+    reached = {joint.name: side for side, joint in outward(train, train.reference) if joint}
     out = {}
     for stage in train.stages:
+        drives = (reached[stage.name] == stage.shafts[1]) is not coasting
         ports = scenes[stage.shafts[0]].ports
         y = next(port.y for port in ports if port.name == stage.ports[0])
-        out[stage.name] = StageAtWork(stage, ways[stage.name], y)
+        out[stage.name] = StageAtWork(
+            stage, ways[stage.name], ways[stage.name] * (1 if drives else -1), y
+        )
     return out

@@ -110,7 +110,10 @@ def over_a_turn(
         }
         torque = state.mesh_forces[one.stage.name] * abs(one.stage.levers[0])
         found = carrier_turn(one.model, torque, supports, positions=POSITIONS)
-        out.append(StageTurn(one.stage.called, found.angle, found.sun_mesh))
+        force = found.sun_mesh
+        if one.turns != one.way:  # it turns the other way than the stage is told
+            force = np.roll(force[::-1], 1, axis=0)
+        out.append(StageTurn(one.stage.called, found.angle, force))
     return tuple(out)
 
 
