@@ -285,6 +285,7 @@ BAD = {
     'carrier = "carrier" ': ('carrier = "sun"', "sun and carrier are one shaft"),
     'carrier = "carrier"  ': ('carrier = "carrier.rim"', "has no lumped point at 'rim'"),
     f"module = {MODULE}\n": ("", "the gear sun.sun, the sun, needs its module"),
+    f"teeth = {TEETH[0]}\nmodule = {MODULE}\n": ("", "the sun carries no gear; write teeth and"),
     "radial = 100000000.0": ("radial = 0.0", "must be greater than zero"),
     "[planetary.stage.planet.pin]": ("[planetary.stage.ring.pin]", "planets are on no pins"),
 }
