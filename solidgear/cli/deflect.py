@@ -71,7 +71,9 @@ def _train(
     over = tables.over_points(found.points, shown)
     turning = tables.over_a_turn(judge.turns, shown)
     force = ", ".join(
-        shown.text(size, "N", 5) + name.removeprefix("mesh")
+        shown.text(size, "N", 5)
+        + name.removeprefix("mesh")
+        + " (each planet)" * (name in [stage.name for stage in train.stages])
         for name, size in judge.mesh_forces.items()
     )
     lead = f"At {at.label}: {force} along the line of action."
