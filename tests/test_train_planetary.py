@@ -240,7 +240,7 @@ def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_p
 
 
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
-    train = sg.load_train(written(train_text()))
+    train = sg.load_train(written(train_text(0.3)))
     at = [
         Workshop(turned(train, "stage", by)).system(RIGID).modes().frequency_hz for by in (0.0, 0.7)
     ]
