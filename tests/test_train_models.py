@@ -11,6 +11,7 @@ from shafts import moved_by
 import solidgear as sg
 from solidgear.frames import shift
 from solidgear.solve.statics import condense
+from solidgear.studies.train.meshes import mesh_limit
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.naming import TRAIN, mode_names
@@ -245,7 +246,7 @@ def test_cells_of_one_order_follow_waves_of_one_length():
             TRAIN_DATA, kept=4, settings={"solid": {"element": element, "refinement": 0.3}}
         )
         model = shop.shaft("gear", "solid")
-        limit = shop.mesh_limit("gear", model.part)
+        limit = mesh_limit(shop, "gear", model.part)
         reach.append(limit * model.body.mesh["representative_size"])
     assert reach[0] == pytest.approx(reach[1], rel=1e-12)  # both are of second order
 

@@ -658,6 +658,51 @@ MUTATIONS = (
         "tests/test_planetary.py::test_three_planets_have_the_published_frequencies_to_every_digit",
     ),
     Mutation(
+        "planetary: a ring that stands still pulls its planets",
+        "solidgear/system/planetary.py",
+        "PlanetaryStage.joints",
+        "RowSpring(centre, -own, stiffness)",
+        "RowSpring(centre, own, stiffness)",
+        "tests/test_train_planetary.py::"
+        "test_equal_planets_on_a_train_that_holds_the_sun_share_equally_and_torques_balance",
+    ),
+    Mutation(
+        "planetary: teeth of a sun that is driven back touch by the same flank",
+        "solidgear/studies/train/stages.py",
+        "StageAtWork.axes",
+        "np.diag([1.0, self.way, self.way])",
+        "np.eye(3)",
+        "tests/test_train_planetary.py::"
+        "test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back",
+    ),
+    Mutation(
+        "planetary: a ring pushes its housing beside the place where it stands",
+        "solidgear/studies/train/stages.py",
+        "stages_at_work",
+        "point - at",
+        "point",
+        "tests/test_train_joined.py::"
+        "test_a_ring_stands_in_the_housing_whose_mounts_carry_its_torque",
+    ),
+    Mutation(
+        "planetary: errors of all planets come at once",
+        "solidgear/scene/planetary.py",
+        "PlanetMesh.phases",
+        "way * teeth.sun * teeth.azimuths[k - 1]",
+        "0.0",
+        "tests/test_train_planetary.py::"
+        "test_phases_of_planets_let_a_mesh_turn_the_shafts_or_shift_them",
+    ),
+    Mutation(
+        "planetary: a sun rests where its planets have pushed it",
+        "solidgear/studies/train/turn.py",
+        "_support",
+        "state.motion(end)[HELD] - give @ pushed[HELD]",
+        "state.motion(end)[HELD]",
+        "tests/test_train_planetary.py::"
+        "test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_position",
+    ),
+    Mutation(
         "planetary: planets lie in the axes of the carrier",
         "solidgear/system/planetary.py",
         "PlanetaryStage.parts",
@@ -1032,8 +1077,8 @@ MUTATIONS = (
         "torque passes a shaft as if both of its gears had one radius",
         "solidgear/studies/train/layout.py",
         "mesh_forces",
-        "force_on(pair, side, found[pair.name])[4] * turns[side]",
-        "force_on(pair, side, found[pair.name])[4]",
+        "torque_on(joint, side, found) * turns[side]",
+        "torque_on(joint, side, found)",
         "tests/test_train_many.py"
         "::test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth",
     ),

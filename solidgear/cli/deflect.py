@@ -69,18 +69,22 @@ def _train(
     found = of_train.deflect_train(Workshop(train), at, models or of_train.MODELS, progress, every)
     shown, judge = units_named(units), found.judge
     over = tables.over_points(found.points, shown)
+    turning = tables.over_a_turn(judge.turns, shown)
     force = ", ".join(
-        shown.text(size, "N", 5) + name.removeprefix("mesh")
+        shown.text(size, "N", 5)
+        + name.removeprefix("mesh")
+        + " (each planet)" * (name in [stage.name for stage in train.stages])
         for name, size in judge.mesh_forces.items()
     )
     lead = f"At {at.label}: {force} along the line of action."
     lines: list[Any] = [
         f"{found.title} at {at.label}",
         f"Mesh force {force} along the line of action, {'coast' if at.coast else 'drive'} flank.",
-        tables.misalignment(found, shown),
+        *filter(None, [tables.misalignment(found, shown)]),  # none of planets alone
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
         *tables.housing(judge, shown),
+        *turning,
         *over,
         found.verdict(),
         *judge.notes,
@@ -93,9 +97,10 @@ def _train(
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",
-            [tables.misalignment(found, shown), *over, *tables.housing(judge, shown)],
+            [tables.misalignment(found, shown), *turning, *over, *tables.housing(judge, shown)],
             [*judge.notes, *found.cautions],
             shown,
+            judge.turns,
         )
         lines.append(f"Written: {', '.join(map(str, files))}")
     return found.as_dict(), lines

@@ -17,6 +17,7 @@ from solidgear.report.folder import held
 from solidgear.report.nonlinear_files import lead, mixes, over_force, write_nonlinear
 from solidgear.report.units import units_named
 from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import named_pair
 from solidgear.scene.units import quantity
 from solidgear.studies.train import nonlinear as study
 from solidgear.studies.train.comparison import described
@@ -109,7 +110,7 @@ def nonlinear(
     run: Shown,
 ) -> None:
     shop = models.workshop(reduced, train)
-    first, driver = tuple(models.by_shaft(shop.train).values()), shop.train.named_mesh(mesh)
+    first, driver = tuple(models.by_shaft(shop.train).values()), named_pair(shop.train, mesh)
     others = _usual(shop) if against is None else [_mix(shop, text) for text in against]
     shop = _with_teeth(shop, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
@@ -139,6 +140,8 @@ def nonlinear(
         if teeth.others:
             title += f", driven by the {driver.name}"
         cautions = [*slips(shop), *shop.cautions]
+        if shop.train.planetary:
+            cautions.append("teeth of planets are springs that never part")
         files = []
         if out:
             files = write_nonlinear(out, told, title, described(shop), run.units, cautions)

@@ -27,6 +27,7 @@ def write_deflection(
     told: Sequence[Table] = (),
     cautions: Sequence[str] = (),
     units: str | Units = ENGINEERING,
+    turns: Sequence[Any] = (),
 ) -> list[Path]:
     """Write a deflection into a folder.
 
@@ -40,6 +41,8 @@ def write_deflection(
         Before those of displacements and bearings.
     units : str or Units
         Of chart and page.
+    turns : sequence of StageTurn
+        Of planetary stages.
 
     Returns
     -------
@@ -50,6 +53,9 @@ def write_deflection(
     judge = list(models.values())[-1]
     charts = {"deflection": partial(deflection_chart, models, title, shown)}
     lines = {f"deflection_{shaft.name}": tables.line(shaft) for shaft in judge}
+    for turn in turns:
+        charts[f"turn_{turn.stage}"] = partial(turn_chart, turn, shown)
+        lines[f"turn_{turn.stage}"] = tables.turn_lines(turn)
     return write_files(
         folder,
         "deflection",
@@ -60,6 +66,34 @@ def write_deflection(
         lines=lines,
         charts=charts,
         cautions=cautions,
+    )
+
+
+def turn_chart(turn: Any, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
+    """Mesh force of every planet of a stage over a turn of the carrier."""
+    names = [f"planet {k}" for k in range(1, turn.force.shape[1] + 1)]
+    looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(names)}
+    angle = np.degrees(np.append(turn.angle, 2 * np.pi))
+    force = units.values(np.vstack([turn.force, turn.force[:1]]), "N")
+    unit, room = units.unit("N"), 0.12 * np.ptp(force) or 0.12 * np.abs(force).max()
+    panel = Panel(
+        Axis(
+            "carrier in degrees", (0.0, 360.0), ticks={a: f"{a:g}" for a in np.arange(0.0, 361, 60)}
+        ),
+        Axis(f"mesh force in {unit}", (force.min() - room, force.max() + room)),
+        230.0,
+        series=looks,
+        legend={"orient": "top", "columns": 6, "symbolType": "stroke", "symbolStrokeWidth": 3},
+    )
+    for name, own in zip(names, force.T):
+        rows = [{"x": float(a), "y": float(f)} for a, f in zip(angle, own)]
+        panel.draw("line", [{**row, "name": name} for row in rows])
+        told = [
+            readout(name, ("at", f"{r['x']:.0f}", "°"), ("", f"{r['y']:.4g}", unit)) for r in rows
+        ]
+        panel.read([{**row, "readout": say} for row, say in zip(rows, told)], looks[name].colour)
+    return Chart(
+        in_columns([panel], 1), width, f"Mesh forces over a turn of the carrier ({turn.stage})"
     )
 
 

@@ -37,6 +37,45 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     return Table("Misalignment", columns, judge.misalignment, note)
 
 
+def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
+    """Mesh forces of planets over a turn of their carrier, a table for each stage."""
+
+    def column(title: str, key: str) -> Column:
+        return quantity(title, "N", units, lambda planet: getattr(planet, key), 4)
+
+    heads = {
+        "at": "here",
+        "mean": "mean",
+        "least": "least",
+        "most": "largest",
+        "once": "once a turn",
+    }
+    note = (
+        "Of each planet with the sun, and for it spins freely with the ring alike; bearings with the "
+        "stiffness that they have here. Here: at the position of the file; once a turn: amplitude "
+        "at the frequency of the carrier."
+    )
+    return [
+        Table(
+            f"Mesh forces over a turn of the carrier ({one.stage})",
+            [
+                Column("planet", lambda planet: planet.planet),
+                *(column(*h[::-1]) for h in heads.items()),
+            ],
+            one.planets,
+            note,
+        )
+        for one in turns
+    ]
+
+
+def turn_lines(turn: Any) -> Table:
+    """Mesh force of every planet over the angle of the carrier in SI, for other programs."""
+    heads = ["carrier [rad]", *(f"planet {k} [N]" for k in range(1, turn.force.shape[1] + 1))]
+    rows = [[float(a), *map(float, own)] for a, own in zip(turn.angle, turn.force)]
+    return _plain(heads, rows)
+
+
 def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
     """Misalignment and radial bearing loads at all operating points of a train.
 
@@ -234,4 +273,8 @@ def line(shaft: Any) -> Table:
     """Deflection line of a shaft in SI, for other programs."""
     heads = ["y [m]", *(f"{d} [{si.split()[0]}]" for d, si in zip(DOFS, SI_OF))]
     rows = [[float(y), *map(float, six)] for y, six in zip(shaft.stations, shaft.line)]
+    return _plain(heads, rows)
+
+
+def _plain(heads: Sequence[str], rows: Sequence[Sequence[float]]) -> Table:
     return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in heads], rows)

@@ -68,8 +68,10 @@ def write_train(
     """
     verdict, train = results["verdict"], results["train"]
     driven = train["title"]
-    if len(train["meshes"]) > 1:
-        driven += f", driven by the {train['meshes'][0]['name']}"
+    drivers = [mesh["name"] for mesh in train["meshes"]]
+    drivers += [f"mesh {stage['name']} sun" for stage in train["stages"]]
+    if drivers != ["mesh"]:
+        driven += f", driven by the {drivers[0]}"
     teeth, chosen = orders.teeth, units_named(units)
     charts: dict[str, Make] = {
         "response": partial(

@@ -22,6 +22,10 @@ WORDS = {
     "deflection": (
         "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
     ),
+    "turn_": (
+        "Mesh force of every planet over a turn of its carrier, from the position of the file on; "
+        "bearings have the stiffness that they have at rest."
+    ),
     "measured": (
         "The measured spectrum with the orders that its peaks are at this speed, above the computed "
         "mesh force over the same frequencies. Grey lines: natural frequencies."

@@ -18,6 +18,7 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
     """The train in a few lines, each value with where it comes from."""
     status = train["statuses"]
     rows = [row for mesh in train["meshes"] for row in _mesh(mesh, status, units)]
+    rows += [row for stage in train["stages"] for row in _stage(stage, units)]
     for name in train["rotors"]:
         own = train[name]
         rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])
@@ -126,6 +127,27 @@ def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> l
         ["transmission error", _error(mesh["transmission_error"], units), known[1]],
     ]
     return rows if name == "mesh" else [[name, " and ".join(mesh["between"]), ""], *rows]
+
+
+def _stage(stage: Mapping[str, Any], units: Units) -> list[list[str]]:
+    """Rows of one planetary stage."""
+    name, planet, mesh = stage["name"], stage["planet"], stage["mesh"]
+    sun, turning, ring = stage["teeth"]
+    at = ", ".join(f"{degrees(angle + stage['position']):.4g}°" for angle in stage["angles"])
+    stiff = (units.text(mesh[f"{mate}_stiffness"], "N/m", 4) for mate in ("sun", "ring"))
+    pin = f"on pins of {units.text(planet['pin']['radial'], 'N/m', 4)} radially"
+    rows = [
+        [name, f"sun {stage['sun']}, carrier {stage['carrier']}", ""],
+        ["teeth", f"sun {sun}, planets {turning}, ring {ring}, ratio {stage['ratio']:.4f}", ""],
+        ["planets", f"at {at}, pins at {units.text(stage['pin_radius'], 'm', 4)}", ""],
+        ["each planet", f"{units.text(planet['mass'], 'kg', 4)} {pin}", f"{name}.planet"],
+        ["meshes with sun and ring", " and ".join(stiff), f"{name}.mesh"],
+        ["transmission error of each", _error(mesh["transmission_error"], units), f"{name}.mesh"],
+    ]
+    held = "fixed"
+    if stage["ring"] is not None:
+        held = f"{units.text(stage['ring']['mass'], 'kg', 4)} on springs"
+    return [*rows, ["ring", held, f"{name}.ring"]]
 
 
 def mark(status: str) -> Cell:

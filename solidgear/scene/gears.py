@@ -113,7 +113,7 @@ class Shaft(Model):
     """
 
     scene: Scene
-    gears: dict[str, Gear]
+    gears: dict[str, Gear] = {}
     scene_load: Literal["added", "replaced"] | None = None
 
     @model_validator(mode="after")

@@ -8,10 +8,11 @@ from math import isclose
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest
+from solidgear.scene.planetary import stage_problems
 
 if TYPE_CHECKING:
-    from solidgear.scene.gears import Member, Pair
-    from solidgear.scene.train import Train
+    from solidgear.scene.gears import Member
+    from solidgear.scene.train import Joint, Train
 
 #: a ratio that is typed with four digits may differ from that of the teeth by this
 RATIO_TYPED = 1e-3
@@ -19,8 +20,8 @@ RATIO_TYPED = 1e-3
 RESERVED = (
     "caution cautions cause contact coordinates damping error facts faults files free ground kept "
     "load local losses mesh meshes mesh_force mesh_forces misalignment displacement mode model "
-    "models modes name notes operation peaks point points ratio reduction response rigid rotor "
-    "rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
+    "models modes name notes operation peaks planetary point points ratio reduction response rigid "
+    "rotor rotors seconds shaft shafts source speed speeds statuses title train undriven unknowns "
     "unpublished verdict verdicts"
 ).split()
 
@@ -51,12 +52,12 @@ def layout_problems(train: Train) -> Iterator[SceneError]:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
             reason = f"a shaft cannot be called {name!r}; give it another name, without dots"
             yield SceneError(reason, path=("shaft", name))
-    found = [*_meshes(train), *_rotors(train)]
+    found = [*_meshes(train), *_rotors(train), *stage_problems(train)]
     yield from found
     if found:
         return
     yield from _named_twice(train)
-    met = {side for k in range(len(train.meshes)) for side, _ in ends_of(train, k)}
+    met = {side for both in _joined(train) for side in both}
     for side in train.shafts:
         if side not in met:
             reason = "is in no mesh; write a [[mesh]] between it and another shaft, or leave it out"
@@ -72,7 +73,7 @@ def layout_problems(train: Train) -> Iterator[SceneError]:
 
 
 def _meshes(train: Train) -> Iterator[SceneError]:
-    if not train.meshes:
+    if not train.meshes and not train.planetary:
         reason = "this table is missing; write [[mesh]] with between, stiffness and line of action"
         yield SceneError(reason, path=("mesh",))
     for k, mesh in enumerate(train.meshes):
@@ -160,31 +161,37 @@ def with_flanks(
     return pinion, gear
 
 
+def _joined(train: Train) -> list[tuple[str, str]]:
+    """Shafts that each mesh joins, and each planetary stage."""
+    words = [mesh.between for mesh in train.meshes]
+    words += [(stage.sun, stage.carrier) for stage in train.planetary.values()]
+    return [(one.partition(".")[0], two.partition(".")[0]) for one, two in words]
+
+
 def _outward(train: Train, first: str, without: int = -1) -> Iterator[tuple[str, int]]:
-    """Shafts as meshes lead from one to them, each with the mesh it is come by, -1 for the first; by
-    all meshes but one.
+    """Shafts as joints lead from one to them, each with the joint it is come by, -1 for the first; by
+    all joints but one.
     """
     queue, known = deque([(first, -1)]), {first}
     while queue:
         side, by = queue.popleft()
         yield side, by
-        for k, mesh in enumerate(train.meshes):
-            both = [word.partition(".")[0] for word in mesh.between]
+        for k, both in enumerate(_joined(train)):
             if side in both and k != without:
-                other = both[1 - both.index(side)]
+                other = both[side == both[0]]
                 if other not in known:
                     known.add(other)
                     queue.append((other, k))
 
 
 def outward(
-    train: Train, first: str, without: Pair | None = None
-) -> Iterator[tuple[str, Pair | None]]:
-    """Shafts as meshes lead from one to them, each with the pair it is come by, the first by none; by
-    all meshes but one.
+    train: Train, first: str, without: Joint | None = None
+) -> Iterator[tuple[str, Joint | None]]:
+    """Shafts as meshes and planetary stages lead from one to them, each with what it is come by, the
+    first by none; by all but one.
     """
-    for side, k in _outward(train, first, train.pairs.index(without) if without else -1):
-        yield side, None if k < 0 else train.pairs[k]
+    for side, k in _outward(train, first, train.joints.index(without) if without else -1):
+        yield side, None if k < 0 else train.joints[k]
 
 
 def turns_of(train: Train) -> dict[str, float]:
@@ -203,6 +210,11 @@ def turns_of(train: Train) -> dict[str, float]:
 def _loops(train: Train) -> Iterator[SceneError]:
     """Meshes that close a loop and whose teeth ask for another ratio than the rest of it."""
     turns = turns_of(train)
+    for stage in train.stages:
+        sun, carrier = stage.shafts
+        if carrier in {side for side, _ in outward(train, sun, without=stage)}:
+            reason = f"closes a loop: other teeth join the {sun} and the {carrier} as well; open it"
+            yield SceneError(reason, path=("planetary", stage.called))
     for k, pair in enumerate(train.pairs):
         one, two = pair.shafts
         asked = turns[one] / turns[two]

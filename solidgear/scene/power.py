@@ -1,7 +1,7 @@
 """Power of a train: what share of it comes in and goes out where, and passes each mesh and shaft.
 
-A mesh that alone holds two parts of the train together passes what one of them takes.  Meshes of a
-loop divide it by their stiffness, and have no share here.
+A mesh or a planetary stage that alone holds two parts of the train together passes what one of them
+takes.  Meshes of a loop divide it by their stiffness, and have no share here.
 """
 
 from __future__ import annotations
@@ -31,16 +31,18 @@ def shares_of(train: Train) -> dict[str, float]:
 
 
 def flows_of(train: Train) -> dict[str, float | None]:
-    """Share of the power that every mesh passes from its first gear to its second; None in a loop."""
+    """Share of the power that every mesh or stage passes from its first shaft to its second; None in a
+    loop.
+    """
     brought = dict.fromkeys(train.shafts, 0.0)
     for name, share in shares_of(train).items():
         brought[train.rotors[name].shaft] += share
     out: dict[str, float | None] = {}
-    for pair in train.pairs:
-        first, second = pair.shafts
-        behind = {side for side, _ in outward(train, first, without=pair)}
+    for joint in train.joints:
+        first, second = joint.shafts
+        behind = {side for side, _ in outward(train, first, without=joint)}
         flow = fsum(brought[side] for side in behind)
-        out[pair.name] = None if second in behind else flow * (abs(flow) > NONE)
+        out[joint.name] = None if second in behind else flow * (abs(flow) > NONE)
     return out
 
 
@@ -53,9 +55,10 @@ def carried_of(train: Train) -> dict[str, float]:
         ways = [
             share for name, share in shares_of(train).items() if train.rotors[name].shaft == side
         ]
-        for pair in train.pairs:
-            if side in pair.shafts:
-                ways.append((train.flows[pair.name] or 0.0) * (1 if side == pair.shafts[1] else -1))
+        for joint in train.joints:
+            if side in joint.shafts:
+                comes = 1 if side == joint.shafts[1] else -1
+                ways.append((train.flows[joint.name] or 0.0) * comes)
         most = max(fsum(w for w in ways if w > 0), -fsum(w for w in ways if w < 0))
         if most > NONE:
             out[side] = most

@@ -25,9 +25,11 @@ from solidgear.scene.layout import (
 from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.scene.power import carried_of, flows_of, share_problems
 from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
+from solidgear.scene.statuses import statuses_of
 from solidgear.scene.train_housing import TrainHousing, housing_problems
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
@@ -35,6 +37,8 @@ from solidgear.scene.typed import Model
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
+#: what turns one shaft with another
+Joint = Pair | Stage
 
 
 class Train(Model):
@@ -50,6 +54,8 @@ class Train(Model):
         ``engine`` and ``load``, between which torque passes, and others.
     engines, loads : tuple of str
         Rotors that bring torque and that take it, where they are others than these two.
+    planetary : dict of str to Planetary
+        Stages by name.
     losses : Losses
     housing : TrainHousing or None
         Under the bearings of its shafts, which without one stand on ground.
@@ -83,6 +89,7 @@ class Train(Model):
     rotors: dict[str, Rotor]
     engines: tuple[str, ...] = ("engine",)
     loads: tuple[str, ...] = ("load",)
+    planetary: dict[str, Planetary] = {}
     losses: Losses = Losses()
     housing: TrainHousing | None = None
     operation: Operation = ()
@@ -190,12 +197,32 @@ class Train(Model):
             paths = {role: self.gear_path(*end) for role, end in zip(("pinion", "gear"), ends)}
             paths["mesh"] = ("mesh",) if short else ("mesh", k)
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
-            alone = len(self.meshes) == 1
+            alone = len(self.meshes) == 1 and not self.planetary
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
             pinion, gear = (self.shafts[side].member(port) for side, port in ends)
             pinion, gear = with_flanks(self, ends, pinion, gear)
             out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point))
         return tuple(out)
+
+    @cached_property
+    def stages(self) -> tuple[Stage, ...]:
+        """Planetary stages on their shafts."""
+        return tuple(stage_of(self, name) for name in self.planetary)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """All that turns one shaft with another: pairs, then planetary stages."""
+        return (*self.pairs, *self.stages)
+
+    @cached_property
+    def teeth(self) -> tuple[Pair | PlanetMesh, ...]:
+        """Meshes one by one: those of pairs, then those of planets."""
+        return (*self.pairs, *(mesh for stage in self.stages for mesh in stage.meshes))
+
+    @cached_property
+    def drivers(self) -> tuple[Pair | PlanetMesh, ...]:
+        """Meshes whose errors drive the train: those of pairs, then those of all planets together."""
+        return (*self.pairs, *(mesh for stage in self.stages for mesh in stage.together))
 
     @property
     def short(self) -> bool:
@@ -217,11 +244,16 @@ class Train(Model):
         kind = "engine" if name in self.engines else "load" if name in self.loads else "rotor"
         return (kind,) if name == kind else (kind, name)
 
-    def per_turn(self, pair: Pair) -> PerTurn:
-        """Teeth of a mesh that pass in one turn of the engine's shaft."""
-        return PerTurn(pair.pinion.teeth * self.turns[pair.shafts[0]], self.reference)
+    def per_turn(self, pair: Pair | PlanetMesh) -> PerTurn:
+        """Teeth of a mesh that pass in one turn of the engine's shaft; of planets, those of the ring."""
+        teeth, side = (
+            (pair.stage.teeth.ring, pair.stage.shafts[1])
+            if isinstance(pair, PlanetMesh)
+            else (pair.pinion.teeth, pair.shafts[0])
+        )
+        return PerTurn(teeth * self.turns[side], self.reference)
 
-    def named_mesh(self, word: str | None) -> Pair:
+    def named_mesh(self, word: str | None) -> Pair | PlanetMesh:
         """A mesh by its name, with or without the word mesh before it; the first by default.
 
         Raises
@@ -229,16 +261,16 @@ class Train(Model):
         SolidgearError
             If it has no such mesh.
         """
-        for pair in self.pairs:
+        for pair in (*self.drivers, *self.teeth):
             if word in (None, pair.name, pair.label.strip()):
                 return pair
-        known = listed(pair.label.strip() or pair.name for pair in self.pairs)
+        known = listed(pair.label.strip() or pair.name for pair in self.drivers)
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
 
     @cached_property
     def flows(self) -> dict[str, float | None]:
-        """Share of the power that every mesh passes from its first gear to its second, by the tree of
-        meshes; None where a loop divides it by stiffness.
+        """Share of the power that every mesh or stage passes from its first shaft to its second, by the
+        tree of them; None where a loop of meshes divides it by stiffness.
         """
         return flows_of(self)
 
@@ -261,9 +293,9 @@ class Train(Model):
         ------
         SolidgearError
         """
-        if len(self.meshes) > 1:
+        if len(self.teeth) > 1:
             raise SolidgearError(
-                f"{self.name} has {len(self.meshes)} meshes, and what is asked is there for a "
+                f"{self.name} has {len(self.teeth)} meshes, and what is asked is there for a "
                 "train of one mesh only"
             )
         return self.pairs[0]
@@ -298,12 +330,16 @@ class Train(Model):
         """Turns of the engine's shaft in one turn of the load's."""
         return self.turns[self.reference] / self.turns[self.load.shaft]
 
-    def member(self, side: str) -> Member:
-        """A shaft by its name, and the first of its gears."""
+    def named_shaft(self, side: str) -> Shaft:
+        """A shaft by its name."""
         if side not in self.shafts:
             known = listed(self.shafts)
             raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {known}")
-        return self.shafts[side].member()
+        return self.shafts[side]
+
+    def member(self, side: str) -> Member:
+        """A shaft by its name, and the first of its gears."""
+        return self.named_shaft(side).member()
 
     def rotors_of(self, side: str) -> dict[str, Rotor]:
         """Rotors that turn with a shaft."""
@@ -318,7 +354,7 @@ class Train(Model):
         none of its ports; tied as the others are, where all of them are tied alike.
         """
         own = self.shafts[side]
-        scene = own.scene if len(own.gears) > 1 else own.member().scene
+        scene = own.member().scene if len(own.gears) == 1 else own.scene
         ties = {s.attachment for s in scene.stations}
         datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
         stations = [
@@ -345,27 +381,7 @@ class Train(Model):
 
     def statuses(self) -> dict[str, str]:
         """Status of every value of the file that has one, by its key."""
-        out: dict[str, Any] = {}
-        for pair in self.pairs:
-            mesh, name = pair.mesh, pair.name
-            line = "line_of_action" if mesh.line_of_action else "contact_cells"
-            line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
-            out[f"{name}.stiffness"] = mesh.status
-            out[f"{name}.{line}"] = mesh.line_of_action_status
-            out[f"{name}.transmission_error"] = mesh.transmission_error_status
-        for name, rotor in self.rotors.items():
-            out[f"{name}.inertia"] = rotor.status
-            out[f"{name}.spring.stiffness"] = rotor.spring.status
-        out["losses"] = self.losses.status
-        if self.housing is not None:
-            out["housing"] = self.housing.status
-            out |= {f"mount {name}": own.status for name, own in self.housing.mounted.items()}
-        for side, shaft in self.shafts.items():
-            for end, (_, head) in self.heads(side).items():
-                out[end] = head.status
-            for bearing in shaft.scene.bearings:
-                out[f"{side} bearing {bearing.name}"] = bearing.status
-        return {key: str(status) for key, status in out.items()}
+        return statuses_of(self)
 
     def heads(self, side: str) -> dict[str, tuple[str, HeadInertia]]:
         """Rigid heads of a shaft with the port of each, by ``side.head``, or of several gears

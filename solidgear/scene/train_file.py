@@ -22,6 +22,7 @@ from solidgear.scene.gears import Member, Shaft
 from solidgear.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
+from solidgear.scene.planetary import Planetary
 from solidgear.scene.toml_file import name_of, parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_housing import HOUSING, TrainHousing
@@ -94,7 +95,9 @@ class _Tables(Model):
         one = {role: given[role] for role in SHORT if not _several(given.get(role, {"": {}}))}
         return {**given, **{role: {role: own} for role, own in one.items() if own is not None}}
 
-    def train(self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping) -> Train:
+    def train(
+        self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
+    ) -> Train:
         """The train that they describe."""
         rest = {
             key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
@@ -106,8 +109,8 @@ class _Tables(Model):
                     reason = f"an engine or a load is called {name!r} as well; give it another name"
                     raise SceneError(reason, path=(kind, name))
                 every[name] = rotor
-        ends = {"engines": tuple(self.engine), "loads": tuple(self.load)}
-        return Train(shafts=shafts, meshes=meshes, rotors=every, **ends, **rest)
+        more |= {"engines": tuple(self.engine), "loads": tuple(self.load)}
+        return Train(shafts=shafts, meshes=meshes, rotors=every, **more, **rest)
 
 
 class ShortFile(_Tables):
@@ -135,12 +138,13 @@ class LongFile(_Tables):
     """File of a train of any number of shafts."""
 
     shaft: dict[str, Shaft]
-    mesh: tuple[Mesh, ...]
+    mesh: tuple[Mesh, ...] = ()
+    planetary: dict[str, Planetary] = {}
     rotor: dict[str, Rotor] = {}
 
     def whole(self) -> Train:
         """The train."""
-        return self.train(self.shaft, self.mesh, self.rotor)
+        return self.train(self.shaft, self.mesh, self.rotor, planetary=self.planetary)
 
 
 def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written) -> Train:
@@ -158,7 +162,7 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
         problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
-            data["shaft"] = _shafts(problems, raw["shaft"], read_scene)
+            data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
@@ -202,8 +206,12 @@ def _several(table: Any) -> bool:
     return tables and bool(table) and "spring" not in table
 
 
-def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, Shaft]:
-    """Shafts by their names: with a table for each of several gears, or the one gear in their own."""
+def _shafts(
+    problems: Gathered, tables: Any, read_scene: Callable, carriers: bool
+) -> dict[str, Shaft]:
+    """Shafts by their names: with a table for each of several gears, or the one gear in their own;
+    a carrier may have none.
+    """
     if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
         reason = "holds a table for each shaft, such as [shaft.input]"
         raise SceneError(reason, path=("shaft",))
@@ -213,7 +221,7 @@ def _shafts(problems: Gathered, tables: Any, read_scene: Callable) -> dict[str, 
         whole = _read(problems, partial(read_scene, table, path))
         if whole is None:
             continue
-        one = "gears" not in table
+        one = "gears" not in table and (not carriers or "teeth" in table)
         made = problems.read(
             lambda: Member(**whole).shaft if one else Shaft(**whole),  # noqa: B023  read at once
             path,

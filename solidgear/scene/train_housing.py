@@ -108,7 +108,7 @@ class TrainHousing(Model):
     loss : float or None
         Loss factor of an elastic one, 0.01 by default.
     carries : tuple of str
-        Shafts whose bearings stand in it; all by default.
+        Shafts whose bearings stand in it, and with them rings of planetary stages; all by default.
     mounts : tuple of Mount
         ``mount`` in a file.
     points : dict of str to tuple of float
@@ -224,18 +224,16 @@ def housing_problems(train: Train) -> Iterator[SceneError]:
             known = [*train.shafts]
             reason = f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
             yield SceneError(reason, path=(HOUSING, "carries", k))
+    if (own := train.housing.matrices) is not None:
+        scenes = {side: train.shafts[side].scene for side in train.housed}
+        needed = {f"{side}.{b.name}": "bearing" for side in scenes for b in scenes[side].bearings}
+        needed |= {s.ring_point: "ring" for s in train.stages if {*s.shafts} & {*train.housed}}
+        for name, what in needed.items():
+            if name not in (known := [*own.positions]):
+                reason = f"has no point {name!r}{nearest(name, known)}, where that {what} stands"
+                yield SceneError(f"{reason}; there are {listed(known)}", path=(HOUSING, "matrices"))
     for side in train.housed:
         scene = train.shafts[side].scene
-        if (own := train.housing.matrices) is not None:
-            for name in (f"{side}.{b.name}" for b in scene.bearings):
-                if name not in own.positions:
-                    known = [*own.positions]
-                    reason = (
-                        f"has no point {name!r}{nearest(name, known)}, where that bearing stands"
-                    )
-                    yield SceneError(
-                        f"{reason}; there are {listed(known)}", path=(HOUSING, "matrices")
-                    )
         if scene.housing is not None or scene.housing_axial is not None:
             reason = (
                 f"has a [housing] of its own, and that of the train carries the bearings of the {side}; "

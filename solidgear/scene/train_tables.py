@@ -123,7 +123,8 @@ class ErrorTable(Model):
         return self
 
 
-def _constant_or_table(value: Any) -> Any:
+def constant_or_table(value: Any) -> Any:
+    """One number as a table of one order."""
     return value if isinstance(value, (dict, ErrorTable)) else {"orders": (value,)}
 
 
@@ -208,7 +209,7 @@ class Mesh(Model):
     gear_position: Vector | None = None
     loaded_error: Thickness | None = None
     unloaded_error: Thickness | None = None
-    transmission_error: Annotated[ErrorTable, BeforeValidator(_constant_or_table)]
+    transmission_error: Annotated[ErrorTable, BeforeValidator(constant_or_table)]
     transmission_error_status: Status = "assumed"
     stiffness_cycle: StiffnessCycle | None = None
     line_cycle: LineCycle | None = None

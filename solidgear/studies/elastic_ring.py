@@ -15,8 +15,8 @@ from solidgear.models.harmonic.patch import Patch, PatchMotion
 from solidgear.reduction.rubin import rubin
 from solidgear.reduction.waves import with_waves
 from solidgear.scene import Scene
+from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.system.parts import Part, Placed
-from solidgear.system.planetary_teeth import PlanetaryTeeth
 
 
 def elastic_ring(

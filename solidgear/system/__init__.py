@@ -2,6 +2,7 @@
 source leaves out.
 """
 
+from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.system.carrier_turn import CarrierTurn, FixedSupport, PlanetError, carrier_turn
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import (
@@ -19,7 +20,6 @@ from solidgear.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
 from solidgear.system.planetary import PlanetaryStage
 from solidgear.system.planetary_members import CentralMember, Planet
 from solidgear.system.planetary_modes import PlanetaryMode
-from solidgear.system.planetary_teeth import PlanetaryTeeth
 from solidgear.system.system import System
 
 __all__ = [

@@ -29,7 +29,7 @@ and Vibration 325, 2009, p. 397-420.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, pi, sqrt
@@ -259,17 +259,36 @@ class PlanetaryStage:
             support = getattr(self, name).support
             if support.any():
                 out[f"{name} bearing"] = BearingSpring(f"{name}.centre", support)
+        return out | self.joints(self._port)
+
+    def joints(
+        self, port: Callable[[str, str], tuple[str, PortMotion] | None], before: str = ""
+    ) -> dict[str, Link]:
+        """Pins and meshes of all planets, on any ports.
+
+        Parameters
+        ----------
+        port : callable
+            Of ``sun``, ``ring`` or ``carrier`` and the name of a planet: the end that a link acts on
+            there, and its port in the axes of the stage; None for the ground.
+        before : str
+            Put before the names of planets where they are parts of a larger system.
+        """
+        out: dict[str, Link] = {}
         for k, (name, planet) in enumerate(zip(self._names, self.planets)):
-            carrier, _ = self._port("carrier", name)
-            out[f"{name} pin"] = BearingSpring(f"{name}.centre", planet.support, carrier)
+            centre = f"{before}{name}.centre"
+            carrier = port("carrier", name)
+            to = carrier and carrier[0]
+            out[f"{before}{name} pin"] = BearingSpring(centre, planet.support, to)
             for mate, (outer, inner) in self.meshes(k).items():
-                end, port = self._port(mate, name)
-                own = body_of(planet, {}).ports["centre"]
-                rows = self._rows(outer, port)
-                stiffness = getattr(planet, f"{mate}_mesh") / len(rows)
-                out[f"{name} {mate} mesh"] = RowSpring(
-                    end, rows, stiffness, f"{name}.centre", self._rows(inner, own)
-                )
+                there = port(mate, name)
+                own = self._rows(inner, body_of(planet, {}).ports["centre"])
+                stiffness = getattr(planet, f"{mate}_mesh") / len(own)
+                spring = RowSpring(centre, -own, stiffness)
+                if there is not None:
+                    rows = self._rows(outer, there[1])
+                    spring = RowSpring(there[0], rows, stiffness, centre, own)
+                out[f"{before}{name} {mate} mesh"] = spring
         return out
 
     def _port(self, member: str, planet: str) -> tuple[str, PortMotion]:

@@ -102,7 +102,7 @@ class Phases:
                 for k, p in enumerate(stage.planets, 1)
             ]
         )
-        for phase, pattern in enumerate(_patterns([p.azimuth for p in stage.planets])):
+        for phase, pattern in enumerate(patterns([p.azimuth for p in stage.planets])):
             add(phase, np.einsum("pk,pic->kic", pattern, planets))
         self._rows = [np.vstack(own) for own in rows]
 
@@ -133,7 +133,7 @@ class Phases:
         return shapes @ np.linalg.eigh(form)[1]
 
 
-def _patterns(azimuths: list[float]) -> list[np.ndarray]:
+def patterns(azimuths: list[float]) -> list[np.ndarray]:
     """Orthonormal patterns (N, k) over the planets: all the same, cosine and sine, all others."""
     raw = np.column_stack([np.ones(len(azimuths)), np.cos(azimuths), np.sin(azimuths)])
     size = np.sqrt(len(azimuths))

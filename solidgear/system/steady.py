@@ -53,6 +53,8 @@ PER_DECADE = 60
 FORETOLD = 0.25
 #: halvings of an interval, and points, at most
 HALVINGS, MOST_POINTS = 12, 6_000
+#: a peak that stands out from the dip beside it by less than this is a ripple, dB
+STANDS_OUT = 0.5
 #: motions this much smaller than the largest are rounding
 NOISE = 1e-10
 #: frequencies that are solved at once, one by one in modes
@@ -327,6 +329,19 @@ def peaks(size: np.ndarray) -> np.ndarray:
     """Places of local maxima of a curve, ends left out; the first of equal neighbours."""
     inner = size[1:-1]
     return 1 + np.flatnonzero((inner > size[:-2]) & (inner >= size[2:]))
+
+
+def stands_out(size: np.ndarray, k: int) -> bool:
+    """Tell whether a local maximum rises by more than a ripple above the dips beside it."""
+    left, right = size[:k][::-1], size[k + 1 :]
+    least = size[k] / 10 ** (STANDS_OUT / 20)
+
+    def dips(side):
+        higher = np.flatnonzero(side > size[k])
+        near = side[: higher[0]] if len(higher) else side
+        return bool(len(near) and near.min() < least)
+
+    return dips(left) and dips(right)
 
 
 def _decibels(motions: np.ndarray, largest: np.ndarray) -> np.ndarray:

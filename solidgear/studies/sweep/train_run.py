@@ -183,7 +183,7 @@ def sweep_train(
     usual = variants.train(first)
     usual.named_mesh(mesh)
     for side in given:
-        usual.member(side)
+        usual.named_shaft(side)
     mix = {side: given.get(side, JUDGE) for side in usual.shafts}
     how = reduction, kept, dict(settings or {}), mesh
     task = TrainTask(variants, mix, asked, n, max_frequency, *how)

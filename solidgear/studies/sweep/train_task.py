@@ -22,6 +22,7 @@ from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.operation import SHAFT, OperatingState, settled
 from solidgear.studies.train.respond import Drive
 from solidgear.studies.train.shaft import LUMPED, checked_rung
+from solidgear.studies.train.turn import over_a_turn, told_over_a_turn
 
 #: what a row may tell, by the commands that tell the same of one train
 MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
@@ -78,9 +79,10 @@ class TrainTask:
         out |= self.variants.columns
         out["status"] = str
         if train.operation:
-            out |= {"torque": float} | {force_of(pair.name): float for pair in train.pairs}
+            out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
         if train.operation and DEFLECTION in self.ask:
             out |= dict.fromkeys(map(misaligned, measured_names(train)), float)
+            out |= {once(stage.called): float for stage in told_over_a_turn(train)}
             out |= dict.fromkeys(_loads(train), float)
         if train.operation:
             out["unloaded"] = str
@@ -134,6 +136,8 @@ class TrainTask:
                 misaligned(one.name): float(one.row @ told.coordinates)
                 for one in misalignment(shop, told.system)
             }
+            turns = over_a_turn(operating.workshop, told, told.models)
+            out |= {once(turn.stage): max(one.once for one in turn.planets) for turn in turns}
             out |= _carried(told)
         return at, out
 
@@ -177,6 +181,11 @@ def statics_of(model: str) -> str:
 def force_of(mesh: str) -> str:
     """Column of the force of a mesh at rest."""
     return f"mesh_force{mesh.removeprefix('mesh').replace(' ', '_')}"
+
+
+def once(stage: str) -> str:
+    """Column of what the largest mesh force of a planet varies by once a turn of its carrier."""
+    return f"once_a_turn_{stage.replace(' ', '_')}"
 
 
 def misaligned(name: str) -> str:

@@ -240,7 +240,7 @@ def at_speed(
     refuse_share("fit", fit)
     tops = spectrum.peaks() if spectrum is not None else []
     if fit is not None:
-        turns, told = _fitted(tops, train.per_turn(train.pairs[0]), turns, fit, told)
+        turns, told = _fitted(tops, train.per_turn(train.drivers[0]), turns, fit, told)
     lines = lines_at(train_orders(train, _angles(train)), turns)
     known = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
     met = _coincidences(lines, known, turns, within)

@@ -17,6 +17,7 @@ from solidgear.ladder.meshes import HARMONIC
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import PlanetMesh
 from solidgear.scene.train import Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
@@ -83,7 +84,9 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     facts += [line for met in workshop.contacts.values() for line in wrench_lines(met)]
     # those of the shafts are told with their guards
     cautions = [*workshop.cautions, *slips_of_meshes(workshop), *_losses(train)]
-    for pair in train.pairs:
+    for pair in train.drivers:
+        if isinstance(pair, PlanetMesh) and pair.mate == "ring":
+            continue  # it has the table of the sun
         of = f"{pair.name}: " if pair.label else ""
         cautions += [of + line for line in _error(pair, limit)]
     try:
@@ -119,6 +122,14 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
             f"{of}{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / teeth:.0f} "
             f"rpm of the {teeth.of}"
         )
+    for stage in train.stages:
+        mesh, own = stage.table.mesh, stage.teeth
+        yield (
+            f"{stage.called}: {own.sun}, {own.planet} and {own.ring} teeth, {len(own.azimuths)} "
+            f"planets, one turn of the {stage.shafts[1]} in {stage.ratio:.6g} of the "
+            f"{stage.shafts[0]}; pins at {1e3 * own.pin_radius:.6g} mm, meshes "
+            f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
+        )
     loss = train.losses
     yield (
         "losses are read as loss factors, twice a damping ratio: "
@@ -141,7 +152,7 @@ def _losses(train: Train) -> Iterator[str]:
         )
 
 
-def _error(pair: Pair, limit: float) -> Iterator[str]:
+def _error(pair: Pair | PlanetMesh, limit: float) -> Iterator[str]:
     table = pair.mesh.transmission_error
     if table.frequency and table.frequency[-1] < limit:
         yield (

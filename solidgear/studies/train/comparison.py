@@ -12,6 +12,7 @@ from solidgear.machine.environment import environment
 from solidgear.report.turning import Turned
 from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
 from solidgear.studies.train.housing import alone_hz
 from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
@@ -146,6 +147,7 @@ def described(workshop: Workshop) -> dict[str, Any]:
         "ratio": train.ratio,
         "shafts": [*train.shafts],
         "meshes": [_mesh(workshop, pair) for pair in train.pairs],
+        "stages": [_stage(stage) for stage in train.stages],
         "rotors": [*train.rotors],
         "losses": train.losses.model_dump(mode="json", exclude={"status"}),
         "statuses": train.statuses(),
@@ -185,6 +187,22 @@ def _housing(train: Train) -> dict[str, Any]:
         "points": {name: own.known[name] for name in own.told[1:]},
         "elastic": own.matrices is not None,
         "alone_hz": alone_hz(own).tolist(),
+    }
+
+
+def _stage(stage: Stage) -> dict[str, Any]:
+    """A planetary stage as plain data."""
+    teeth, ends = stage.teeth, zip(stage.shafts, stage.ports)
+    sun, carrier = (f"{side}.{port}" for side, port in ends)
+    return {
+        "name": stage.called,
+        "sun": sun,
+        "carrier": carrier,
+        "teeth": [teeth.sun, teeth.planet, teeth.ring],
+        "ratio": stage.ratio,
+        "angles": [*teeth.azimuths],
+        "pin_radius": teeth.pin_radius,
+        **stage.table.model_dump(mode="json", include={"position", "planet", "mesh", "ring"}),
     }
 
 

@@ -23,6 +23,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, told_mix
 from solidgear.studies.train.static_bars import StaticBars
+from solidgear.studies.train.turn import StageTurn, over_a_turn
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
@@ -69,6 +70,8 @@ class TrainDeflection:
         Load (6) of the housing on each mount, N and N m.
     seconds : float
         To settle, once bodies are there.
+    turns : tuple of StageTurn
+        Of planetary stages.
     """
 
     point: OperatingPoint
@@ -80,6 +83,7 @@ class TrainDeflection:
     notes: tuple[str, ...]
     seconds: float
     mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
+    turns: tuple[StageTurn, ...] = ()
 
     @property
     def mesh_force(self) -> float:
@@ -102,6 +106,7 @@ class TrainDeflection:
             "misalignment": {m.name: _plain(m) for m in self.misalignment},
             "displacement": _each(self.displacement),
             "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
+            "turns": {one.stage: one.as_dict() for one in self.turns},
             "notes": list(self.notes),
             "seconds": self.seconds,
         }
@@ -169,6 +174,8 @@ class Deflections:
 
     def verdict(self) -> str:
         """Sentence on the cheapest model for the misalignment."""
+        if not self.judge.misalignment:
+            return "No gears of two shafts mesh, by whose misalignment models are judged."
         if not self.standings:
             return "One model was solved: which is enough is not judged."
         asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
@@ -333,6 +340,8 @@ def _told(
             moved[told_as] = _six(f"of {end}", MOVED, system.motion(end), state, bars)
     if workshop.train.housing is not None:
         moved[HOUSING] = _six("of its centre", MOVED, system.motion(BOX), state, bars)
+        if workshop.train.stages:
+            notes.append("forces over a turn of a carrier are not told beside a housing")
     mounts = {
         name: _six("on it", FORCE_UNITS, rows, state, bars)
         for name, rows in mount_rows(workshop.train, system).items()
@@ -347,6 +356,7 @@ def _told(
         tuple(notes),
         seconds,
         mounts,
+        over_a_turn(workshop, state, rungs),
     )
 
 

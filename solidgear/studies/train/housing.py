@@ -11,6 +11,7 @@ import numpy as np
 from solidgear.frames import DOF_NAMES
 from solidgear.reduction.superelement import PortMotion
 from solidgear.scene.housing_matrices import HousingMatrices
+from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import CENTRE, HOUSING, LOSS, TrainHousing
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
@@ -91,6 +92,15 @@ def under(train: Train, side: str, station: str) -> str | None:
     own, end = train.housing.matrices, f"{side}.{station}"
     # wherever a bearing stands, a rigid housing moves it by the motion of its centre of mass
     return BOX if own is None or end not in own.positions else f"{HOUSING}.{end}"
+
+
+def ring_in(train: Train, stage: Stage) -> tuple[str, np.ndarray] | None:
+    """Port of the housing that holds the ring of a stage, and its place, m; None of one on ground."""
+    if (box := train.housing) is None or not {*stage.shafts} & {*train.housed}:
+        return None
+    if box.matrices is None:
+        return BOX, np.array(box.centre)
+    return f"{HOUSING}.{stage.ring_point}", box.matrices.positions[stage.ring_point]
 
 
 def standing_in(train: Train, side: str, links: dict[str, Link]) -> dict[str, Link]:

@@ -333,7 +333,7 @@ class _Judge:
         self.found, self.seen = seen_modes(workshop, self.system, highest)
         self.names = mode_names(workshop, self.system, self.found)
         self.driven = driven(self.system, self.found)[self.found.rigid :]
-        drives = [Drive(workshop, JUDGE, mesh=pair.name) for pair in workshop.train.pairs]
+        drives = [Drive(workshop, JUDGE, mesh=one.name) for one in workshop.train.drivers]
         self.drives = [(drive, drive.grid(highest)) for drive in drives]
         solid, grid = (JUDGE,) * len(workshop.scenes), self.drives[0][1]
         self.responses = {solid: respond(workshop, *solid, highest_hz=highest, frequency_hz=grid)}

@@ -22,6 +22,7 @@ from solidgear.bearings.passing import passing, working_angle
 from solidgear.bearings.solved import solved
 from solidgear.scene import Scene
 from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
 from solidgear.studies.loading import shaft
 
@@ -110,6 +111,8 @@ def train_orders(
     for pair in train.pairs:
         wheels = {side: turns[side] for side in pair.shafts}
         out += of_sidebands(pair.name, train.per_turn(pair), wheels, numbers)
+    for stage in train.stages:
+        out += of_stage(stage, turns, train.per_turn(stage.meshes[0]), numbers)
     for side, own in train.shafts.items():
         for bearing in own.scene.bearings:
             if bearing.catalogue is not None:
@@ -142,6 +145,29 @@ def of_sidebands(
                 for sign, add in (("-", -k), ("+", k)):
                     words = f"{name} {n} {sign} {wheel} {k}"
                     yield _exact("sideband", words, source, n * per_turn + add * turns)
+
+
+def of_stage(
+    stage: Stage, turns: Mapping[str, float], per_turn: float, numbers: Iterable[int] = MESH_ORDERS
+) -> Iterator[Order]:
+    """Harmonics of the meshes of planets, with sidebands of the carrier, and of planets that pass a
+    point of the ring, one of the sun, and turn.
+    """
+    sun, carrier = stage.shafts
+    count, slow, name = len(stage.teeth.azimuths), turns[carrier], stage.called
+    yield from of_mesh(stage.name, per_turn, numbers)
+    passing = {carrier: slow, f"{name} planets": count * slow}
+    yield from of_sidebands(stage.name, per_turn, passing, numbers)
+    apart = count * (turns[sun] - slow)
+    spin = slow * stage.teeth.ring / stage.teeth.planet
+    rolling = (
+        ("planets", "planets that pass a point of the ring", count * slow),
+        ("sun", "planets that pass a point of the sun", apart),
+        ("planet", "turns of a planet against the carrier", spin),
+    )
+    for word, source, each in rolling:
+        for n in numbers:
+            yield _exact("shaft", f"{name} {word} {n}", source, n * each)
 
 
 def _exact(kind: str, name: str, source: str, per_turn: float) -> Order:

@@ -14,10 +14,12 @@ import numpy as np
 from solidgear.body import FURTHER
 from solidgear.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.bounds.safety import LOCAL
+from solidgear.elements import ELEMENTS
 from solidgear.machine.threads import pinned
 from solidgear.scene.coned import coned
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.shaft import JUDGE
+from solidgear.system.parts import Part, Placed
 from solidgear.system.system import System
 
 #: modes above those asked for that are looked at: the gap to the highest one counts, and near modes
@@ -81,3 +83,23 @@ def mesh_bars(
     bars = (1 - np.sqrt(least / value))[:n]
     workshop.bars[tuple(rungs.values())] = bars
     return bars
+
+
+def mesh_limit(workshop: Workshop, side: str, part: Part) -> float:
+    """Frequency up to which the mesh under a part follows shear waves, Hz; infinite for what has
+    no cells.
+
+    A quarter of the order in radians a cell: at 0.6 of it frequencies of the pinion, the ring
+    gear and a stepped shaft were off by 0.3 % at most at order 4, at all of it by some 2 % at
+    order 2.
+    """
+    inner = part.part if isinstance(part, Placed) else part
+    model = workshop._made.get((side, getattr(inner, "fidelity", "")))
+    cell = model.body.mesh.get("representative_size") if model is not None else None
+    if model is None or not cell:
+        return np.inf
+    facts = model.body.mesh
+    order = facts.get("order") or ELEMENTS[facts["element"]].order
+    materials = {segment.material for segment in workshop.scenes[side].segments}
+    shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
+    return float(order * shear / (8 * np.pi * cell))

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solidgear.body import Body
-from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed, nearest, show
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
@@ -27,6 +26,7 @@ from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
 from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
 from solidgear.studies.train.space import overlaps
+from solidgear.studies.train.stages import StageAtWork, stages_at_work
 from solidgear.system.gear_mesh import MeshVector
 from solidgear.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.system.parts import Inertia, Part, Placed, RigidBody
@@ -81,6 +81,9 @@ class Workshop:
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
         self.contacts: dict[str, Contact] = contacts(train)
         self.places = places(train, self.contacts, self.scenes)
+        self.stages: dict[str, StageAtWork] = stages_at_work(
+            train, self.contacts, self.scenes, self.places
+        )
         point = train.point
         self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
 
@@ -127,25 +130,6 @@ class Workshop:
                 seconds = perf_counter() - start
                 self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
         return self._made[side, rung]
-
-    def mesh_limit(self, side: str, part: Part) -> float:
-        """Frequency up to which the mesh under a part follows shear waves, Hz; infinite for what has
-        no cells.
-
-        A quarter of the order in radians a cell: at 0.6 of it frequencies of the pinion, the ring
-        gear and a stepped shaft were off by 0.3 % at most at order 4, at all of it by some 2 % at
-        order 2.
-        """
-        inner = part.part if isinstance(part, Placed) else part
-        model = self._made.get((side, getattr(inner, "fidelity", "")))
-        cell = model.body.mesh.get("representative_size") if model is not None else None
-        if model is None or not cell:
-            return np.inf
-        facts = model.body.mesh
-        order = facts.get("order") or ELEMENTS[facts["element"]].order
-        materials = {segment.material for segment in self.scenes[side].segments}
-        shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
-        return float(order * shear / (8 * np.pi * cell))
 
     def take(self, side: str, rung: str, body: Body) -> None:
         """Take in a body that is there already as the model of a shaft.
@@ -273,6 +257,9 @@ class Workshop:
         if coast not in self._flanks:
             other = copy(self)
             other.contacts, other.bars = contacts(self.train, coast), {}
+            other.stages = stages_at_work(
+                self.train, other.contacts, self.scenes, self.places, coast
+            )
             self._flanks[coast] = other
         return self._flanks[coast]
 
@@ -329,6 +316,9 @@ class Workshop:
         for pair in train.pairs:
             ends = self.teeth(pair, parts)
             links[pair.name] = mesh_spring(*ends[0], *ends[1], self.contacts[pair.name].stiffness)
+        for stage in self.stages.values():
+            parts |= stage.parts(*self.places[stage.stage.shafts[0]])
+            links |= stage.links
         return System(parts, links)
 
     def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
@@ -390,7 +380,9 @@ class Workshop:
             out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
         if train.housing is not None:
             out |= losses_of(train.housing)
-        return out | {pair.name: loss.mesh for pair in train.pairs}
+        for stage in self.stages.values():
+            out |= dict.fromkeys(stage.links, loss.bearings)
+        return out | {mesh.name: loss.mesh for mesh in train.teeth}
 
     def seconds(self, *models: str) -> float:
         """To build and reduce all shafts."""

@@ -12,11 +12,12 @@ from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.housing import loose_ways, seat_motion
 from solidgear.studies.train.local import local_lines, undriven, waves_of
-from solidgear.studies.train.meshes import mesh_bars
+from solidgear.studies.train.meshes import mesh_bars, mesh_limit
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
 from solidgear.studies.train.strain import mounts_together
+from solidgear.studies.train.turn import frequencies_over_a_turn
 from solidgear.system.system import System
 
 #: a frequency whose bound is above this is not resolved by the reduction
@@ -80,6 +81,8 @@ class TrainModes:
         What harmonics at a local mesh point add, in words.
     speeds : str
         Shaft that the speeds of modes are told of.
+    turn : str
+        What a turn of a carrier changes, in words.
     """
 
     train: str
@@ -98,6 +101,7 @@ class TrainModes:
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
     local: tuple[str, ...] = ()
     speeds: str = "pinion"
+    turn: str = ""
 
     def as_dict(self) -> dict:
         """Plain data that JSON can hold."""
@@ -122,7 +126,7 @@ class TrainModes:
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
-        lines += [*self._still(), *self.local]
+        lines += [*self._still(), *self.local, *filter(None, [self.turn])]
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven"
             + "; it says nothing of the meshes of the shafts." * (not meshed)
@@ -225,6 +229,8 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     refuse_unresolved(workshop, system, limit)
     names, moved = mode_names(workshop, system, found), driven(system, found)
     found = replace(found, energy=mounts_together(found.energy))
+    for stage in workshop.stages.values():
+        found = replace(found, energy=stage.strained(found.energy))
     most = found.dominant()
     elastic = len(found.frequency_hz) - found.rigid
     bars = mesh_bars(workshop, system, rungs, elastic)
@@ -232,7 +238,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
-        rpm = 60 * float(hz) / train.per_turn(train.pairs[0])
+        rpm = 60 * float(hz) / train.per_turn(train.drivers[0])
         bound = float(found.error_bound[k])
         modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
     still = {}
@@ -257,6 +263,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
         train.reference,
+        frequencies_over_a_turn(workshop, rungs, names),
     )
 
 
@@ -275,7 +282,7 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             f"{0.9 * cut:.0f} Hz"
         )
     for side in workshop.scenes:
-        at = workshop.mesh_limit(side, system.parts[side])
+        at = mesh_limit(workshop, side, system.parts[side])
         if limit > at:
             raise SolidgearError(
                 f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {at:.0f} Hz: "
@@ -289,11 +296,11 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    parts = [part for part in system.parts if part != HOUSING or HOUSING in turning]
-    if count == 1 and turning == parts:
+    held = {*turning, HOUSING, *(stage.ring for stage in workshop.stages.values())}
+    still = [part for part in system.parts if part not in held]
+    if count == 1 and not still:
         return ()
     if count == 1:
-        still = [part for part in parts if part not in turning]
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
     loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
     if HOUSING in turning:

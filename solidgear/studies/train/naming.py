@@ -29,6 +29,8 @@ from solidgear.system.system import System
 #: a share of the kinetic energy that names a mode alone
 ALONE = 0.4
 TRAIN = "train rotation"
+#: ends of names of motions about an axis
+TURNING = ("torsion", "rotational")
 #: a shaft all of whose ports move with less than this of the energy of the mode does not move
 #: there: cells around a ring let some 1e-6 through
 UNDRIVEN = 1e-4
@@ -39,6 +41,8 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
     """Fractions of the kinetic energy of every mode, by part and kind of motion."""
     out: dict[str, np.ndarray] = {}
     momentum = system.mass @ shapes
+    for stage in workshop.stages.values():
+        out |= stage.kinetic(system, shapes)
     for part in system.parts:
         place = system.place(part)
         each = shapes[place] * momentum[place]
@@ -46,8 +50,8 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         if part == HOUSING:
             out |= shares_of(system, own, shapes)
             continue
-        if part not in workshop.scenes:
-            out[f"{part} torsion"] = own
+        if part not in workshop.scenes:  # bodies of planetary stages are told together
+            out |= {f"{part} torsion": own} if part in workshop.train.rotors else {}
             continue
         for n, places in waves_of(system.parts[part]).items():
             out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[places].sum(axis=0), 0.0)
@@ -117,7 +121,7 @@ def mode_names(workshop: Workshop, system: System, found: SystemModes) -> list[s
     for k, frequency in enumerate(found.frequency_hz):
         order = np.argsort(-table[:, k], kind="stable")
         if frequency == 0:
-            turns = all("torsion" in labels[i] for i in order if table[i, k] > 1e-6)
+            turns = all(labels[i].endswith(TURNING) for i in order if table[i, k] > 1e-6)
             name = TRAIN if turns else "free motion"
         elif table[order[0], k] >= ALONE:
             name = labels[order[0]]

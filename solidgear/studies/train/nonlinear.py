@@ -24,6 +24,7 @@ from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.scene.gears import Pair
 from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.planetary import named_pair
 from solidgear.studies.train.apart import largest, searched
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
 from solidgear.studies.train.layout import mesh_forces
@@ -69,7 +70,7 @@ def teeth_of(
         teeth of a loop would have to pull, or another mesh varies over its own cycle.
     """
     train = workshop.train
-    pair, point = train.named_mesh(mesh), train.point
+    pair, point = named_pair(train, mesh), train.point
     if not any(one.mesh.backlash is not None for one in train.pairs):
         raise SolidgearError(
             'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
@@ -106,7 +107,7 @@ def teeth_of(
     others = [
         Teeth(gaps.get(name, 0.0) / 2, float(force), (), source, mesh=name)
         for name, force in forces.items()
-        if name != pair.name
+        if name != pair.name and name in workshop.contacts
     ]
     return Teeth(
         (pair.mesh.backlash or 0.0) / 2,
@@ -166,7 +167,7 @@ def backlash_model(
     highest_hz : float
         Modes above it give way like springs.
     """
-    pair, loss, damped = workshop.train.named_mesh(teeth.mesh), workshop.losses(), 0.0
+    pair, loss, damped = named_pair(workshop.train, teeth.mesh), workshop.losses(), 0.0
     if teeth.contact_loss_hz:
         damped = [loss.pop(one.mesh) for one in teeth.every][0]
     system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name

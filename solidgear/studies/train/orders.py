@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.scene.planetary import PlanetMesh
 from solidgear.scene.train import PerTurn
 from solidgear.studies.train.kinematics import MESH_ORDERS, of_mesh, of_shaft
 from solidgear.studies.train.models import Workshop
@@ -136,16 +137,19 @@ def order_map(
     top = 60 * highest / teeth
     hz = drive.grid(highest)
     lines = []
-    for n, order in enumerate(of_mesh(driven.name, teeth, range(1, count + 1)), start=1):
+    stage = driven.stage if isinstance(driven, PlanetMesh) else None
+    name = driven.name if stage is None else stage.name
+    for n, order in enumerate(of_mesh(name, teeth, range(1, count + 1)), start=1):
         own = OrderLine(order.name, order.per_turn)
         if n <= given:
             force = np.abs(drive.mesh(hz, n)[1])
             own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
         lines.append(own)
-    for pair in train.pairs:
-        if pair.name != driven.name:
-            orders = of_mesh(pair.name, train.per_turn(pair), range(1, count + 1))
-            lines += [OrderLine(o.name, o.per_turn) for o in orders]
+    others = {pair.name: train.per_turn(pair) for pair in train.pairs if pair.name != driven.name}
+    others |= {s.name: train.per_turn(s.meshes[0]) for s in train.stages if s is not stage}
+    for name, passing in others.items():
+        orders = of_mesh(name, passing, range(1, count + 1))
+        lines += [OrderLine(o.name, o.per_turn) for o in orders]
     for side, turns in train.turns.items():
         lines += [OrderLine(o.name, o.per_turn) for o in of_shaft(side, turns, shaft_orders)]
     modes = train_modes(workshop, *models, max_frequency=highest).modes

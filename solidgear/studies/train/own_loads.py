@@ -74,13 +74,13 @@ def scene_load(
 
 
 def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
-    """(3,) force of all teeth on a shaft, in the axes of its scene, N."""
+    """(3,) force of all teeth on a shaft, in the axes of its scene, N; equal planets have none."""
     each = [
         forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
         for pair in workshop.train.pairs
         if side in pair.shafts
     ]
-    return sum(each[1:], each[0])
+    return np.sum([np.zeros(3), *each], axis=0)
 
 
 def _newtons(force: np.ndarray) -> str:

@@ -30,7 +30,7 @@ def seen_modes(
     highest : float
         Hz; the first elastic mode is always there.
     ends : sequence of str, optional
-        Ports that are looked at, as ``side.port``; by default all of both shafts.
+        Ports that are looked at, as ``side.port``; by default all.
 
     Returns
     -------
@@ -42,11 +42,11 @@ def seen_modes(
     count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
     found = system.modes(count)
     elastic = found.shapes[:, found.rigid :]
-    scale = {
-        side: np.array([1.0] * 3 + [workshop.scenes[side].length] * 3)[:, None]
-        for side in workshop.scenes
-    }
-    scale[HOUSING] = max(scale.values(), key=np.max)
+    lengths = {side: scene.length for side, scene in workshop.scenes.items()}
+    lengths[HOUSING] = max(lengths.values())
+    for stage in workshop.stages.values():
+        lengths |= dict.fromkeys(stage.bodies, stage.stage.teeth.pin_radius)
+    scale = {part: np.array([1.0] * 3 + [own] * 3)[:, None] for part, own in lengths.items()}
     ends = ports_of(workshop) if ends is None else ends
     rows = [scale[end.partition(".")[0]] * (system.motion(end) @ elastic) for end in ends]
     rows += [
@@ -57,10 +57,13 @@ def seen_modes(
 
 
 def ports_of(workshop: Workshop) -> list[str]:
-    """Ports of all shafts, the lumped point of each before its others, and that of the housing."""
-    box = [BOX] if workshop.train.housing is not None else []
+    """Ports of all shafts, the lumped point of each before its others, centres of planets and that of
+    the housing.
+    """
     scenes = workshop.scenes.items()
-    return [f"{side}.{s.name}" for side, scene in scenes for s in scene.stations] + box
+    out = [f"{side}.{s.name}" for side, scene in scenes for s in scene.stations]
+    out += [f"{name}.centre" for stage in workshop.stages.values() for name in stage.bodies]
+    return out + [BOX] * (workshop.train.housing is not None)
 
 
 def partners(

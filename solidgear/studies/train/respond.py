@@ -23,8 +23,9 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.stages import mesh_row, phases_of
 from solidgear.system.modes import SystemModes
-from solidgear.system.steady import SteadyState, peaks
+from solidgear.system.steady import SteadyState, peaks, stands_out
 from solidgear.system.system import System
 
 #: readings of the losses of a file: the three kinds, and the thesis's C = zeta K to the letter
@@ -39,8 +40,6 @@ NO_MODE = "none near: several together"
 MOST_PEAKS = 400
 #: points between the neighbours of the top of a peak
 TOP = 17
-#: a peak that stands out from the dip beside it by less than this is a ripple, dB
-STANDS_OUT = 0.5
 
 LITERAL = (
     "damping: C = zeta K is read to the letter, so that the ratios count as seconds; "
@@ -146,16 +145,25 @@ class Drive:
             loss = {name: eta / 2 for name, eta in loss.items()}
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
         self.steady = SteadyState(self.system, loss, kind, matched_hz)
-        self.rows: dict[str, np.ndarray] = {}
-        for pair in workshop.train.pairs:
-            ends = workshop.teeth(pair, self.system.parts)
-            stretch = [vector.vector @ self.system.motion(port) for port, vector in ends]
-            self.rows[pair.name] = stretch[0] - stretch[1]
-        self.row = self.rows[self.pair.name]
-        self.stiffness = workshop.contacts[self.pair.name].stiffness
+        self.meshes = {one.name: mesh_row(self.system, one.name) for one in workshop.train.teeth}
+        self.rows = {name: row for name, (row, _) in self.meshes.items()}
+        self.phases = phases_of(self.pair, workshop.stages)
+        self.first = next(iter(self.phases))
+        self.row, self.stiffness = self.meshes[self.first]
         self.forces = dict(forces or {})
         self.error = self.pair.mesh.transmission_error
-        self.load = self.system.load(self.forces) if self.forces else self.stiffness * self.row
+        self.load = self._load()
+
+    def _load(self, order: int = 1) -> np.ndarray:
+        """(N,) load of forces, or of an error of 1 m where it drives, each behind by its phase."""
+        if self.forces:
+            return self.system.load(self.forces)
+        turned = {
+            name: np.exp(-1j * order * angle) if angle else 1.0
+            for name, angle in self.phases.items()
+        }
+        rows = [turn * self.meshes[n][1] * self.meshes[n][0] for n, turn in turned.items()]
+        return np.sum(rows, axis=0)
 
     def amplitude(self, frequency_hz: np.ndarray, order: int = 1) -> np.ndarray:
         """(f,) transmission error e at a frequency of excitation, m."""
@@ -165,12 +173,11 @@ class Drive:
 
     def motion(self, frequency_hz: np.ndarray, rows: np.ndarray, order: int = 1) -> np.ndarray:
         """(f, q) motions at a frequency of excitation."""
-        unit = self.steady.motion(frequency_hz, self.load, rows)
+        load = self.load if order == 1 else self._load(order)
+        unit = self.steady.motion(frequency_hz, load, rows)
         if self.forces:
             return unit
-        scale = self.amplitude(frequency_hz, order) * self.steady.factor(
-            self.pair.name, frequency_hz
-        )
+        scale = self.amplitude(frequency_hz, order) * self.steady.factor(self.first, frequency_hz)
         return unit * scale[:, None]
 
     def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -182,7 +189,7 @@ class Drive:
         self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
     ) -> tuple[np.ndarray, np.ndarray]:
         error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
-        factor = self.stiffness * self.steady.factor(self.pair.name, frequency_hz)
+        factor = self.stiffness * self.steady.factor(self.first, frequency_hz)
         return dte, factor * (dte - error)
 
     def reactions(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
@@ -223,7 +230,7 @@ class Drive:
         ports = {side: f"{side}.{scene.port.name}" for side, scene in scenes.items()}
         rows = [self.row[None], *(force for _, force in reactions.values())]
         rows += [self.system.motion(port) for port in ports.values()]
-        others = [pair for pair in self.workshop.train.pairs if pair.name != self.pair.name]
+        others = [one for one in self.workshop.train.teeth if one.name != self.first]
         rows += [self.rows[pair.name][None] for pair in others]
         found = self.motion(frequency_hz, np.vstack(rows))
         dte, force = self._teeth(frequency_hz, found[:, 0])
@@ -234,8 +241,10 @@ class Drive:
         for k, side in enumerate(ports):
             out |= six(side, MOTION_UNITS, moved[:, 6 * k : 6 * k + 6])
         for pair, stretch in zip(others, moved.T[6 * len(ports) :]):
-            stiff = self.workshop.contacts[pair.name].stiffness
-            factor = stiff * self.steady.factor(pair.name, frequency_hz)
+            factor = self.meshes[pair.name][1] * self.steady.factor(pair.name, frequency_hz)
+            if pair.name in self.phases and not self.forces:
+                behind = np.exp(-1j * self.phases[pair.name])
+                stretch = stretch - behind * self.amplitude(frequency_hz)
             out[f"mesh force{pair.label} [N]"] = factor * stretch
         return out | columns_of(self, frequency_hz)
 
@@ -320,19 +329,6 @@ class Drive:
 
     def _loss_of(self, found, k: int) -> float:
         return sum(self.steady.loss.get(name, 0.0) * e[k] for name, e in found.energy.items())
-
-
-def stands_out(size: np.ndarray, k: int) -> bool:
-    """Tell whether a local maximum rises by more than a ripple above the dips beside it."""
-    left, right = size[:k][::-1], size[k + 1 :]
-    least = size[k] / 10 ** (STANDS_OUT / 20)
-
-    def dips(side):
-        higher = np.flatnonzero(side > size[k])
-        near = side[: higher[0]] if len(higher) else side
-        return bool(len(near) and near.min() < least)
-
-    return dips(left) and dips(right)
 
 
 @pinned

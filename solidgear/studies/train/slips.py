@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from solidgear.ladder import build
+from solidgear.scene.planetary import PlanetMesh
 from solidgear.studies.guards import Probe, data
 from solidgear.studies.guards.notice import slip_in_units
 from solidgear.studies.loading import SHAFT
@@ -42,14 +43,16 @@ def slips_of_meshes(workshop: Workshop) -> list[str]:
     """Sentences on the stiffness and the transmission error of meshes; none where all are sound."""
     out = []
     stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
-    for pair in workshop.train.pairs:
-        met, teeth, table = (
-            workshop.contacts[pair.name],
-            pair.pinion.teeth,
-            pair.mesh.transmission_error,
-        )
-        lever, error = abs(met.pinion.lever), max((*table.orders, *table.amplitude), default=0.0)
-        values = met.stiffness / (stiff * lever), error * teeth / (2 * lever)
+    for pair in workshop.train.drivers:
+        if isinstance(pair, PlanetMesh):
+            lever, teeth = pair.stage.teeth.base_radii[0], pair.stage.teeth.sun
+            stiffness = pair.stiffness
+        else:
+            met, teeth = workshop.contacts[pair.name], pair.pinion.teeth
+            lever, stiffness = abs(met.pinion.lever), met.stiffness
+        table = pair.mesh.transmission_error
+        error = max((*table.orders, *table.amplitude), default=0.0)
+        values = stiffness / (stiff * lever), error * teeth / (2 * lever)
         found = [(name, value, "") for name, value in zip(SOUND, values)]
         if not error:
             found.pop()  # told by itself

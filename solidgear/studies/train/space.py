@@ -99,7 +99,10 @@ def overlaps(
     tips: dict[str, float] = {}
     pieces = {side: _pieces(train, side, scene, tips) for side, scene in scenes.items()}
     out = []
+    around = [{*stage.shafts} for stage in train.stages]  # a carrier is around its sun
     for one, two in combinations(scenes, 2):
+        if {one, two} in around:
+            continue
         (turned, origin), (other, end) = places[one], places[two]
         turn, at = turned.T @ other, turned.T @ (end - origin)
         parallel = np.hypot(turn[0, 1], turn[2, 1]) < PARALLEL

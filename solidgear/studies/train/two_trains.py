@@ -16,6 +16,7 @@ from solidgear.errors import SolidgearError, listed
 from solidgear.machine.threads import pinned
 from solidgear.scene.differences import Difference
 from solidgear.scene.gears import Pair
+from solidgear.scene.planetary import PlanetMesh
 from solidgear.studies.change import Change
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
@@ -126,7 +127,7 @@ class TwoTrains:
     @property
     def forces(self) -> dict[str, str]:
         """Columns of mesh forces that both have, that of the mesh which drives first, and their names."""
-        pairs = self.a.workshop.train.pairs
+        pairs = self.a.workshop.train.teeth
         out = {FORCE: _force_of(self.a.workshop.train.named_mesh(self.mesh))}
         out |= {f"mesh force{p.label} [N]": _force_of(p) for p in pairs if p.name != self.mesh}
         return {c: name for c, name in out.items() if c in self.b.response.columns}
@@ -168,7 +169,7 @@ class TwoTrains:
         ]
 
 
-def _force_of(pair: Pair) -> str:
+def _force_of(pair: Pair | PlanetMesh) -> str:
     return f"force of the {pair.name}" if pair.label else "mesh force"
 
 

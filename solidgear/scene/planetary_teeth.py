@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import atan, cos, isclose, pi, radians, sin, tan
+from math import atan, cos, isclose, isfinite, pi, radians, sin, tan
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.system.matrices import positive
+from solidgear.errors import SceneError
 
 #: a ratio that is typed with four digits may differ from that of the teeth by this
 RATIO_TYPED = 1e-3
@@ -39,7 +38,7 @@ class PlanetaryTeeth:
 
     Raises
     ------
-    SolidgearError
+    SceneError
         For teeth that do not mesh around one axis, planets that do not assemble or overlap, or
         another ratio.
 
@@ -64,26 +63,29 @@ class PlanetaryTeeth:
         for one in fields(self)[:3]:
             value = getattr(self, one.name)
             if not (isinstance(value, int) and value > 0):
-                raise SolidgearError(f"{one.name} has {value!r} teeth; give a whole number")
-        positive("module", self.module)
+                raise SceneError(f"{one.name} has {value!r} teeth; give a whole number")
+        if not (isfinite(self.module) and self.module > 0):
+            raise SceneError(f"module is {self.module}; it must be finite and above zero")
         if not abs(self.helix) < pi / 2:
-            raise SolidgearError(f"helix is {self.helix} rad; it lies between -pi/2 and pi/2")
+            raise SceneError(f"helix is {self.helix} rad; it lies between -pi/2 and pi/2")
         wanted = self.sun + 2 * self.planet
         if self.ring != wanted:
-            raise SolidgearError(
+            raise SceneError(
                 f"a ring of {self.ring} teeth does not fit a sun of {self.sun} and planets of "
-                f"{self.planet}: around one axis it has {wanted}"
+                f"{self.planet}: around one axis it has {wanted}",
+                path=("ring",),
             )
         if not self.azimuths:
-            raise SolidgearError("a planetary stage needs at least one planet")
+            raise SceneError("a planetary stage needs at least one planet", path=("planets",))
         self._assembles()
         self._side_by_side()
         if self.ratio is not None and not isclose(
             self.ratio, self.speed_ratio, rel_tol=RATIO_TYPED
         ):
-            raise SolidgearError(
+            raise SceneError(
                 f"a ratio of {self.ratio:g} is not that of the teeth: "
-                f"1 + {self.ring}/{self.sun} = {self.speed_ratio:.6g}"
+                f"1 + {self.ring}/{self.sun} = {self.speed_ratio:.6g}",
+                path=("ratio",),
             )
 
     @property
@@ -98,17 +100,19 @@ class PlanetaryTeeth:
         around = self.sun + self.ring
         if isinstance(self.planets, int) and around % self.planets:
             fit = ", ".join(str(n) for n in range(2, 9) if around % n == 0)
-            raise SolidgearError(
+            raise SceneError(
                 f"{self.planets} planets at equal angles do not assemble: {self.sun} + {self.ring} "
-                f"teeth are no multiple of {self.planets}; {fit or 'none from 2 to 8'} would"
+                f"teeth are no multiple of {self.planets}; {fit or 'none from 2 to 8'} would",
+                path=("planets",),
             )
         for k, azimuth in enumerate(self.azimuths[1:], 2):
             place = (azimuth - self.azimuths[0]) * around / (2 * pi)
             if abs(place - round(place)) > FITS:
                 nearest = np.degrees(self.azimuths[0] + 2 * pi * round(place) / around)
-                raise SolidgearError(
+                raise SceneError(
                     f"planet {k} does not assemble at {np.degrees(azimuth):.6g} deg; "
-                    f"the nearest angle that does is {nearest:.6g} deg"
+                    f"the nearest angle that does is {nearest:.6g} deg",
+                    path=("planets",),
                 )
 
     def _side_by_side(self) -> None:
@@ -120,9 +124,10 @@ class PlanetaryTeeth:
         closest = float(np.diff([*turns, turns[0] + 2 * pi]).min())
         apart = 2 * self.pin_radius * sin(closest / 2)
         if apart <= tips:
-            raise SolidgearError(
+            raise SceneError(
                 f"planets {np.degrees(closest):.4g} deg apart overlap: their axes are "
-                f"{1e3 * apart:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across"
+                f"{1e3 * apart:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across",
+                path=("planets",),
             )
 
     @property

@@ -1,0 +1,399 @@
+"""Planetary stages of a train: sun, planets and ring between the shaft of the sun and that of the
+carrier; data only.
+
+Azimuths are those of the sun's scene: right-handed about y from x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan, cos, pi, tan
+from typing import TYPE_CHECKING, Annotated, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from solidgear.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.scene.gears import Gear, HeadInertia, Pair, Teeth
+from solidgear.scene.planetary_teeth import PlanetaryTeeth
+from solidgear.scene.stations import Status
+from solidgear.scene.train_tables import ErrorTable, constant_or_table
+from solidgear.scene.typed import Model
+from solidgear.scene.units import MeshSpring, PressureAngle, SignedAngle, TorsionSpring
+
+if TYPE_CHECKING:
+    from solidgear.scene.train import Train
+
+MATES = ("sun", "ring")
+MOST_PLANETS = 20
+#: relative, of inertias
+TYPED = 1e-6
+
+
+class Seat(Model):
+    """Springs of a body that turns on them freely: pin and bearing of a planet.
+
+    Attributes
+    ----------
+    radial, axial : float
+        N/m.
+    tilting : float
+        N m/rad.
+    """
+
+    radial: MeshSpring
+    axial: MeshSpring
+    tilting: TorsionSpring
+
+    @property
+    def diagonal(self) -> list[float]:
+        """Stiffness on x y z thx thy thz."""
+        return [self.radial, self.axial, self.radial, self.tilting, 0.0, self.tilting]
+
+
+class HeldSeat(Seat):
+    """The same of a body that is held against turning, with torsional stiffness in N m/rad."""
+
+    turning: TorsionSpring
+
+    @property
+    def diagonal(self) -> list[float]:
+        """Stiffness on x y z thx thy thz."""
+        held = super().diagonal
+        held[4] = self.turning
+        return held
+
+
+class Round(HeadInertia):
+    """A rigid body of revolution."""
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.bending < (1 - TYPED) * self.torsional / 2:
+            raise SceneError(
+                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
+                "no body has",
+                path=("bending",),
+            )
+        return self
+
+
+class PlanetTable(Round):
+    """Each of the planets, rigid.
+
+    Attributes
+    ----------
+    teeth : int
+    pin : Seat or None
+        Between planet and carrier.
+    """
+
+    teeth: Teeth
+    pin: Seat | None = None
+
+    @model_validator(mode="after")
+    def _on_a_pin(self) -> PlanetTable:
+        if self.pin is None:
+            reason = "planets are on no pins: give radial, axial and tilting stiffness of pin and"
+            raise SceneError(f"{reason} planet bearing", path=("pin",))
+        return self
+
+
+class RingTable(Round):
+    """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
+
+    support: HeldSeat
+
+
+class PlanetMeshes(Model):
+    """The teeth in contact of every planet.
+
+    Attributes
+    ----------
+    sun_stiffness, ring_stiffness : float
+        Of the meshes with sun and ring, N/m.
+    pressure_angle : float
+        Normal to the tooth, at the reference cylinder, rad.
+    transmission_error : ErrorTable
+        Of each mesh; a single number is a constant amplitude, m.
+    status : {'published', 'identified', 'assumed', 'measured'}
+    """
+
+    sun_stiffness: MeshSpring
+    ring_stiffness: MeshSpring
+    pressure_angle: PressureAngle
+    transmission_error: Annotated[ErrorTable, BeforeValidator(constant_or_table)]
+    status: Status = "assumed"
+
+
+class Planetary(Model):
+    """A planetary stage as a file tells it.
+
+    Attributes
+    ----------
+    sun : str
+        A gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
+        those of the stage.
+    carrier : str
+        A shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there.
+    ring_teeth : int
+    ratio : float or None
+        Turns of the sun in one of the carrier, where a source gives it.
+    planets : int
+        Of them, at equal angles, unless `angles` are given.
+    angles : tuple of float
+        Of every planet, rad.
+    position : float
+        Of the carrier, which planets are turned by, rad.
+    ring : RingTable or None
+        One that gives way; without it the ring is fixed.
+    """
+
+    sun: str
+    carrier: str
+    ring_teeth: Teeth
+    ratio: Annotated[float, Field(gt=0)] | None = None
+    planets: Annotated[int, Field(strict=True, ge=1, le=MOST_PLANETS)] | None = None
+    angles: Annotated[tuple[SignedAngle, ...], Field(max_length=MOST_PLANETS)] = ()
+    position: SignedAngle = 0.0
+    planet: PlanetTable
+    mesh: PlanetMeshes
+    ring: RingTable | None = None
+
+    @model_validator(mode="after")
+    def _so_many(self) -> Planetary:
+        if (self.planets is None) == (not self.angles):
+            reason = "give either planets, how many at equal angles, or the angles of all of them"
+            raise SceneError(reason, path=("planets",))
+        return self
+
+
+@dataclass(frozen=True)
+class PlanetMesh:
+    """Mesh of planets with sun or ring, told as a `Pair` is.
+
+    Attributes
+    ----------
+    name : str
+        ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the first.
+    stage : Stage
+    mate : str
+    planets : tuple of int
+        Counted from 1.
+    """
+
+    name: str
+    stage: Stage
+    mate: str
+    planets: tuple[int, ...]
+
+    @property
+    def mesh(self) -> PlanetMeshes:
+        """Table of the teeth."""
+        return self.stage.table.mesh
+
+    @property
+    def stiffness(self) -> float:
+        """Of each, N/m."""
+        return float(getattr(self.mesh, f"{self.mate}_stiffness"))
+
+    def phases(self, way: float) -> dict[str, float]:
+        """Angle by which the error at each planet is behind the first, rad, by the name of its mesh.
+
+        Teeth of the sun reach a planet at the azimuth psi later by ``z_s psi``, and of the ring, for
+        planets assemble, by as much (Parker, Journal of Sound and Vibration 236, 2000, p. 561-573).
+
+        Parameters
+        ----------
+        way : float
+            1 where the sun turns about +y of its scene, else -1.
+        """
+        teeth, name = self.stage.teeth, f"{self.stage.name} {self.mate}"
+        at = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
+        return {f"{name} {k}": at[k] - at[self.planets[0]] for k in self.planets}
+
+    @property
+    def label(self) -> str:
+        """Name in the middle of a phrase."""
+        return self.name.removeprefix("mesh")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A planetary stage between two shafts, that of its sun and that of its carrier.
+
+    Attributes
+    ----------
+    called : str
+    shafts, ports : (str, str)
+    sun : Gear
+    table : Planetary
+    """
+
+    called: str
+    shafts: tuple[str, str]
+    ports: tuple[str, str]
+    sun: Gear
+    table: Planetary
+
+    @property
+    def name(self) -> str:
+        """Name of its meshes together."""
+        return f"mesh {self.called}"
+
+    @property
+    def ring_point(self) -> str:
+        """Point of an elastic housing that holds its ring."""
+        return f"{self.called}.ring"
+
+    @cached_property
+    def teeth(self) -> PlanetaryTeeth:
+        """Its teeth, transverse.
+
+        Raises
+        ------
+        SceneError
+            For teeth that do not mesh or assemble, planets that overlap, or another ratio.
+        """
+        assert self.sun.module is not None
+        table, helix = self.table, self.sun.helix_angle or 0.0
+        return PlanetaryTeeth(
+            self.sun.teeth,
+            table.planet.teeth,
+            table.ring_teeth,
+            self.sun.module / cos(helix),
+            table.planets or table.angles,
+            atan(tan(table.mesh.pressure_angle) / cos(helix)),
+            table.ratio,
+            -helix if self.sun.hand == "left" else helix,
+        )
+
+    @property
+    def ratio(self) -> float:
+        """Turns of the first shaft in one of the second, of its sun in one of its carrier."""
+        return self.teeth.speed_ratio
+
+    @property
+    def levers(self) -> tuple[float, float]:
+        """Torques about +y on sun and carrier, N m, for 1 N in the mesh of every planet with the sun
+        while this drives about +y.
+        """
+        sun = len(self.teeth.azimuths) * self.teeth.base_radii[0] * cos(self.teeth.base_helix)
+        return -sun, sun * self.ratio
+
+    @cached_property
+    def meshes(self) -> tuple[PlanetMesh, ...]:
+        """Those of each planet with the sun, then those with the ring."""
+        return tuple(
+            PlanetMesh(f"{one.name} {k}", self, one.mate, (k,))
+            for one in self.together
+            for k in one.planets
+        )
+
+    @property
+    def together(self) -> tuple[PlanetMesh, ...]:
+        """Those of all planets with the sun, and with the ring."""
+        every = tuple(range(1, len(self.teeth.azimuths) + 1))
+        return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, every) for mate in MATES)
+
+
+def stage_of(train: Train, name: str) -> Stage:
+    """A planetary stage on its shafts."""
+    table = train.planetary[name]
+    sun, _, port = table.sun.partition(".")
+    carrier, _, flange = table.carrier.partition(".")
+    gears, flange = train.shafts[sun].gears, flange or train.shafts[carrier].scene.port.name
+    port = port or next(iter(gears))
+    return Stage(name, (sun, carrier), (port, flange), gears[port], table)
+
+
+def stage_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of planetary stages: no such shafts or gears, names, teeth that do not go together.
+
+    Yields
+    ------
+    SceneError
+    """
+    for name, table in train.planetary.items():
+        path = ("planetary", name)
+        if "." in name or not name.strip() or name in train.shafts or name in train.rotors:
+            reason = f"a stage cannot be called {name!r}; give it a name of its own, without dots"
+            yield SceneError(reason, path=path)
+            continue
+        found = [*_ends(train, table)]
+        yield from (one.located(None, prefix=path) for one in found)
+        if not found:
+            yield from (one.located(None, prefix=path) for one in _teeth(train, name))
+
+
+def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
+    """Problems of the gear that is the sun, and of the shaft that is the carrier."""
+    for key, word in (("sun", table.sun), ("carrier", table.carrier)):
+        side, dot, port = word.partition(".")
+        if side not in train.shafts:
+            known = listed(train.shafts)
+            hint = nearest(side, train.shafts)
+            yield SceneError(f"names no shaft {side!r}{hint}; known here: {known}", path=(key,))
+            continue
+        own = train.shafts[side]
+        places = [*own.gears] if key == "sun" else [p.name for p in own.scene.ports]
+        what = "gear" if key == "sun" else "lumped point"
+        if not places:
+            reason = f"the {side} carries no gear; write teeth and module under [shaft.{side}]"
+            yield SceneError(reason, path=(key,))
+        elif dot and port not in places:
+            reason = f"the {side} has no {what} at {port!r}; it has {listed(places)}"
+            yield SceneError(reason, path=(key,))
+        elif not dot and key == "sun" and len(places) > 1:
+            each = " or ".join(f'"{side}.{port}"' for port in places)
+            yield SceneError(f"the {side} carries several gears; write {each}", path=(key,))
+    if table.sun.partition(".")[0] == table.carrier.partition(".")[0]:
+        reason = "sun and carrier are one shaft, and could not turn against each other"
+        yield SceneError(reason, path=("carrier",))
+
+
+def _teeth(train: Train, name: str) -> Iterator[SceneError]:
+    """Problems of teeth that are told right each by itself."""
+    stage = stage_of(train, name)
+    gear, (side, _), (port, _) = stage.sun, stage.shafts, stage.ports
+    where = f"the gear {side}.{port}, the sun,"
+    if gear.module is None:
+        yield SceneError(f"{where} needs its module", path=("sun",))
+    elif gear.helix_angle and gear.hand is None:
+        yield SceneError(f"{where} has helical teeth; give their hand", path=("sun",))
+    elif gear.profile_shift:
+        reason = f"{where} has a profile_shift, and stages are told without any; leave it out"
+        yield SceneError(reason, path=("sun",))
+    else:
+        try:
+            _ = stage.teeth
+        except SceneError as error:
+            keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
+            for one in error.problems:
+                yield one.located(None, path=tuple(keys.get(str(key), key) for key in one.path))
+
+
+def turned(train: Train, name: str, by: float) -> Train:
+    """A train with the carrier of a stage at another position, rad beyond its own."""
+    table = train.planetary[name]
+    here = table.with_changes(position=(table.position + by) % (2 * pi))
+    return train.with_changes(planetary={**train.planetary, name: here})
+
+
+def named_pair(train: Train, word: str | None) -> Pair:
+    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`.
+
+    Raises
+    ------
+    SolidgearError
+        Of a mesh of planets, whose teeth have no backlash.
+    """
+    found = train.named_mesh(word)
+    if isinstance(found, PlanetMesh):
+        known = listed(pair.label.strip() for pair in train.pairs) or "none"
+        raise SolidgearError(
+            f"teeth of planets have no backlash and do not drive motions with it; of {train.name} "
+            f"these may: {known}"
+        )
+    return found
