@@ -13,17 +13,15 @@ from scipy.optimize import brentq
 
 import solidgear as sg
 from solidgear.scene import Fillet, Scene, Segment
-from validation.thesis.krylov import Span, Station, from_scene, krylov
-from validation.thesis.krylov_shaft import krylov_duncan
+from validation.thesis.krylov import Span, Station, from_scene, krylov, krylov_duncan
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 UNIT = Span(1.0, 1.0, 1.0)
 STIFF = 1e20  # moves the roots of a unit beam by 1e-16 or so: a clamp to rounding
-GAUSS = np.polynomial.legendre.leggauss(20)
 
 
-def held(y, z=0.0, tilt=0.0, **lumped):
-    return Station(y, [[z, 0.0], [0.0, tilt]], **lumped)
+def held(y, z=0.0, tilt=0.0):
+    return Station(y, np.diag([z, tilt]))
 
 
 def kl(modes):
@@ -34,14 +32,6 @@ def roots_near(equation, guesses, width):
     return np.array(
         [brentq(equation, g - width, g + width, xtol=1e-14, rtol=1e-15) for g in guesses]
     )
-
-
-def points(modes):
-    """Gauss points and weights between all joints: shapes are smooth there."""
-    size = np.diff(modes.y)
-    return (modes.y[:-1, None] + size[:, None] * (GAUSS[0] + 1) / 2).ravel(), (
-        size[:, None] * GAUSS[1] / 2
-    ).ravel()
 
 
 def counted(modes):
@@ -82,23 +72,13 @@ def test_uniform_beams(left, right, rigid, reference):
     # References are good to 1e-15, roots to a few eps; 1e-12 leaves room for other machines.
     np.testing.assert_allclose(kl(modes)[rigid:], reference, rtol=1e-12)
     assert counted(modes)
-    assert modes.defect.max() < 1e-13  # rows of order one, solved to rounding
 
 
 def test_all_modes_up_to_kl_200():
     top = 200.0**2 / (2 * np.pi)
     modes = krylov([UNIT], [held(0, STIFF), held(1, STIFF)], None, max_frequency=top)
     assert len(modes.frequency_hz) == 63  # 63 pi = 197.9, 64 pi = 201.1
-    assert (
-        0 < np.diff(modes.y).min() and np.diff(modes.y).max() * 63 * np.pi < 2 + 1e-9
-    )  # no piece has clamped roots of its own
     np.testing.assert_allclose(kl(modes), np.pi * np.arange(1, 64), rtol=1e-13)  # 1e-15 was seen
-    # sin(n pi y) with unit modal mass; the shape inherits the error of the root times n pi, below
-    # 1e-12.
-    y = np.linspace(0, 1, 777)
-    for n in (1, 20, 63):
-        z, right = modes.shape(n - 1, y)[0], np.sqrt(2) * np.sin(n * np.pi * y)
-        np.testing.assert_allclose(z * np.sign(z @ right), right, atol=1e-10)
 
 
 # ------------------------------------------------------------------------------------------- the thesis's case
@@ -140,15 +120,14 @@ def test_overhung_shaft_of_the_thesis(mass, inertia):
     # At the fourth root k L is near 12: the plain determinant is good to eps exp(12) / 12, about
     # 3e-12.
     np.testing.assert_allclose(kl(modes), found, rtol=1e-9)
-    assert (modes.lumped > 1e-3).any() == (mass > 0)
 
 
 # ------------------------------------------------------------------------------------------- segments
 STEPPED = [Span(0.3, 2.0, 1.0), Span(0.2, 30.0, 4.0), Span(0.5, 1.0, 0.7)]
 # One bearing nearly of rank one, one stiffer against tilt than against deflection.
 HELD = [
-    Station(0.1, [[500.0, 140.0], [140.0, 40.0]]),
-    Station(0.8, [[40.0, -30.0], [-30.0, 900.0]]),
+    Station(0.1, np.array([[500.0, 140.0], [140.0, 40.0]])),
+    Station(0.8, np.array([[40.0, -30.0], [-30.0, 900.0]])),
     Station(0.0, mass=0.3, inertia=0.01),
     Station(0.55, mass=0.2),
 ]
@@ -164,13 +143,6 @@ def test_splitting_changes_nothing():
     split = krylov(parts, HELD, 8)
     # Rounding of 150 transfers instead of a dozen.
     np.testing.assert_allclose(split.frequency_hz, whole.frequency_hz, rtol=1e-12)
-    y = np.linspace(0, 1, 301)[:-1]
-    for k in range(8):
-        for a, b in zip(split.shape(k, y), whole.shape(k, y)):
-            keep = (
-                np.abs(y[:, None] - [0.1, 0.3, 0.5, 0.55, 0.8]).min(axis=1) > 1e-6
-            )  # forces jump there
-            np.testing.assert_allclose(a[keep], b[keep], atol=1e-10 * np.abs(b).max())
 
 
 def test_a_very_short_span_costs_no_digits():
@@ -203,10 +175,6 @@ def test_one_coupled_spring_leaves_one_rigid_motion(reach):
     arm = np.array([1.0, reach])
     modes = krylov([UNIT], [Station(0.2, 1e5 * np.outer(arm, arm))], 3)
     assert modes.rigid == 1 and modes.frequency_hz[1] > 0 and counted(modes)
-    z, phi, m, q = modes.shape(0, [0.0, 0.4, 1.0])
-    np.testing.assert_allclose(z, phi * (np.array([0.0, 0.4, 1.0]) - 0.2 - reach), atol=1e-10)
-    # Rounding of a spring of 1e5 acting on motions of order one.
-    np.testing.assert_allclose([m, q], 0, atol=1e-9)
     # A second one whose arm ends at the same point leaves that rotation free, one that ends
     # elsewhere does not.
     other = np.array([1.0, reach - 0.4])
@@ -234,54 +202,6 @@ def test_modes_that_stand_still_at_every_support():
     walls = krylov([Span(1.0, 1.0, 1.0)] * 3, [held(y, STIFF, STIFF) for y in range(4)], 9)
     np.testing.assert_allclose(kl(walls), np.repeat(CLAMPED[:3], 3), rtol=1e-12)
     np.testing.assert_array_equal(walls.counts, np.repeat([[0, 3], [3, 6], [6, 9]], 3, axis=0))
-    y, w = points(walls)
-    for first in (0, 3, 6):
-        z = np.array([walls.shape(first + i, y)[0] for i in range(3)])
-        np.testing.assert_allclose((z * w) @ z.T, np.eye(3), atol=1e-10)  # three, and independent
-
-
-@pytest.mark.parametrize("tilt", [1e5, 1e8, 1e11])
-def test_nearly_equal_frequencies_keep_orthogonal_shapes(tilt):
-    # Three spans that feel each other through nearly rigid walls: gaps of about 1 / tilt,
-    # relatively.
-    modes = krylov(
-        [Span(1.0, 1.0, 1.0)] * 3,
-        [held(y, STIFF, STIFF if y in (0, 3) else tilt) for y in range(4)],
-        6,
-    )
-    assert counted(modes) or tilt > 1e8  # closer than the 1e-8 by which the counts stand off
-    y, w = points(modes)
-    z = np.array([modes.shape(k, y)[0] for k in range(6)])
-    np.testing.assert_allclose((z * w) @ z.T, np.eye(6), atol=1e-10)
-    # A clamped beam of unit modal mass pulls at its wall with the moment 2 (k L)^2, 123 in the
-    # second mode; two may pull at one.
-    slope = np.array([modes.shape(k, 1.0)[1] for k in range(6)])
-    assert np.abs(slope).max() < 250 / tilt
-
-
-# ------------------------------------------------------------------------------------------- fields
-def test_orthogonality_and_energy_with_lumped_masses():
-    modes = krylov(STEPPED, HELD, 8)
-    y, w = points(modes)
-    z, phi, m, _ = (np.array(f) for f in zip(*(modes.shape(k, y) for k in range(8))))
-    ends = np.cumsum([s.length for s in STEPPED])
-    owner = [STEPPED[i] for i in np.minimum(np.searchsorted(ends, y), 2)]
-    heavy, stiff = (
-        np.array([getattr(s, name) for s in owner])
-        for name in ("mass_per_length", "bending_stiffness")
-    )
-    mass, energy = (z * w * heavy) @ z.T, (m * w / stiff) @ m.T
-    np.testing.assert_allclose(np.diag(mass), modes.distributed, rtol=1e-10)
-    for station in HELD:
-        x = np.array([[v[()] for v in modes.shape(k, station.y)[:2]] for k in range(8)])
-        mass += x @ np.diag([station.mass, station.inertia]) @ x.T
-        energy += x @ station.spring @ x.T
-    np.testing.assert_allclose(mass, np.eye(8), atol=1e-10)  # quadrature is exact to rounding
-    # Rayleigh: twice the potential energy of a mode of unit modal mass is w^2, and modes do not
-    # share it.
-    w2 = (2 * np.pi * modes.frequency_hz) ** 2
-    np.testing.assert_allclose(energy / np.sqrt(np.outer(w2, w2)), np.eye(8), atol=1e-10)
-    np.testing.assert_allclose(modes.distributed + modes.lumped, 1, rtol=1e-12)
 
 
 # ------------------------------------------------------------------------------------------- scenes
@@ -360,9 +280,8 @@ def test_a_held_end_and_a_mass_at_the_other_are_those_of_the_scene():
 def test_a_mass_with_a_seat_of_its_own_is_there_with_its_inertia():
     disc = sg.PointMass(name="disc", mass=5.0, inertia=(0.02, 0.03, 0.02), y=0.6, seat_width=0.01)
     scene = rod_with(masses=[disc]).with_attachment("section")
-    modes = krylov(*from_scene(scene), 3)
-    assert modes.lumped[1] > 0.1
-    np.testing.assert_allclose(modes.frequency_hz, bending_z(scene, elements=60)[:3], rtol=1e-6)
+    found = krylov(*from_scene(scene), 3).frequency_hz
+    np.testing.assert_allclose(found, bending_z(scene, elements=60)[:3], rtol=1e-6)
 
 
 def test_what_the_model_has_no_place_for_is_refused():
@@ -379,24 +298,6 @@ def test_what_the_model_has_no_place_for_is_refused():
         from_scene(Scene.from_parts([rod], port=middle, blends=[edge]))
 
 
-# ------------------------------------------------------------------------------------------- refusals
-@pytest.mark.parametrize(
-    "make, words",
-    [
-        (lambda: Span(0.0, 1.0, 1.0), "length"),
-        (lambda: Span(1.0, 1.0, np.nan), "mass_per_length"),
-        (lambda: Station(np.inf), "station: y"),
-        (lambda: Station(0.0, inertia=-1.0), "inertia"),
-        (lambda: Station(0.0, [[1.0, 2.0], [2.0, 1.0]]), "indefinite"),
-        (lambda: Station(0.0, [[4.0, 1.0], [0.0, 4.0]]), "symmetric"),
-        (lambda: krylov([], []), "at least one span"),
-        (lambda: krylov([UNIT], [Station(1.1)]), "outside the shaft"),
-        (lambda: krylov([UNIT], [], None), "infinitely many"),
-        (lambda: krylov([UNIT]).shape(9, 0.5), "no mode 9"),
-        (lambda: krylov([UNIT]).shape(0, 1.5), "on the shaft"),
-    ],
-)
-def test_refuses_in_a_sentence(make, words):
-    with pytest.raises(sg.SolidgearError, match=words) as refusal:
-        make()
-    assert "\n" not in str(refusal.value)
+def test_a_station_off_the_shaft_is_refused():
+    with pytest.raises(sg.SolidgearError, match="outside the shaft"):
+        krylov([UNIT], [Station(1.1)])

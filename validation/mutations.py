@@ -619,7 +619,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a lumped mass in the exact beam",
-        "validation/thesis/krylov_shaft.py",
+        "validation/thesis/krylov.py",
         "_Joint.act",
         "b[2:] - self.mass[:, None, None] * omega**2 * b[:2]",
         "b[2:] + self.mass[:, None, None] * omega**2 * b[:2]",

@@ -13,8 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from validation.stability.frame import Finding, crossing, main
-from validation.thesis.krylov import Span, krylov
-from validation.thesis.krylov_shaft import krylov_duncan
+from validation.thesis.krylov import Span, krylov, krylov_duncan
 
 MOST = 64
 CUTS = 8

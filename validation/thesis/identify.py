@@ -13,8 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from solidgear.errors import SolidgearError
-
 # A quantity this close to a bound, as a fraction of the way between the bounds, rests on it.
 ON_BOUND = 1e-3
 # Central differences of frequencies that are good to about 1e-13: 1e-5 of the way balances rounding
@@ -34,11 +32,6 @@ class Unknown:
     unit : str
     log : bool
         Search on a logarithmic scale, for positive quantities whose order of magnitude is in doubt.
-
-    Raises
-    ------
-    SolidgearError
-        For bounds that are not finite and ascending, or not positive on a logarithmic scale.
     """
 
     name: str
@@ -46,17 +39,6 @@ class Unknown:
     upper: float
     unit: str = ""
     log: bool = True
-
-    def __post_init__(self):
-        if not (np.isfinite(self.lower) and np.isfinite(self.upper) and self.lower < self.upper):
-            raise SolidgearError(
-                f"{self.name}: the bounds {self.lower} and {self.upper} must be finite "
-                "and in ascending order"
-            )
-        if self.log and self.lower <= 0:
-            raise SolidgearError(
-                f"{self.name}: a logarithmic scale needs a positive lower bound, not {self.lower}"
-            )
 
     def at(self, t: float) -> float:
         """Value at the fraction `t` of the way between the bounds."""
@@ -90,8 +72,6 @@ class Identified:
         Relative standard deviation of the value if the misfit of the frequencies is taken as
         independent noise; inf where they do not fix it. The misfit is mostly systematic, so this is
         a scale and not a confidence interval.
-    status : str
-        Always ``identified``.
     """
 
     name: str
@@ -102,7 +82,6 @@ class Identified:
     on_bound: str
     sensitivity: np.ndarray
     spread: float
-    status: str = "identified"
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,16 +153,6 @@ def identify(
         The middle of the bounds and ``starts - 1`` seeded random points.
     seed : int
 
-    Returns
-    -------
-    Identification
-
-    Raises
-    ------
-    SolidgearError
-        If there are more unknowns than frequencies, names repeat, or the model does not return as
-        many finite, positive frequencies.
-
     Notes
     -----
     Frequencies are compared in ascending order, without mode shapes: where two modes of the model
@@ -201,42 +170,16 @@ def identify(
     """
     unknowns = tuple(unknowns)
     published = np.asarray(published_hz, float)
-    names = [u.name for u in unknowns]
-    if (
-        published.ndim != 1
-        or published.size == 0
-        or not (np.isfinite(published).all() and (published > 0).all())
-    ):
-        raise SolidgearError(
-            "the published frequencies must be a list of finite, positive numbers of Hz; "
-            "leave out the zero ones"
-        )
-    if not names or len(set(names)) < len(names):
-        raise SolidgearError(f"the unknowns need different names, at least one; got {names}")
-    if len(names) > published.size:
-        raise SolidgearError(
-            f"{len(names)} unknowns cannot be identified from {published.size} frequencies; "
-            "fix some of them"
-        )
-    if starts < 1:
-        raise SolidgearError(f"starts is {starts}; at least one starting point is needed")
 
     def log_ratio(t):
         found = np.asarray(model({u.name: u.at(x) for u, x in zip(unknowns, t)}), float)
-        if found.shape != published.shape:
-            raise SolidgearError(
-                f"the model gives frequencies of shape {found.shape}, "
-                f"but {published.size} are published"
-            )
-        if not (np.isfinite(found).all() and (found > 0).all()):
-            raise SolidgearError(
-                "the model gives frequencies that are not finite and positive; "
-                "leave out its rigid modes"
-            )
         return np.log(found / published)
 
     rng = np.random.default_rng(seed)
-    points = [np.full(len(names), 0.5), *rng.uniform(0.1, 0.9, (starts - 1, len(names)))]
+    points = [
+        np.full(len(unknowns), 0.5),
+        *rng.uniform(0.1, 0.9, (starts - 1, len(unknowns))),
+    ]
     found = [
         least_squares(
             log_ratio,
@@ -299,74 +242,3 @@ def _report(log_ratio, unknowns, t, published, starts, agreeing) -> Identificati
     return Identification(
         tuple(quantities), published * np.exp(ratio), published, starts, agreeing, condition
     )
-
-
-def torsion_springs(
-    engine: float,
-    pinion: float,
-    gear: float,
-    load: float,
-    ratio: float,
-    first_hz: float,
-    second_hz: float,
-) -> list[tuple[float, float]]:
-    """Exact springs of the torsional chain with a rigid mesh, from its two frequencies.
-
-    With everything on the pinion's side, ``J1 = engine``, ``J2 = pinion + gear/R^2``, ``J3 =
-    load/R^2``, the springs obey
-
-        k1 (1/J1 + 1/J2) + k2 (1/J2 + 1/J3) = w1^2 + w2^2
-        k1 k2 (J1 + J2 + J3) / (J1 J2 J3) = w1^2 w2^2
-
-    which is a quadratic: none, one or two pairs fit, and the frequencies alone do not decide which
-    of two it is.
-
-    Parameters
-    ----------
-    engine, pinion, gear, load : float
-        Inertias about their own shafts, kg m^2.
-    ratio : float
-        R, teeth of the gear over teeth of the pinion.
-    first_hz, second_hz : float
-        The two elastic torsional frequencies, Hz.
-
-    Returns
-    -------
-    list of (float, float)
-        Engine-to-pinion and gear-to-load springs on their own shafts, N m/rad, the softer gear side
-        first.
-
-    Raises
-    ------
-    SolidgearError
-        If an argument is not positive or no real springs give these frequencies.
-    """
-    given = {
-        "engine": engine,
-        "pinion": pinion,
-        "gear": gear,
-        "load": load,
-        "ratio": ratio,
-        "first_hz": first_hz,
-        "second_hz": second_hz,
-    }
-    for name, value in given.items():
-        if not (np.isfinite(value) and value > 0):
-            raise SolidgearError(
-                f"{name} of the torsional chain is {value}; it must be finite and positive"
-            )
-    j1, j2, j3 = engine, pinion + gear / ratio**2, load / ratio**2
-    w1, w2 = (2 * np.pi * first_hz) ** 2, (2 * np.pi * second_hz) ** 2
-    a, b = 1 / j1 + 1 / j2, 1 / j2 + 1 / j3
-    product = w1 * w2 * j1 * j2 * j3 / (j1 + j2 + j3)
-    # a k1 and b k2 are the roots of s^2 - (w1 + w2) s + a b product.
-    discriminant = (w1 + w2) ** 2 - 4 * a * b * product
-    if discriminant < 0:
-        raise SolidgearError(
-            f"no torsional springs give both {first_hz:g} and {second_hz:g} Hz with these inertias"
-        )
-    root = np.sqrt(discriminant)
-    big = (w1 + w2 + root) / 2
-    small = a * b * product / big
-    pairs = {(float(s / a), float(product / (s / a) * ratio**2)) for s in (big, small)}
-    return sorted(pairs, key=lambda pair: pair[1])
