@@ -16,6 +16,7 @@ import pytest
 
 import solidgear as sg
 from solidgear import cli
+from validation.stability import page as stability
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -26,7 +27,6 @@ import build  # noqa: E402
 import console  # noqa: E402
 import gallery  # noqa: E402
 import prose  # noqa: E402
-import stability  # noqa: E402
 
 MADE = ("written",)
 PAGES = sorted(

@@ -3,16 +3,12 @@ in their quick form.
 """
 
 import importlib
-import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import solidgear as sg
 from solidgear.models.beam.shoulder import hinges
-
-FOLDER = Path(__file__).resolve().parent.parent / "validation" / "stability"
 
 
 @pytest.fixture
@@ -136,12 +132,14 @@ def test_the_thin_tube_is_a_ring(script):
     assert got[2] < got[1] < got[3]
 
 
-def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
+def test_a_failed_script_does_not_stop_the_others(script, monkeypatch, capsys):
     module = script("__main__")
     finding = script("frame").Finding("demo", "a | b", "It fails.", "At 1.", "It warns.")
+    kept = []
 
     class Good:
         measure = staticmethod(lambda quick: finding)
+        draw = None
 
     class Bad:
         @staticmethod
@@ -153,23 +151,22 @@ def test_a_failed_script_does_not_stop_the_others(script, monkeypatch):
         "import_module",
         {"validation.stability.good": Good, "validation.stability.bad": Bad}.__getitem__,
     )
-    monkeypatch.setattr(module, "publish", lambda finding, draw: None)
-    done, failed = module.run(["bad", "good"])
-    assert list(done) == ["good"] and failed == {"bad": "ValueError: no"}
-    text = module.report(done, failed)
-    assert (
-        "| [a \\| b](#demo) | At 1. | It warns. |" in text
-        and "`bad` could not be measured: ValueError: no" in text
+    monkeypatch.setattr(module, "keep", lambda finding, draw: kept.append(finding) or module.PAGE)
+    assert module.run(["bad", "good"]) == ["bad"]
+    assert kept == [finding] and "It fails.\nAt 1.\nIt warns." in capsys.readouterr().out
+
+
+def test_the_page_tells_every_kept_finding(script, monkeypatch, tmp_path):
+    page = script("page")
+    monkeypatch.setattr(page, "results_folder", lambda name: tmp_path)
+    monkeypatch.setattr(page, "CHAPTERS", {"One": ["demo"]})
+    finding = script("frame").Finding(
+        "demo", "Demo", "It fails.", "At 1.", "It warns.", "a guard", [{"x": 1.0, "y": 2.0}]
     )
-
-
-def test_every_guard_named_exists():
-    """The report of the folder names a test for each edge; a renamed test would leave it pointing
-    nowhere.
-    """
-    for path in sorted(FOLDER.glob("*.py")):
-        for file, test in re.findall(r"(tests/test_\w+\.py)::(test_\w+)", path.read_text()):
-            if "test_x" not in file:
-                assert f"def {test}(" in (FOLDER.parent.parent / file).read_text(), (
-                    f"{path.name}: {file}::{test}"
-                )
+    page.keep(
+        finding, lambda finding, axes: axes.plot(*script("frame").columns(finding.rows, *"xy"))
+    )
+    told = page.page({"demo": page.kept("demo")})
+    assert "## One\n\n### Demo\n\nIt fails.\n\n**Measured.** At 1.\n\n" in told
+    assert told.endswith("Held by the test `a guard`.\n")
+    assert (tmp_path / "demo" / "chart.png").exists()

@@ -1,7 +1,8 @@
-"""Run every script of this folder and write one report: method, edge measured, what the program
-does about it.
+"""Methods driven to their edges: every script of this folder measures one, and one page tells what
+fails, where, and what the program does about it.
 
 python -m validation.stability [--quick] [--only NAME ...]
+python -m validation.stability --page
 """
 
 from __future__ import annotations
@@ -11,60 +12,36 @@ import importlib
 import sys
 import time
 import traceback
+from collections.abc import Iterable
+from pathlib import Path
 
-from validation.common import markdown, results_folder
-from validation.stability.frame import FOLDER, ROOT, findings, publish
+from validation.common import ROOT, show
+from validation.stability.frame import Finding
+from validation.stability.page import PAGE, keep, write_page
 
 #: what scripts share, and what a fillet changes, which is no edge
-NO_EDGE = ("frame", "fillets")
-SCRIPTS = sorted(
-    p.stem for p in FOLDER.glob("*.py") if not p.stem.startswith("_") and p.stem not in NO_EDGE
-)
+NO_EDGE = ("__init__", "__main__", "frame", "page", "fillets")
+SCRIPTS = sorted(p.stem for p in Path(__file__).parent.glob("*.py") if p.stem not in NO_EDGE)
 
 
-def run(names, quick: bool = False):
-    """Findings by script name, and one sentence for each script that failed; a failure does not
-    stop the others.
-    """
-    done, failed = {}, {}
+def run(names: Iterable[str], quick: bool = False) -> list[str]:
+    """Measure, show and keep what scripts find; names of those that failed, which stop no others."""
+    failed = []
     for name in names:
         start = time.perf_counter()
         try:
             script = importlib.import_module(f"validation.stability.{name}")
-            done[name] = findings(script.measure(quick=quick))
-            for finding in done[name]:
-                publish(finding, getattr(script, "draw", None))
-        except Exception as error:
-            done.pop(name, None)
-            failed[name] = f"{type(error).__name__}: {error}"
+            found = script.measure(quick=quick)
+            for finding in [found] if isinstance(found, Finding) else found:
+                show(finding.method, finding.rows)
+                print(finding.fails, finding.edge, finding.program, sep="\n")
+                print(f"written to {keep(finding, script.draw).relative_to(ROOT)}")
+        except Exception:
+            failed.append(name)
             traceback.print_exc()
-        print(
-            f"{name:28s} {'failed' if name in failed else 'done':7s} {time.perf_counter() - start:6.1f} s",
-            flush=True,
-        )
-    return done, failed
-
-
-def report(done, failed) -> str:
-    """The whole table and every finding, as Markdown."""
-    whole = [f for name in sorted(done) for f in done[name]]
-    rows = [
-        (f"[{_cell(f.method)}](#{f.name.replace('_', '-')})", _cell(f.edge), _cell(f.program))
-        for f in whole
-    ]
-    head = ("method", "edge measured", "what the program does")
-    lines = ["# Where methods fail", "", *markdown(head, rows)]
-    lines += ["", *(f"- `{name}` could not be measured: {why}" for name, why in failed.items()), ""]
-    for f in whole:
-        heading = f.name.replace("_", "-")
-        lines += [f"## {heading}", "", f"**{f.method}.** {f.fails} {f.edge} {f.program}", ""]
-        lines += [f"Guard held by `{f.guard}`.", ""] if f.guard else []
-        lines += [f"![{heading}]({f.name}/chart.png)", "", f"[rows]({f.name}/rows.csv)", ""]
-    return "\n".join(lines)
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|").replace("\n", " ")
+        word = "failed" if name in failed else "done"
+        print(f"{name:28s} {word:7s} {time.perf_counter() - start:6.1f} s\n", flush=True)
+    return failed
 
 
 def main() -> int:
@@ -73,6 +50,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--quick", action="store_true", help="fewer and coarser points")
+    parser.add_argument("--page", action="store_true", help="write the page of what was found")
     parser.add_argument(
         "--only",
         nargs="+",
@@ -82,11 +60,11 @@ def main() -> int:
         help="of " + ", ".join(SCRIPTS),
     )
     options = parser.parse_args()
-    done, failed = run(options.only, options.quick)
-    target = results_folder("stability") / "report.md"
-    target.write_text(report(done, failed))
-    print(f"written to {target.relative_to(ROOT)}")
-    return 1 if failed else 0
+    if options.page:
+        write_page()
+        print(f"written to {PAGE.relative_to(ROOT)}")
+        return 0
+    return int(bool(run(options.only, options.quick)))
 
 
 if __name__ == "__main__":

@@ -4,8 +4,6 @@ spoilt.
 Cases: a sliver (a vertex pushed towards the opposite face), a mid-edge node slid along its edge
 until det J turns negative at a corner and then at Gauss points, and two elements whose det J is
 positive at all their nodes and Gauss points and negative in between.
-
-    python -m validation.stability.bad_elements [--quick]
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
 from solidgear.models.solid.matrices import _cell_rule, _matrices
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.scene import Scene, Segment
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 
 HEIGHTS = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6)
 SLIDES = (0.5, 0.35, 0.26, 0.24, 0.2, 0.15, 0.1)
@@ -195,21 +193,16 @@ def _refused(mesh) -> bool:
 def draw(finding: Finding, axes) -> None:
     """Growth of the greatest eigenvalue and change of first bending with the height of the sliver."""
     rows = [r for r in finding.rows if r["case"] == "sliver"]
-    at, base = [r["amount"] for r in rows], rows[0]
-    axes.loglog(
-        at,
-        [r["greatest eigenvalue"] / base["greatest eigenvalue"] for r in rows],
-        "o-",
-        color="#c4541c",
-        label="greatest eigenvalue, times that of the good mesh",
-    )
-    axes.loglog(
-        at[1:],
-        [abs(r["first bending, Hz"] / base["first bending, Hz"] - 1) for r in rows[1:]],
-        "s-",
-        color="#0072b2",
-        label="change of first bending",
-    )
+
+    def times(name):
+        return lambda r: r[name] / rows[0][name]
+
+    def moved(r):
+        return r["first bending, Hz"] / rows[0]["first bending, Hz"] - 1
+
+    words = "greatest eigenvalue, times that of the good mesh"
+    curve(axes, rows, "amount", times("greatest eigenvalue"), "o-", "#c4541c", words)
+    curve(axes, rows[1:], "amount", moved, "s-", "#0072b2", "change of first bending")
     axes.invert_xaxis()
     axes.set(
         xlabel="height of the sliver, part of the good element's",
@@ -217,7 +210,3 @@ def draw(finding: Finding, axes) -> None:
         title="One sliver in a mesh of a shaft",
     )
     axes.legend()
-
-
-if __name__ == "__main__":
-    main(measure, draw)

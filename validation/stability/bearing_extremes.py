@@ -4,8 +4,6 @@ Reference: closed form for the compliance at the overhung end, the exact initial
 
 Models: an Euler beam of 10 and of 160 elements; its springs by the Woodbury identity and inertia
 relief (the program), and added to the stiffness matrix, K + G'KbG (naive).
-
-    python -m validation.stability.bearing_extremes [--quick]
 """
 
 from __future__ import annotations
@@ -18,7 +16,7 @@ import scipy.sparse.linalg as spla
 import solidgear as sg
 from solidgear.body import Supports
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
-from validation.stability.frame import Finding, crossing, main
+from validation.stability.frame import Finding, crossing, curve
 from validation.thesis.krylov import from_scene, krylov
 
 LENGTH, DIAMETER, AT = 0.4, 0.06, (0.1, 0.35)
@@ -184,18 +182,12 @@ def draw(finding: Finding, axes) -> None:
             ("C_zz program", "#0072b2", "s"),
             ("f1 program", "#00805e", "^"),
         ):
-            values = [np.clip(np.nan_to_num(r[name], nan=1e3), 1e-17, 1e3) for r in rows]
-            axes.loglog(
-                [r["k N/m"] for r in rows],
-                values,
-                marker + line,
-                color=colour,
-                label=f"{name}, {elements} elements",
-            )
+
+            def error(r, name=name):
+                return min(np.nan_to_num(r[name], nan=1e3), 1e3)
+
+            words = f"{name}, {elements} elements"
+            curve(axes, rows, "k N/m", error, marker + line, colour, words, least=1e-17)
     axes.axhline(0.01, color="#aa2222", lw=0.8, ls="--")
     axes.set(xlabel="bearing stiffness, N/m", ylabel="relative error", title=finding.method)
     axes.legend(fontsize=7, ncols=2)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -5,8 +5,6 @@ Models: the closed form and the light mesh by which the program decides which fa
 The closed form must never lie above a family's lowest frequency by more than its margin, the light
 mesh never above by more than its own; a rule that only waits for the lowest frequencies to rise is
 run beside them.
-
-    python -m validation.stability.circumferential_families [--quick]
 """
 
 from __future__ import annotations
@@ -24,7 +22,7 @@ from solidgear.models.harmonic.body import _element
 from solidgear.models.harmonic.circumferential import Families
 from solidgear.scene import STEEL, Material, Scene, Segment
 from solidgear.solve.groups import LIGHT, MARGIN
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, columns
 
 MATERIALS = (
     STEEL,
@@ -252,13 +250,8 @@ def draw(finding: Finding, axes) -> None:
     """Both estimates over the wave number of the least."""
     for kind, marker in zip(KINDS, "os^vDP"):
         rows = [r for r in finding.rows if r["kind"] == kind]
-        axes.plot(
-            [r["closed form / lowest"] for r in rows],
-            [r["light / lowest"] for r in rows],
-            marker,
-            label=kind,
-            alpha=0.7,
-        )
+        estimates = columns(rows, "closed form / lowest", "light / lowest")
+        axes.plot(*estimates, marker, label=kind, alpha=0.7)
     axes.axvline(MARGIN, color="#555555", ls=":")
     axes.axhline(LIGHT, color="#555555", ls=":")
     axes.set(
@@ -267,7 +260,3 @@ def draw(finding: Finding, axes) -> None:
         title=finding.method,
     )
     axes.legend()
-
-
-if __name__ == "__main__":
-    main(measure, draw)

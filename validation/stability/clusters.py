@@ -4,8 +4,6 @@ a dense solution.
 
 Models: `modes` with every count from 1 up on the Timoshenko beam, the harmonic and the 3D solid;
 textbook shift-invert from one start vector beside it.
-
-    python -m validation.stability.clusters [--quick]
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import solidgear as sg
 from solidgear.body import Supports
 from solidgear.judge.correlation import subspace_mac
 from solidgear.scene import Bearing, Port, Scene, Segment
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 from validation.stability.free_body_shift import shift_invert
 from validation.stability.shift_on_eigenvalue import supported
 
@@ -189,33 +187,17 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Errors of eigenvalue and subspace over the nearest gap."""
+    near = "nearest pairs apart"
     for name, colour, marker in zip(BODIES, ("#0072b2", "#c4541c", "#00805e"), "osD"):
         rows = [r for r in finding.rows if r["body"] == name]
-        at = [max(r["nearest pairs apart"], 1e-16) for r in rows]
-        axes.loglog(
-            at,
-            [max(r["worst eigenvalue"], 1e-17) for r in rows],
-            marker,
-            color=colour,
-            label=f"{name}: eigenvalue",
-        )
-        axes.loglog(
-            at,
-            [max(r["1 - subspace MAC"], 1e-17) for r in rows],
-            marker,
-            color=colour,
-            mfc="none",
-            label=f"{name}: 1 - subspace MAC",
-        )
+        least = {"least_x": 1e-16, "least": 1e-17}
+        words = f"{name}: eigenvalue"
+        curve(axes, rows, near, "worst eigenvalue", marker, colour, words, **least)
+        words = f"{name}: 1 - subspace MAC"
+        curve(axes, rows, near, "1 - subspace MAC", marker, colour, words, mfc="none", **least)
     lost = [r for r in finding.rows if r["one vector lost"]]
-    axes.plot(
-        [max(r["nearest pairs apart"], 1e-16) for r in lost],
-        [1e-1] * len(lost),
-        "x",
-        color="#aa2222",
-        ms=7,
-        label="iteration from one vector lost a mode",
-    )
+    words = "iteration from one vector lost a mode"
+    curve(axes, lost, near, lambda r: 1e-1, "x", "#aa2222", words, least_x=1e-16, ms=7)
     axes.set(
         xlabel="distance of the two nearest pairs, relative",
         ylabel="error of the program",
@@ -223,7 +205,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(1e-17, 1e4),
     )
     axes.legend(fontsize=7, ncols=2)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -3,8 +3,6 @@ coupling up to and past the bound of a positive matrix. Reference: the same bear
 principal directions, where it has no coupling; a turn about the axis changes no frequency.
 
 Models: the program's scene and its Timoshenko beam of the overhung pinion.
-
-    python -m validation.stability.doubtful_six_by_six [--quick]
 """
 
 from __future__ import annotations
@@ -14,7 +12,8 @@ import numpy as np
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.frames import DOF_NAMES
-from validation.stability.frame import ROOT, Finding, main
+from validation.common import ROOT
+from validation.stability.frame import Finding, curve
 
 K = 1e9
 GAPS = (*10.0 ** -np.arange(0.5, 16), 0.0)
@@ -175,36 +174,20 @@ def draw(finding: Finding, axes) -> None:
     """Errors over the coupling; for the verdicts, what became of each."""
     axes.set_title(finding.method)
     if finding.name == "strong_coupling":
-        at = [max(r["1 - k_xz / k"], 1e-17) for r in finding.rows]
-        axes.loglog(
-            at,
-            [max(r["frequency error"], 1e-17) for r in finding.rows],
-            "o-",
-            color="#0072b2",
-            label="coupled against turned bearing, worst frequency",
-        )
-        bad = [
-            a
-            for a, r in zip(at, finding.rows)
-            if r["free motions, coupled"] != r["free motions, turned"]
-        ]
-        axes.plot(
-            bad, [3.0] * len(bad), "x", color="#aa2222", label="another number of free motions"
-        )
-        axes.set(xlabel="1 - k_xz / k", ylabel="relative error", ylim=(1e-17, 30))
+        rows, gap = finding.rows, "1 - k_xz / k"
+        words = "coupled against turned bearing, worst frequency"
+        least = {"least_x": 1e-17, "least": 1e-17}
+        curve(axes, rows, gap, "frequency error", "o-", "#0072b2", words, **least)
+        other = [r for r in rows if r["free motions, coupled"] != r["free motions, turned"]]
+        words = "another number of free motions"
+        curve(axes, other, gap, lambda r: 3.0, "x", "#aa2222", words, **least)
+        axes.set(xlabel=gap, ylabel="relative error", ylim=(1e-17, 30))
         axes.legend(fontsize=8)
         return
-    names = [r["matrix"] for r in finding.rows][::-1]
-    refused = [r["scene"] == "refused" for r in finding.rows][::-1]
-    free = [0 if no else r["free motions"] for no, r in zip(refused, finding.rows[::-1])]
-    axes.barh(
-        range(len(names)),
-        [6.5 if no else max(f, 0.1) for no, f in zip(refused, free)],
-        color=["#c4541c" if no else "#0072b2" for no in refused],
-    )
-    axes.set_yticks(range(len(names)), names, fontsize=6)
+    rows = finding.rows[::-1]
+    for i, r in enumerate(rows):
+        refused = r["scene"] == "refused"
+        reach = 6.5 if refused else max(r["free motions"], 0.1)
+        axes.barh(i, reach, color="#c4541c" if refused else "#0072b2")
+    axes.set_yticks(range(len(rows)), [r["matrix"] for r in rows], fontsize=6)
     axes.set(xlabel="rigid motions left free (orange: refused)")
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -3,8 +3,6 @@ moved along the shaft from the toe to the far end. Reference: the Timoshenko bea
 from.
 
 Models: the published pair of equations (energy and determinant), mode-matched, Guyan, total mass.
-
-    python -m validation.stability.effective_mass_limits [--quick]
 """
 
 from __future__ import annotations
@@ -13,7 +11,8 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.reduction.effective_mass import METHODS, synthesise
-from validation.stability.frame import ROOT, Finding, main
+from validation.common import ROOT
+from validation.stability.frame import Finding, columns
 
 STATUS = ("first", "second", "negative", "no real pair", "none")
 
@@ -84,35 +83,14 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Energy share, discriminant and frequency errors along the shaft."""
-    y = [r["y mm"] for r in finding.rows]
-    axes.plot(
-        y,
-        [r["energy share of the static shape"] for r in finding.rows],
-        "-",
-        color="#0072b2",
-        label="energy share of the static shape",
-    )
-    axes.plot(
-        y,
-        [r["discriminant"] for r in finding.rows],
-        "--",
-        color="#888888",
-        label="discriminant of the published equations",
-    )
-    axes.plot(
-        y,
-        [r["guyan f1 error"] for r in finding.rows],
-        "-",
-        color="#00805e",
-        label="Guyan, error of f1",
-    )
-    axes.plot(
-        y,
-        [r["chosen holds to / f1"] for r in finding.rows],
-        ":",
-        color="#c4541c",
-        label="receptance of the chosen one holds to, over f1",
-    )
+    for name, line, colour, words in (
+        ("energy share of the static shape", "-", "#0072b2", "energy share of the static shape"),
+        ("discriminant", "--", "#888888", "discriminant of the published equations"),
+        ("guyan f1 error", "-", "#00805e", "Guyan, error of f1"),
+        ("chosen holds to / f1", ":", "#c4541c", "receptance of the chosen one holds to, over f1"),
+    ):
+        y, along = columns(finding.rows, "y mm", name)
+        axes.plot(y, along, line, color=colour, label=words)
     for word, colour in (("first", "#0072b2"), ("second", "#e0a030"), ("negative", "#aa2222")):
         at = [r["y mm"] for r in finding.rows if r["mode-matched"] == word]
         axes.plot(at, [-0.45] * len(at), "s", color=colour, label=f"mode-matched: {word}")
@@ -124,7 +102,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(-0.6, 1.6),
     )
     axes.legend(fontsize=7, ncols=2)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

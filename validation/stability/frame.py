@@ -1,37 +1,18 @@
-"""What every script of this folder shares: a finding (where a method fails), its table, chart and
-three sentences.
+"""What every script of this folder shares: a finding (where a method fails) and the ways to read and
+draw its rows.
 
-A script defines ``measure(quick) -> Finding`` (or a list of them) and ``draw(finding, axes)``, and
-ends in ``main(measure, draw)``.
+A script defines ``measure(quick) -> Finding`` (or a list of them) and ``draw(finding, axes)``.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
-from validation.common import ROOT, results_folder, show, write_rows
+import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-#: how charts look, whatever the user's own matplotlibrc says
-STYLE = {
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.titlesize": 9.5,
-    "axes.titlelocation": "left",
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#e3e3e3",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "lines.markersize": 4.5,
-    "lines.linewidth": 1.2,
-}
-__all__ = ["FOLDER", "ROOT", "Finding", "crossing", "main", "publish"]
+#: a column of rows: its name, or what it is of a row
+Column = str | Callable[[dict], float]
 
 
 @dataclass(frozen=True)
@@ -61,16 +42,6 @@ class Finding:
     guard: str = ""
     rows: list[dict] = field(default_factory=list)
 
-    @property
-    def text(self) -> str:
-        """The three sentences, one a line."""
-        return "\n".join((self.fails, self.edge, self.program))
-
-
-def findings(measured) -> list[Finding]:
-    """What ``measure`` returned, as a list."""
-    return [measured] if isinstance(measured, Finding) else list(measured)
-
 
 def crossing(x, y, level: float) -> float:
     """Where a curve last crosses a level, read off on log-log axes; NaN where it does not.
@@ -81,8 +52,6 @@ def crossing(x, y, level: float) -> float:
         Along the curve.
     level : float
     """
-    import numpy as np
-
     x, y = (
         np.log(np.asarray(x, float)),
         np.log(np.maximum(np.asarray(y, float), 1e-300)) - np.log(level),
@@ -94,34 +63,28 @@ def crossing(x, y, level: float) -> float:
     return float(np.exp(x[i] - y[i] * (x[i + 1] - x[i]) / (y[i + 1] - y[i])))
 
 
-def publish(finding: Finding, draw: Callable | None) -> Path:
-    """Write rows.csv, chart.png and finding.txt of one finding; returns their folder."""
-    folder = results_folder("stability") / finding.name
-    folder.mkdir(exist_ok=True)
-    write_rows(folder / "rows.csv", finding.rows)
-    (folder / "finding.txt").write_text(finding.text + "\n")
-    if draw is not None:
-        import matplotlib
-        from matplotlib.figure import Figure
-
-        with matplotlib.rc_context():
-            matplotlib.rcdefaults()
-            matplotlib.rcParams.update(STYLE)
-            figure = Figure(figsize=(8.0, 4.4), dpi=150, layout="constrained")
-            axes = figure.subplots()
-            draw(finding, axes)
-            figure.savefig(folder / "chart.png")
-    return folder
+def columns(rows: Sequence[dict], *names: Column) -> list[np.ndarray]:
+    """Columns of rows as arrays; what is None there is NaN."""
+    return [
+        np.array([r[name] if isinstance(name, str) else name(r) for r in rows], float)
+        for name in names
+    ]
 
 
-def main(measure: Callable, draw: Callable | None) -> None:
-    """Measure, print, publish: what a script does when it is run."""
-    parser = argparse.ArgumentParser(
-        description=sys.modules["__main__"].__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("--quick", action="store_true", help="fewer and coarser points")
-    for finding in findings(measure(quick=parser.parse_args().quick)):
-        show(finding.method, finding.rows)
-        print(finding.text)
-        print(f"written to {publish(finding, draw).relative_to(ROOT)}\n")
+def curve(
+    axes,
+    rows: Sequence[dict],
+    x: Column,
+    y: Column,
+    line: str,
+    colour: str | None,
+    label: str | None = None,
+    *,
+    least_x: float = 0.0,
+    least: float = 0.0,
+    **style,
+) -> None:
+    """Draw the sizes of a column of rows over another on logarithmic axes, none below the least."""
+    at, size = (np.abs(column) for column in columns(rows, x, y))
+    at, size = np.maximum(at, least_x), np.maximum(size, least)
+    axes.loglog(at, size, line, color=colour, label=label, **style)

@@ -3,8 +3,6 @@ exact zeros, and the elastic modes of a dense solution.
 
 Models: textbook shift-invert (ARPACK on the factor of K - sigma M) with sigma from 0 to -1e4 times
 the first elastic eigenvalue, and `modes`, which takes the rigid motions out.
-
-    python -m validation.stability.free_body_shift [--quick]
 """
 
 from __future__ import annotations
@@ -15,7 +13,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from validation.stability.frame import ROOT, Finding, main
+from validation.common import ROOT
+from validation.stability.frame import Finding, curve
 
 BODIES = {
     "timoshenko": ("timoshenko", {}),
@@ -179,24 +178,17 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Noise of the zero modes and error of the elastic ones over the shift."""
+
+    def shift(r):
+        return max(-r["shift / lambda_1"], 1e-18)
+
     for name, colour in zip(BODIES, ("#0072b2", "#c4541c", "#00805e")):
         rows = [r for r in finding.rows if r["body"] == name and r["solver"] == "shift-invert"]
-        at = [max(-r["shift / lambda_1"], 1e-18) for r in rows]
-        for key, line, marker in (("rigid f / f1", "-", "o"), ("elastic error", ":", "s")):
-            axes.loglog(
-                at,
-                [np.nan if "failed" in r else max(r[key], 1e-17) for r in rows],
-                marker + line,
-                color=colour,
-                label=f"{name}: {key}",
-            )
-        axes.plot(
-            [a for a, r in zip(at, rows) if r.get("elastic missing", 1)],
-            [3.0] * sum(bool(r.get("elastic missing", 1)) for r in rows),
-            "x",
-            color=colour,
-            ms=9,
-        )
+        done = [r for r in rows if "elastic error" in r]
+        for key, line in (("rigid f / f1", "o-"), ("elastic error", "s:")):
+            curve(axes, done, shift, key, line, colour, f"{name}: {key}", least=1e-17)
+        lost = [r for r in rows if r.get("elastic missing", 1)]
+        curve(axes, lost, shift, lambda r: 3.0, "x", colour, ms=9)
     axes.axvline(1e-18, color="#888888", lw=0.8)
     axes.annotate("shift 0", (1e-18, 1e-16), rotation=90, fontsize=8)
     axes.set(
@@ -206,7 +198,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(1e-17, 20),
     )
     axes.legend(fontsize=7, ncols=3)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

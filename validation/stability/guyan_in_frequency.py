@@ -4,8 +4,6 @@ stiffness of the same beam, by a direct solution at each frequency.
 
 Models: static condensation (stiffness alone), the same with the rigid mass of the body, and Guyan's
 reduction (mass condensed on the static shapes).
-
-    python -m validation.stability.guyan_in_frequency [--quick]
 """
 
 from __future__ import annotations
@@ -16,8 +14,9 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.reduction.lumped_point import lumped_point
+from validation.common import ROOT
 from validation.stability.bearing_extremes import assembled, block_of
-from validation.stability.frame import ROOT, Finding, crossing, main
+from validation.stability.frame import Finding, crossing, curve
 
 SCENES = ("pinion_overhung", "pinion_straddle")
 MODELS = ("static", "total mass", "Guyan")
@@ -126,13 +125,8 @@ def draw(finding: Finding, axes) -> None:
     for name, line in zip(SCENES, ("-", "--")):
         rows = [r for r in finding.rows if r["scene"] == name]
         for model, colour in zip(MODELS, ("#c4541c", "#e0a030", "#0072b2")):
-            axes.loglog(
-                [r["w / w_fixed"] for r in rows],
-                [max(r[model], 1e-6) for r in rows],
-                line,
-                color=colour,
-                label=f"{model}, {name}",
-            )
+            words = f"{model}, {name}"
+            curve(axes, rows, "w / w_fixed", model, line, colour, words, least=1e-6)
     for level in LEVELS:
         axes.axhline(level, color="#aa2222", lw=0.8, ls=":")
     axes.axvline(1.0, color="#888888", lw=0.8)
@@ -145,7 +139,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(1e-5, 1e3),
     )
     axes.legend(fontsize=7)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

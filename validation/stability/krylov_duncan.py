@@ -3,8 +3,6 @@ Reference: roots of cos(x) - 1/cosh(x), which overflows nowhere.
 
 Models: the determinant U^2 - T V (clamped; the free one has the same) in plain cosh and sinh, whole
 and as a product of transfer matrices, and the program's `krylov`.
-
-    python -m validation.stability.krylov_duncan [--quick]
 """
 
 from __future__ import annotations
@@ -12,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.stability.frame import Finding, crossing, main
+from validation.stability.frame import Finding, columns, crossing
 from validation.thesis.krylov import Span, krylov, krylov_duncan
 
 MOST = 64
@@ -118,35 +116,16 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Errors over kL."""
-    kl = [r["kL"] for r in finding.rows]
-    axes.semilogy(
-        kl,
-        [r["plain error"] for r in finding.rows],
-        "o-",
-        color="#c4541c",
-        label="plain cosh, sinh",
-    )
-    axes.semilogy(
-        kl,
-        [r["transfer error"] for r in finding.rows],
-        "s:",
-        color="#e0a030",
-        label=f"{CUTS} transfer matrices",
-    )
-    axes.semilogy(
-        kl,
-        [max(r["program error"], 1e-17) for r in finding.rows],
-        "^-",
-        color="#0072b2",
-        label="program",
-    )
-    axes.semilogy(
-        kl,
-        [r["estimate eps exp(kL) / kL"] for r in finding.rows],
-        "--",
-        color="#888888",
-        label="eps exp(kL) / kL",
-    )
+    for name, line, colour, words in (
+        ("plain error", "o-", "#c4541c", "plain cosh, sinh"),
+        ("transfer error", "s:", "#e0a030", f"{CUTS} transfer matrices"),
+        ("program error", "^-", "#0072b2", "program"),
+        ("estimate eps exp(kL) / kL", "--", "#888888", "eps exp(kL) / kL"),
+    ):
+        kl, error = columns(finding.rows, "kL", name)
+        # a root that the program has to the last bit stays on the chart
+        error = np.maximum(error, 1e-17 if name == "program error" else 0.0)
+        axes.semilogy(kl, error, line, color=colour, label=words)
     wrong = [r["kL"] for r in finding.rows if r["plain roots seen"] != 1]
     axes.plot(wrong, [3.0] * len(wrong), "x", color="#aa2222", label="plain: wrong number of roots")
     axes.set(
@@ -156,7 +135,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(1e-17, 30),
     )
     axes.legend(fontsize=8, loc="center right")
-
-
-if __name__ == "__main__":
-    main(measure, draw)

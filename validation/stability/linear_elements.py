@@ -4,8 +4,6 @@ harmonic solid with the same section ties.
 Models: TET4 and HEX8 against TET10, HEX20 and HEX27 at equal numbers of unknowns; and hexahedra
 drawn out along the shaft on one mesh of the section, where a linear element answers bending with
 shear it should not have.
-
-    python -m validation.stability.linear_elements [--quick]
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ import solidgear as sg
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 
 RADIUS, LENGTH = 0.05, 0.4
 LEVELS = {
@@ -155,33 +153,20 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Error of first bending over unknowns."""
     style = {
-        "tet4": ("#c98a00", "^"),
-        "hex8": ("#c4541c", "s"),
-        "tet10": ("#0072b2", "^"),
-        "hex20": ("#00805e", "s"),
-        "hex27": ("#5a3e8c", "D"),
+        "tet4": ("#c98a00", "^-"),
+        "hex8": ("#c4541c", "s-"),
+        "tet10": ("#0072b2", "^-"),
+        "hex20": ("#00805e", "s-"),
+        "hex27": ("#5a3e8c", "D-"),
     }
-    for element, (colour, marker) in style.items():
+    for element, (colour, line) in style.items():
         rows = [r for r in finding.rows if r.get("element") == element]
         if rows:
-            axes.loglog(
-                [r["unknowns"] for r in rows],
-                [abs(r["f1"]) for r in rows],
-                marker + "-",
-                color=colour,
-                label=element.upper(),
-            )
-    for element, words in (("hex8", "HEX8 drawn out"), ("hex20", "HEX20 drawn out")):
+            curve(axes, rows, "unknowns", "f1", line, colour, element.upper())
+    for element in ("hex8", "hex20"):
         rows = [r for r in finding.rows if r.get("drawn out") == element]
-        axes.loglog(
-            [r["unknowns"] for r in rows],
-            [abs(r["f1"]) for r in rows],
-            ":",
-            marker="o",
-            mfc="white",
-            color=style[element][0],
-            label=words,
-        )
+        colour, words = style[element][0], f"{element.upper()} drawn out"
+        curve(axes, rows, "unknowns", "f1", "o:", colour, words, mfc="white")
         for r in rows:
             axes.annotate(
                 f"{r['length over width']:.0f}",
@@ -189,7 +174,7 @@ def draw(finding: Finding, axes) -> None:
                 xytext=(5, 3),
                 textcoords="offset points",
                 fontsize=7.5,
-                color=style[element][0],
+                color=colour,
             )
     axes.set(
         xlabel="unknowns",
@@ -197,7 +182,3 @@ def draw(finding: Finding, axes) -> None:
         title=f"{finding.method} (figures: length over width of cells)",
     )
     axes.legend(ncols=2, fontsize=8)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

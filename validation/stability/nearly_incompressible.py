@@ -4,14 +4,12 @@ at the same ratio.
 Models: all elements of the 3D solid, the harmonic solid of low order, the Timoshenko beam (its
 shear coefficient).  A displacement element that cannot keep its volume while it bends locks: its
 error grows with 1 / (1 - 2 nu).
-
-    python -m validation.stability.nearly_incompressible [--quick]
 """
 
 from __future__ import annotations
 
 import solidgear as sg
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding
 from validation.stability.linear_elements import PLAIN, RADIUS, answers, shaft
 
 RATIOS = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999)
@@ -30,6 +28,18 @@ MODELS = {
     "harmonic Q3": ("harmonic", dict(FLAT, order=3)),
     "harmonic Q5": ("harmonic", dict(FLAT, order=5)),
     "timoshenko, first bending": ("timoshenko", {}),
+}
+COLOURS = {
+    "tet4": "#c98a00",
+    "hex8": "#c4541c",
+    "tet10": "#0072b2",
+    "hex20": "#00805e",
+    "hex27": "#5a3e8c",
+    "harmonic Q1": "#c4541c",
+    "harmonic Q2": "#00805e",
+    "harmonic Q3": "#0072b2",
+    "harmonic Q5": "#888888",
+    "timoshenko, first bending": "#111111",
 }
 CHEAP = ("hex8", "hex20", "harmonic Q1", "harmonic Q2", "harmonic Q5", "timoshenko, first bending")
 LINEAR = ("tet4", "hex8", "harmonic Q1")
@@ -91,38 +101,13 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Error over the distance of nu from one half."""
     at = [k for k in finding.rows[0] if k.startswith("nu ")]
-    colours = dict(
-        zip(
-            MODELS,
-            (
-                "#c98a00",
-                "#c4541c",
-                "#0072b2",
-                "#00805e",
-                "#5a3e8c",
-                "#c4541c",
-                "#00805e",
-                "#0072b2",
-                "#888888",
-                "#111111",
-            ),
-        )
-    )
+    away = [0.5 - float(k[3:]) for k in at]
     for row in finding.rows:
-        solid = MODELS[row["model"]][0] == "solid"
-        axes.loglog(
-            [0.5 - float(k[3:]) for k in at],
-            [abs(row[k]) for k in at],
-            "o-" if solid else "x--",
-            color=colours[row["model"]],
-            label=row["model"],
-        )
+        line = "o-" if MODELS[row["model"]][0] == "solid" else "x--"
+        errors = [abs(row[k]) for k in at]
+        axes.loglog(away, errors, line, color=COLOURS[row["model"]], label=row["model"])
     axes.invert_xaxis()
-    axes.set_xticks([0.5 - float(k[3:]) for k in at], [k[3:] for k in at], fontsize=8)
+    axes.set_xticks(away, [k[3:] for k in at], fontsize=8)
     axes.minorticks_off()
     axes.set(xlabel="Poisson ratio", ylabel="error of the bending compliance", title=finding.method)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

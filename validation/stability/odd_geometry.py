@@ -4,8 +4,6 @@ one place, seats that touch, overlap or hang over.  Reference: the harmonic soli
 
 Model: the Timoshenko beam.  What counts is the gap between the two in excess of the sound scene's,
 what `check_scene` says, and the residual of the modes.
-
-    python -m validation.stability.odd_geometry [--quick]
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.scene import Bearing, Port, Scene, Segment
 from solidgear.studies.check import check_scene
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 
 K = np.diag([1e9, 5e8, 1e9, 2e6, 0.0, 2e6])
 PIN = np.diag([1e9, 5e8, 1e9, 0.0, 0.0, 0.0])
@@ -294,28 +292,12 @@ def draw(finding: Finding, axes) -> None:
     for what, marker in zip(SWEEPS, "osD^v<P"):
         rows = [r for r in finding.rows if r["odd"] == what and "worst" in r]
         if rows:
-            axes.loglog(
-                [r["value"] for r in rows],
-                [max(r["worst"], 1e-5) for r in rows],
-                marker + "-",
-                label=what,
-            )
+            curve(axes, rows, "value", "worst", marker + "-", None, what, least=1e-5)
             quiet = [r for r in rows if r["outcome"] == "silent"]
-            axes.plot(
-                [r["value"] for r in quiet],
-                [max(r["worst"], 1e-5) for r in quiet],
-                "o",
-                color="#aa2222",
-                ms=10,
-                mfc="none",
-            )
+            curve(axes, quiet, "value", "worst", "o", "#aa2222", least=1e-5, ms=10, mfc="none")
     axes.axhline(LIMIT, color="#aa2222", lw=0.8, ls="--")
     axes.set(
         xlabel="what is odd, relative (circled in red: without a caution)",
         ylabel="gap beam to solid in excess of the sound scene's",
     )
     axes.legend(fontsize=6)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -3,8 +3,6 @@ or one that dies, an interrupt, a full disk, a folder that cannot be written, a 
 away.  Reference: what a command owes its user: an exit code, one sentence, and whole files or none.
 
 Every case is a child process on the overhung pinion.
-
-    python -m validation.stability.operation [--quick]
 """
 
 from __future__ import annotations
@@ -21,7 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from solidgear.report.folder import LOCK
-from validation.stability.frame import ROOT, Finding, main
+from validation.common import ROOT
+from validation.stability.frame import Finding
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
 CHEAP = ("compare", SCENE, "--models", "timoshenko,euler", "--out")
@@ -387,7 +386,3 @@ def draw(finding: Finding, axes) -> None:
     axes.set_yticks(range(len(rows)), [r["what"] for r in rows], fontsize=6)
     axes.set(xlim=(-0.02, 1), xticks=(), title=finding.method)
     axes.grid(False)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

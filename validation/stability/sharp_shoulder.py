@@ -3,8 +3,6 @@ order.
 
 Models: the harmonic solid on uniform meshes (orders of convergence against twice the corner
 exponent), on graded ones, and the greatest strain on the surface, which has no limit.
-
-    python -m validation.stability.sharp_shoulder [--quick]
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import solidgear as sg
 from solidgear.kernel.assembly import reference, tabulate
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 
 THIN, THICK, STEP, END = 0.05, 0.075, 0.1, 0.2  # radii and places, m
 REFINEMENTS = (1, 2, 4, 8)
@@ -156,39 +154,25 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Error of the tilt over unknowns."""
-    for order, colour, marker in ((1, "#c98a00", "v"), (2, "#c4541c", "o"), (3, "#5a3e8c", "D")):
-        rows = [r for r in finding.rows if r.get("mesh") == f"uniform Q{order}"]
-        axes.loglog(
-            [r["unknowns"] for r in rows],
-            [r["error of tilt"] for r in rows],
-            marker + "-",
-            color=colour,
-            label=f"uniform Q{order}",
-        )
-    rows = [r for r in finding.rows if str(r.get("mesh")).startswith("graded")]
-    axes.loglog(
-        [r["unknowns"] for r in rows],
-        [r["error of tilt"] for r in rows],
-        "s-",
-        color="#00805e",
-        label="graded Q2 to Q5",
-    )
-    rows = [r for r in finding.rows if r.get("mesh") == "uniform Q2"]
+
+    def of(mesh):
+        return [r for r in finding.rows if r["mesh"].startswith(mesh)]
+
+    for mesh, line, colour in (
+        ("uniform Q1", "v-", "#c98a00"),
+        ("uniform Q2", "o-", "#c4541c"),
+        ("uniform Q3", "D-", "#5a3e8c"),
+    ):
+        curve(axes, of(mesh), "unknowns", "error of tilt", line, colour, mesh)
+    graded = of("graded")
+    curve(axes, graded, "unknowns", "error of tilt", "s-", "#00805e", "graded Q2 to Q5")
     other = axes.twinx()
-    other.loglog(
-        [r["unknowns"] for r in rows],
-        [r["greatest strain over nominal"] for r in rows],
-        "x:",
-        color="#0072b2",
-    )
-    other.set(ylabel="greatest strain over nominal, uniform Q2 (crosses)", ylim=(1, 10))
+    strain = "greatest strain over nominal"
+    curve(other, of("uniform Q2"), "unknowns", strain, "x:", "#0072b2")
+    other.set(ylabel=f"{strain}, uniform Q2 (crosses)", ylim=(1, 10))
     other.set_yticks([1, 2, 3, 5, 10], ["1", "2", "3", "5", "10"])
     other.minorticks_off()
     other.spines["right"].set_visible(True)
     other.grid(visible=False)
     axes.set(xlabel="unknowns", ylabel="error of the tilt", title=finding.method)
     axes.legend(loc="lower left")
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -3,8 +3,6 @@ Reference: the dense solution.
 
 Models: textbook shift-invert with the shift 1e-2 down to 0 (relative) from the pair, and `modes`,
 whose shift is negative and so is never on an eigenvalue.
-
-    python -m validation.stability.shift_on_eigenvalue [--quick]
 """
 
 from __future__ import annotations
@@ -16,7 +14,8 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear.body import as_supports
-from validation.stability.frame import ROOT, Finding, main
+from validation.common import ROOT
+from validation.stability.frame import Finding, curve
 from validation.stability.free_body_shift import whole
 
 AWAY = (*10.0 ** -np.arange(2, 15.5, 0.5), 0.0)
@@ -180,41 +179,28 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Errors and lost modes over the distance of the shift."""
+    away = "shift from pair"
     for name, colour in zip(BODIES, ("#0072b2", "#c4541c")):
         rows = [r for r in finding.rows if r["solver"] == "shift-invert" and r["body"] == name]
-        at = [max(r["shift from pair"], 1e-16) for r in rows]
-        axes.loglog(
-            at,
-            [max(r["error"], 1e-17) for r in rows],
-            "o-",
-            color=colour,
-            label=f"{name}: worst eigenvalue error",
-        )
-        axes.loglog(
-            at,
-            [max(r["residual"], 1e-17) for r in rows],
-            "s:",
-            color=colour,
-            label=f"{name}: residual seen",
-        )
-        for a, r in zip(at, rows):
+        least = {"least_x": 1e-16, "least": 1e-17}
+        words = f"{name}: worst eigenvalue error"
+        curve(axes, rows, away, "error", "o-", colour, words, **least)
+        curve(axes, rows, away, "residual", "s:", colour, f"{name}: residual seen", **least)
+        for r in rows:
             if r["missing"]:
                 axes.annotate(
                     f"{r['missing']:g} lost",
-                    (a, 0.03),
+                    (max(r[away], 1e-16), 0.03),
                     rotation=90,
                     ha="center",
                     va="bottom",
                     fontsize=8,
                     color=colour,
                 )
-        own = next(
-            (r for r in finding.rows if r["solver"] == "program" and r["body"] == name), None
-        )
-        if own:
-            axes.axhline(
-                max(own["error"], 1e-17), color=colour, lw=0.8, ls="--", label=f"{name}: program"
-            )
+        for r in finding.rows:
+            if r["solver"] == "program" and r["body"] == name:
+                error = max(r["error"], 1e-17)
+                axes.axhline(error, color=colour, lw=0.8, ls="--", label=f"{name}: program")
     axes.annotate("on the pair", (1e-16, 1e-15), rotation=90, fontsize=8)
     axes.set(
         xlabel="distance of the shift from the pair, relative",
@@ -223,7 +209,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(1e-17, 10),
     )
     axes.legend(fontsize=8)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -5,8 +5,6 @@ Model: Timoshenko beam.  A pure moment loads a section tie with the stresses of 
 of the gap in tilt comes from the shoulder: stress cannot fill the thick part right behind it.  It
 is told as a missing length of thin shaft, and as the angle of the cone (from the axis) that the
 thick part may be thought to start with.
-
-    python -m validation.stability.shoulder_step [--quick]
 """
 
 from __future__ import annotations
@@ -15,7 +13,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
-from validation.stability.frame import Finding, crossing, main
+from validation.stability.frame import Finding, columns, crossing
 
 THIN = 0.1  # diameter, m
 RATIOS = (1.02, 1.05, 1.1, 1.2, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0)
@@ -149,17 +147,15 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Errors and cone angle over the ratio."""
-    at = [r["ratio"] for r in finding.rows]
-    for name, colour, marker, words in (
-        ("C_zz, 1 d", "#c4541c", "o", "deflection, overhang 1 d"),
-        ("C_zz, 2 d", "#0072b2", "s", "deflection, overhang 2 d"),
-        ("C_thx, 1 d", "#c98a00", "v", "tilt, overhang 1 d"),
-        ("C_zz with that cone", "#00805e", "D", "deflection, 2 d, with the cone"),
-        ("C_zz with a hinge", "#111111", "^", "deflection, 2 d, with a hinge"),
+    for name, line, colour, words in (
+        ("C_zz, 1 d", "o-", "#c4541c", "deflection, overhang 1 d"),
+        ("C_zz, 2 d", "s-", "#0072b2", "deflection, overhang 2 d"),
+        ("C_thx, 1 d", "v-", "#c98a00", "tilt, overhang 1 d"),
+        ("C_zz with that cone", "D-", "#00805e", "deflection, 2 d, with the cone"),
+        ("C_zz with a hinge", "^-", "#111111", "deflection, 2 d, with a hinge"),
     ):
-        axes.plot(
-            at, [100 * r[name] for r in finding.rows], marker + "-", color=colour, label=words
-        )
+        at, error = columns(finding.rows, "ratio", name)
+        axes.plot(at, 100 * error, line, color=colour, label=words)
     axes.set(
         xlabel="ratio of diameters",
         ylabel="beam against solid, %",
@@ -168,11 +164,7 @@ def draw(finding: Finding, axes) -> None:
     )
     axes.legend(loc="upper left", ncols=2)
     other = axes.twinx()
-    other.plot(at, [r["cone angle, deg"] for r in finding.rows], ":", color="#5a3e8c", lw=1.6)
+    other.plot(*columns(finding.rows, "ratio", "cone angle, deg"), ":", color="#5a3e8c", lw=1.6)
     other.set(ylabel="angle of the equivalent cone, degrees (dotted)", ylim=(0, 90))
     other.spines["right"].set_visible(True)
     other.grid(visible=False)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -4,8 +4,6 @@ harmonic solid, its own change under refinement beside it.
 Models: Euler and Timoshenko beams.  The shaft on bearings has its seats at a tenth of its length
 from both ends and is loaded in the middle, all tied by section means, the fair partner of a beam
 node.
-
-    python -m validation.stability.slenderness [--quick]
 """
 
 from __future__ import annotations
@@ -14,7 +12,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
-from validation.stability.frame import Finding, crossing, main
+from validation.stability.frame import Finding, crossing, curve
 
 DIAMETER = 0.1
 SLENDERNESS = (20.0, 16.0, 12.0, 8.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.25, 1.0, 0.75, 0.5)
@@ -141,22 +139,14 @@ def _finding(model, rows) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Errors over slenderness."""
-    at = [r["L/D"] for r in finding.rows]
-    for name, colour, marker in (
-        ("free f1", "#c4541c", "o"),
-        ("f1 on bearings", "#0072b2", "s"),
-        ("C_zz on bearings", "#00805e", "D"),
+    for name, line, colour in (
+        ("free f1", "o-", "#c4541c"),
+        ("f1 on bearings", "s-", "#0072b2"),
+        ("C_zz on bearings", "D-", "#00805e"),
     ):
-        axes.loglog(
-            at, [abs(r[name]) for r in finding.rows], marker + "-", color=colour, label=name
-        )
-    axes.loglog(
-        at,
-        [max(r["reference moved"], 1e-9) for r in finding.rows],
-        ":",
-        color="#888888",
-        label="what refining the reference moves",
-    )
+        curve(axes, finding.rows, "L/D", name, line, colour, name)
+    words = "what refining the reference moves"
+    curve(axes, finding.rows, "L/D", "reference moved", ":", "#888888", words, least=1e-9)
     for level in LEVELS:
         axes.axhline(level, color="#aa2222", lw=0.8, ls="--")
         axes.annotate(
@@ -177,7 +167,3 @@ def draw(finding: Finding, axes) -> None:
     axes.set_xticks(ticks := [0.5, 1, 2, 3, 5, 10, 20], [f"{t:g}" for t in ticks])
     axes.minorticks_off()
     axes.legend()
-
-
-if __name__ == "__main__":
-    main(measure, draw)

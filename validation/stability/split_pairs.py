@@ -4,8 +4,6 @@ order is that of the harmonic solid.
 
 Models: Timoshenko and harmonic (bending planes apart), hexahedra (an O-grid of fourfold symmetry
 keeps pairs) and tetrahedra (no symmetry: the mesh splits every pair).
-
-    python -m validation.stability.split_pairs [--quick]
 """
 
 from __future__ import annotations
@@ -15,7 +13,8 @@ import numpy as np
 import solidgear as sg
 from solidgear.body import Supports, as_supports
 from solidgear.judge.correlation import subspace_mac
-from validation.stability.frame import ROOT, Finding, crossing, main
+from validation.common import ROOT
+from validation.stability.frame import Finding, crossing, curve
 
 BODIES = {
     "timoshenko": ("timoshenko", {}),
@@ -153,23 +152,16 @@ def measure(quick: bool = False) -> Finding:
 
 def draw(finding: Finding, axes) -> None:
     """Split of the first pair over the anisotropy."""
+    least = {"least_x": 1e-17, "least": 1e-17}
     for name, colour, marker in zip(
         BODIES, ("#0072b2", "#00805e", "#e0a030", "#c4541c", "#aa2277", "#555555"), "osD^v<"
     ):
         rows = [r for r in finding.rows if r["body"] == name]
         if not rows:
             continue
-        at = [max(r["anisotropy"], 1e-17) for r in rows]
-        axes.loglog(
-            at, [max(r["split of f1"], 1e-17) for r in rows], marker + "-", color=colour, label=name
-        )
-        grouped = [
-            (a, max(r["split of f1"], 1e-17))
-            for a, r in zip(at, rows)
-            if " + " not in r["grouped as"]
-        ]
-        if grouped:
-            axes.plot(*zip(*grouped), marker, color=colour, ms=9, mfc="none", ls="none")
+        curve(axes, rows, "anisotropy", "split of f1", marker + "-", colour, name, **least)
+        one = [r for r in rows if " + " not in r["grouped as"]]
+        curve(axes, one, "anisotropy", "split of f1", marker, colour, ms=9, mfc="none", **least)
     axes.set(
         xlabel="anisotropy of the bearings (circled: held to be one pair)",
         ylabel="split of the first pair, relative",
@@ -177,7 +169,3 @@ def draw(finding: Finding, axes) -> None:
         ylim=(3e-18, 10),
     )
     axes.legend(fontsize=8)
-
-
-if __name__ == "__main__":
-    main(measure, draw)

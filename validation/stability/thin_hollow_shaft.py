@@ -4,8 +4,6 @@ Reference: rings in closed form.
 Models: the harmonic solid with its extra harmonics, the full 3D solid on one tube.  The closed form
 is the inextensional ring, ``w^2 = E' I n^2 (n^2-1)^2 / (rho A R^4 (n^2+1))`` (Love, Theory of
 Elasticity, sec. 293): E' = E for a narrow hoop, E / (1 - nu^2) for a long tube.
-
-    python -m validation.stability.thin_hollow_shaft [--quick]
 """
 
 from __future__ import annotations
@@ -14,7 +12,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.scene import STEEL, Scene, Segment
-from validation.stability.frame import Finding, crossing, main
+from validation.stability.frame import Finding, columns, crossing, curve
 
 OUTER = 0.5  # radius, m: frequencies go with its inverse, ratios do not care
 WALLS = (
@@ -150,30 +148,13 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Wall of equal frequencies over slenderness."""
     rows = [r for r in finding.rows if "L/D" in r]
-    at = [r["L/D"] for r in rows]
-    for n, colour, marker in ((2, "#c4541c", "o"), (3, "#0072b2", "s")):
-        axes.loglog(
-            at,
-            [r[f"wall / radius, n = {n} meets bending"] for r in rows],
-            marker + "-",
-            color=colour,
-            label=f"n = {n} meets bending (measured)",
-        )
-    axes.loglog(
-        at,
-        [r["wall / radius, closed form"] for r in rows],
-        ":",
-        color="#555555",
-        label="closed form: ring against Timoshenko",
-    )
-    axes.fill_between(
-        at,
-        [r["wall / radius, n = 2 meets bending"] for r in rows],
-        0.01,
-        color="#c4541c",
-        alpha=0.08,
-        lw=0,
-    )
+    for n, line, colour in ((2, "o-", "#c4541c"), (3, "s-", "#0072b2")):
+        wall, words = f"wall / radius, n = {n} meets bending", f"n = {n} meets bending (measured)"
+        curve(axes, rows, "L/D", wall, line, colour, words)
+    words = "closed form: ring against Timoshenko"
+    curve(axes, rows, "L/D", "wall / radius, closed form", ":", "#555555", words)
+    at, wall = columns(rows, "L/D", "wall / radius, n = 2 meets bending")
+    axes.fill_between(at, wall, 0.01, color="#c4541c", alpha=0.08, lw=0)
     axes.annotate("ovalises first", (0.06, 0.08), xycoords="axes fraction", color="#c4541c")
     axes.set(
         xlabel="length over outer diameter",
@@ -184,7 +165,3 @@ def draw(finding: Finding, axes) -> None:
     axes.set_xticks(at, [f"{t:g}" for t in at])
     axes.minorticks_off()
     axes.legend()
-
-
-if __name__ == "__main__":
-    main(measure, draw)

@@ -5,8 +5,6 @@ Reference: closed forms of how the first two diverge.  A line load on a half spa
 ``ln(1/h)``: a unit force spread over a ring of radius R gains ``ln 2 (1 + nu) (2 - nu) / (2 pi^2 R
 E)`` at each halving (plane strain for its radial part, antiplane shear for its tangential part;
 Johnson, Contact Mechanics, sec. 2.2).  A point load sinks in by 1/h (Boussinesq).
-
-    python -m validation.stability.ties [--quick]
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
 from solidgear.solve.factor import factorise
-from validation.stability.frame import Finding, main
+from validation.stability.frame import Finding, curve
 
 RADIUS, LENGTH = 0.05, 0.3
 SPRING = 1e9  # N/m
@@ -168,21 +166,15 @@ def measure(quick: bool = False) -> Finding:
 def draw(finding: Finding, axes) -> None:
     """Compliance over mesh size."""
     base = next(r["section"] for r in finding.rows[::-1] if "section" in r)
-    for name, colour, marker in (
-        ("point", "#c4541c", "o"),
-        ("ring line", "#c98a00", "v"),
-        ("patch", "#00805e", "s"),
-        ("rigid ring", "#5a3e8c", "D"),
-        ("section", "#0072b2", "^"),
+    for name, line, colour in (
+        ("point", "o-", "#c4541c"),
+        ("ring line", "v-", "#c98a00"),
+        ("patch", "s-", "#00805e"),
+        ("rigid ring", "D-", "#5a3e8c"),
+        ("section", "^-", "#0072b2"),
     ):
-        rows = [r for r in finding.rows if name in r]
-        axes.loglog(
-            [r["h / R"] for r in rows],
-            [r[name] / base for r in rows],
-            marker + "-",
-            color=colour,
-            label=name,
-        )
+        rows = [r | {name: r[name] / base} for r in finding.rows if name in r]
+        curve(axes, rows, "h / R", name, line, colour, name)
     axes.invert_xaxis()
     ticks = [r["h / R"] for r in finding.rows if "section" in r]
     axes.set_xticks(ticks, [f"R/{1 / t:.0f}" for t in ticks])
@@ -192,7 +184,3 @@ def draw(finding: Finding, axes) -> None:
         xlabel="mesh size", ylabel="compliance over that of a section tie", title=finding.method
     )
     axes.legend()
-
-
-if __name__ == "__main__":
-    main(measure, draw)

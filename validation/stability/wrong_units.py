@@ -3,8 +3,6 @@ the other way, MPa or GPa read as Pa, g/cm3 or t/mm3 read as kg/m3, N/mm or kN/m
 Reference: none is needed; a guard must fire on the slip and stay silent on the sound scene.
 
 Models: criteria that cost nothing, each over all scenes and slips.
-
-    python -m validation.stability.wrong_units [--quick]
 """
 
 from __future__ import annotations
@@ -12,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
+from validation.common import ROOT
 from validation.shipped import shipped_shafts
-from validation.stability.frame import ROOT, Finding, main
+from validation.stability.frame import Finding
 
 GEOMETRY = ROOT / "geometry"
 #: slip -> factors on lengths, E, density, translational stiffness (its tilt stiffness follows its
@@ -243,7 +242,3 @@ def _fired(row) -> list[str]:
     return [
         name for name, (low, high) in LIMITS.items() if name in row and not low <= row[name] <= high
     ]
-
-
-if __name__ == "__main__":
-    main(measure, draw)
