@@ -38,7 +38,7 @@ def test_the_page_holds_these_verdicts(judged):
 
 def test_every_verdict_leads_to_the_curve_it_rests_on():
     text = claims.PAGE.read_text(encoding="utf-8")
-    assert list(curves.CURVES) == list(FOUND)
+    assert all(callable(getattr(curves, name)) for name in FOUND)
     for k in range(1, len(FOUND) + 1):
         row = next(line for line in text.splitlines() if f"(#claim-{k})" in line)
         assert row.startswith("| ") and f"\n## Claim {k}\n" in text

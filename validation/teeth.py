@@ -7,13 +7,12 @@ The head of the overhung pinion with teeth of several counts, proportions and sp
 sector, against cones drawn as sectors with the same sizes of elements, so that errors of the mesh
 cancel in part. The lumped point follows the mean motion of the head's material. The second cone
 runs above the roots by a fifth of the tooth and carries on the lumped point the mass and inertia
-that it lacks. Rows go to validation/figures/teeth.csv.
+that it lacks. Rows go to validation/results/teeth/.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,9 +20,8 @@ import numpy as np
 import solidgear as sg
 from solidgear.models.sector.body import sector
 from solidgear.scene import Teeth
-from validation.common import ROOT
+from validation.common import ROOT, results_folder, write_rows
 
-ROWS = ROOT / "validation" / "figures" / "teeth.csv"
 #: share of the depth of a tooth, above its root, at which the stiffest like cone runs
 STIFF = 0.2
 #: count, addendum, dedendum, spiral angle in degrees; the second line has the heights of bevel teeth
@@ -141,11 +139,7 @@ def main() -> None:
             ),
             flush=True,
         )
-    if not quick:
-        with open(ROWS, "w", newline="") as file:
-            writer = csv.DictWriter(file, list(rows[0]))
-            writer.writeheader()
-            writer.writerows(rows)
+    write_rows(results_folder("teeth") / "rows.csv", rows)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from typing import Any
 
 from solidgear.report.panel import GREY, Axis, Panel, Series
 from solidgear.report.plot import Chart
+from solidgear.report.words import capital
 from validation.backlash import axle, gears, pairs
 from validation.common import ROOT, kept, markdown, read_result, stamp
 
@@ -141,7 +142,7 @@ def page(found: dict[str, Any]) -> str:
         right=f"{1e6 * ross[0]['distance'] / 2:.1f}",
         pairs=_table(pairs_rows(rows["pairs"])),
         models="\n\n".join(
-            f"{TITLES[name][0].upper()}{TITLES[name][1:]}:\n\n{_table(models_rows(own))}"
+            f"{capital(TITLES[name])}:\n\n{_table(models_rows(own))}"
             for name, own in rows["models"].items()
         ),
         flanks=flanks(rows["models"], rows["torque"]),
@@ -252,7 +253,7 @@ def verdict(models: dict[str, list[dict]]) -> str:
         ]
         contact = 100 * abs(lumped["least contact"] - judge["least contact"])
         lines.append(
-            f"- **{TITLES[name][0].upper()}{TITLES[name][1:]}**: {'; '.join(words)}. The lumped shafts of "
+            f"- **{capital(TITLES[name])}**: {'; '.join(words)}. The lumped shafts of "
             f"14 unknowns put jumps {100 * max(off):.1f} % off at most, and contact {contact:.0f} points "
             "of the cycle."
         )
@@ -331,7 +332,7 @@ def fails(torque: dict[str, list[dict]]) -> str:
         calm = [r for r in rows if not r["jumps"]]
         over = max(rows, key=lambda r: r["linear"][1] / r["largest"][1])
         says = (
-            f"- **{TITLES[name][0].upper()}{TITLES[name][1:]}**: at {worst['torque']:.0f} N m it misses "
+            f"- **{capital(TITLES[name])}**: at {worst['torque']:.0f} N m it misses "
             f"{worst['only true']:.0f} Hz of speeds at which teeth can part"
         )
         if calm:

@@ -20,6 +20,7 @@ from validation.campaign import results, scoreboard
 from validation.campaign.cases import CASES
 from validation.campaign.run import run, timed
 from validation.campaign.table import report
+from validation.common import RESULTS
 
 
 def parsed(arguments: list[str] | None = None) -> argparse.Namespace:
@@ -35,7 +36,7 @@ def parsed(arguments: list[str] | None = None) -> argparse.Namespace:
         add("--seeds", type=int, nargs=2, metavar=("FIRST", "LAST"), default=case.seeds)
         add("--jobs", type=int, default=1, help="bodies at a time")
         add("--seconds", type=float, default=case.seconds, help="that one call may take")
-        add("--folder", type=Path, default=results.FOLDER, help="of rows, references and scores")
+        add("--folder", type=Path, default=RESULTS, help="of rows, references and scores")
         add("--again", action="store_true", help="ask again what has been answered")
         case.options(own)
     return parser.parse_args(arguments)

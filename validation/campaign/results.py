@@ -3,31 +3,26 @@
 from __future__ import annotations
 
 import argparse
-import datetime
 import json
-import os
-import platform
 import re
-import subprocess
 from pathlib import Path
 
 from solidgear.machine.whole_file import whole
 from validation.campaign import table
 from validation.campaign.case import Case
 from validation.campaign.rows import Found
-from validation.common import ROOT
-
-FOLDER = ROOT / "validation" / "results"
+from validation.common import RESULTS, stamp
 
 
 def result(case: Case, given: argparse.Namespace, found: Found) -> dict[str, object]:
     """A score and where it came from, as plain data."""
+    made = stamp()
     return {
         "campaign": case.name,
         "asked": case.asked(given),
-        "date": datetime.date.today().isoformat(),
-        "commit": commit(),
-        "machine": machine(),
+        "date": made["date"].split()[0],
+        "commit": made["commit"],
+        "machine": "{cpu}, {cores} cores".format(**made["machine"]),
         "bars": table.bars(found.rows, case.parts),
         "details": table.bars(found.rows, case.details),
         "verdicts": table.verdicts(found.verdicts),
@@ -50,37 +45,9 @@ def write(folder: Path, content: dict[str, object]) -> Path:
     return path
 
 
-def read(folder: Path = FOLDER) -> list[dict]:
+def read(folder: Path = RESULTS) -> list[dict]:
     """Results of campaigns in a folder with their names, the newest first; races write there too."""
     paths = sorted(folder.glob("*.json"))
     found = [json.loads(path.read_text()) | {"name": path.stem} for path in paths]
     campaigns = [one for one in found if "campaign" in one]
     return sorted(campaigns, key=lambda one: one["date"], reverse=True)
-
-
-def commit() -> str:
-    """The commit that is checked out, with a plus where the program or the campaigns differ from
-    it; "" without one.
-    """
-    try:
-        head = _git("rev-parse", "--short=7", "HEAD")
-        changed = _git("status", "--porcelain", "-uno", "solidgear", "validation/campaign")
-    except (OSError, subprocess.CalledProcessError):
-        return ""
-    return f"{head}+" if changed else head
-
-
-def _git(*words: str) -> str:
-    said = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True)
-    return said.stdout.strip()
-
-
-def machine() -> str:
-    """Processor and cores."""
-    name = platform.processor() or platform.machine()
-    info = Path("/proc/cpuinfo")
-    for line in info.read_text().splitlines() if info.exists() else ():
-        if line.startswith("model name"):
-            name = line.split(":", 1)[1].strip()
-            break
-    return f"{name}, {os.cpu_count()} cores"

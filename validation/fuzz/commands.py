@@ -62,6 +62,8 @@ WILD = (
     *("", " ", '"', "3.5 mm", "hex20", "average", "9" * 400, "9" * 5000, "x" * 5000),
     *("\u0663", "\U0001f600", "\u202e", "\x1b[2J", "\x07", "a\nb", "\udcff"),
 )
+#: how files end that are whole
+ENDS = {".html": b"</html>", ".vtu": b"</VTKFile>", ".png": b"IEND\xaeB`\x82"}
 NOT_FILES = "pipe|folder|missing.toml|/dev/zero|/dev/null|/proc/self/mem|/||.|tiny.toml/x"
 
 
@@ -293,7 +295,7 @@ def _fault(arguments: Sequence[str], code: int, out: str, err: str, left: list[P
     """What must not be, or nothing."""
     if "Traceback" in out + err:
         return f"a traceback: {err[-300:]!r}"
-    if broken := [f"{path.name}: {why}" for path in left if (why := _not_whole(path))]:
+    if broken := [f"{path.name}: {why}" for path in left if (why := not_whole(path))]:
         return f"left half done: {', '.join(broken)}"
     if code == 2:
         usage = "Usage: " in err or "─ Error ─" in err
@@ -326,13 +328,15 @@ def _no_number(word: str) -> None:
     raise Finding(f"{word} in the JSON")
 
 
-def _not_whole(path: Path) -> str:
-    """Why a file left behind is not one that can be used."""
+def not_whole(path: Path) -> str:
+    """Why a file left behind is not one that can be used; nothing of one that can."""
     if path.is_dir():
         return "" if any(path.iterdir()) else "an empty folder"
     if path.name.startswith(".") or path.suffix == ".part":
         return "a partial file"
-    if path.suffix not in (".json", ".csv", ".html"):
+    if end := ENDS.get(path.suffix):
+        return "" if path.read_bytes().rstrip().endswith(end) else "a torn file"
+    if path.suffix not in (".json", ".csv"):
         return ""
     try:
         text = path.read_text(encoding="utf-8")
@@ -343,8 +347,6 @@ def _not_whole(path: Path) -> str:
     if path.suffix == ".csv":
         widths = {len(row) for row in csv.reader(io.StringIO(text))}
         return "" if text.endswith("\n") and len(widths) <= 1 else "a torn row"
-    if path.suffix == ".html" and not text.rstrip().endswith("</html>"):
-        return "a torn page"
     return ""
 
 

@@ -156,6 +156,18 @@ def called(
         return Done(done.wall, done.cpu, done.out, json.loads(answer.read_text()))
 
 
+def peer(package: str, function: str, **more: Any) -> dict[str, Any]:
+    """What a function answers in a Python that has a package, with ``cpu`` seconds of the process;
+    `more` is as of :func:`called`.
+
+    Raises
+    ------
+    PeerError
+    """
+    done = called(function, python=interpreter(package), **more)
+    return done.answer | {"cpu": done.cpu}
+
+
 def spent(own: bool = True) -> float:
     """Processor seconds of the children of this process that have ended, and of itself."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from validation.race.process import ALONE, called, interpreter
+from validation.race.process import ALONE, interpreter, peer
 
 RUNS = 3
 
@@ -23,16 +23,8 @@ def solve(*, limit: float = 900.0, **given: Any) -> dict:
     ------
     PeerError
     """
-    at = interpreter("pyHarm")
-    done = called(
-        "validation.race.pyharm_peer:followed",
-        limit=limit,
-        python=at,
-        threads=1,
-        extra=ALONE,
-        **given,
-    )
-    return done.answer | {"cpu": done.cpu}
+    alone = {"limit": limit, "threads": 1, "extra": ALONE}
+    return peer("pyHarm", "validation.race.pyharm_peer:followed", **alone, **given)
 
 
 def followed(

@@ -7,7 +7,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from validation.race.process import called, interpreter
+from validation.race.process import interpreter, peer
 
 RUNS = 3
 
@@ -68,9 +68,7 @@ def solve(data: dict, *, limit: float = 300.0) -> dict:
     ------
     PeerError
     """
-    at = interpreter("ross")
-    done = called("validation.race.ross_peer:solved", limit=limit, python=at, **data)
-    return done.answer | {"cpu": done.cpu}
+    return peer("ross", "validation.race.ross_peer:solved", limit=limit, **data)
 
 
 def solved(elements: list, bearings: list) -> dict:
@@ -111,9 +109,7 @@ def in_time(*, limit: float = 900.0, **given: Any) -> dict:
     ------
     PeerError
     """
-    at = interpreter("ross")
-    done = called("validation.race.ross_peer:geared", limit=limit, python=at, **given)
-    return done.answer | {"cpu": done.cpu}
+    return peer("ross", "validation.race.ross_peer:geared", limit=limit, **given)
 
 
 def geared(

@@ -7,7 +7,6 @@ Every case is a child process on the overhung pinion.
 
 from __future__ import annotations
 
-import json
 import os
 import resource
 import signal
@@ -20,6 +19,7 @@ from pathlib import Path
 
 from solidgear.report.folder import LOCK
 from validation.common import ROOT
+from validation.fuzz.commands import not_whole
 from validation.stability.frame import Finding
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
@@ -307,7 +307,7 @@ def run(case: Case, room: Path) -> dict:
         not in "".join(p.read_text(errors="replace") for p in left if p.suffix == ".json")
     ):
         faults.append("does not say why")
-    faults += [f"half-written {p.name}" for p in left if not whole(p)]
+    faults += [f"{p.name}: {why}" for p in left if (why := not_whole(p))]
     said = next(
         (line for line in reversed(lines) if line.startswith("solidgear:")),
         lines[-1] if lines else "",
@@ -320,24 +320,6 @@ def run(case: Case, room: Path) -> dict:
         "says": said[:200],
         "files left": ", ".join(p.name for p in left),
     }
-
-
-def whole(path: Path) -> bool:
-    """Whether a file that is left is one that a user can use."""
-    if path.name.endswith(".part") or path.name.startswith("."):
-        return False
-    if path.suffix == ".json":
-        try:
-            json.loads(path.read_text())
-        except ValueError:
-            return False
-    if path.suffix == ".html":
-        return path.read_text(errors="replace").rstrip().endswith("</html>")
-    if path.suffix == ".vtu":
-        return path.read_bytes().rstrip().endswith(b"</VTKFile>")
-    if path.suffix == ".png":
-        return path.read_bytes().endswith(b"IEND\xaeB`\x82")
-    return True
 
 
 def measure(quick: bool = False) -> Finding:

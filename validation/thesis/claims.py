@@ -386,11 +386,11 @@ def main() -> None:
     """Judge every claim, show the table, and write ``claims.md`` beside this file with the curve of
     each, and all of it as one page in which they are read.
     """
-    from validation.thesis.curves import CURVES
+    from validation.thesis import curves
 
     folder, rows, sections = results_folder("thesis_claims"), [], []
     for k, claim in enumerate(CLAIMS, start=1):
-        found, curve = claim(), CURVES[claim.__name__]
+        found, curve = claim(), getattr(curves, claim.__name__)
         row = {"figure": found.place, "claim": found.says, "verdict": found.verdict}
         rows.append({**row, "found": found.found})
         title = f"{capital(found.says)} ({found.place}): {found.verdict}"

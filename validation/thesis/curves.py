@@ -1,8 +1,9 @@
-"""The curve that the verdict on each claim rests on, by the charts of `solidgear compare A B`."""
+"""The curve that the verdict on each claim rests on, by the charts of `solidgear compare A B`: a
+function of the name of the one that judges the claim.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -146,21 +147,3 @@ def mesh_stiffness(width: float) -> Chart:
 def masses(width: float) -> Chart:
     one, other = responses("identified")[0], responses("published masses")[0]
     return over(width, identified_masses=one, published_masses=other)
-
-
-#: by the function that judges the claim
-CURVES: dict[str, Callable[[float], Chart | None]] = {
-    make.__name__: make
-    for make in (
-        old_synthesis,
-        new_synthesis,
-        damping,
-        peak_at_800,
-        bending_leaves,
-        moments,
-        pinion_motion,
-        amplitude,
-        mesh_stiffness,
-        masses,
-    )
-}
