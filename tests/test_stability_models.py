@@ -128,7 +128,7 @@ def test_the_thin_tube_is_a_ring(script):
     for n in (2, 3):
         # the ring formula leaves out shear and curvature of the wall, of the order of (wall /
         # radius)^2 n^2
-        assert got[n] == pytest.approx(tube.ring(0.02, n, long=True), rel=2e-3)
+        assert got[n] == pytest.approx(tube.ring(0.02, n), rel=2e-3)
     assert got[2] < got[1] < got[3]
 
 

@@ -15,7 +15,8 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear.body import Supports
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Port, Scene, Segment
+from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, crossing, curve
 from validation.thesis.krylov import from_scene, krylov
 
@@ -25,16 +26,7 @@ ELEMENTS = (10, 160)
 
 def shaft(k: float) -> Scene:
     """Lumped point at the free end, radial and axial springs behind it."""
-    bearings = [
-        Bearing(
-            name=str(i + 1),
-            y=y,
-            seat_width=0.02,
-            matrix=np.diag([k, k, k, 0, 0, 0]),
-            attachment="section",
-        )
-        for i, y in enumerate(AT)
-    ]
+    bearings = [bearing(str(i + 1), y, 0.02, (k, k, k, 0, 0, 0)) for i, y in enumerate(AT)]
     port = Port(name="end", y=0.0, lo=0.0, hi=0.02, attachment="section")
     return Scene.from_parts(
         [Segment.cylinder("shaft", length=LENGTH, diameter=DIAMETER)], bearings=bearings, port=port
@@ -115,7 +107,7 @@ def measure(quick: bool = False) -> Finding:
             )
             here = sg.condense(body, supports, port="end").compliance[2, 2]
             found = sg.modes(body, supports, n=4)
-            mine = next(m.frequency_hz for m in found.modes if m.family == "bending")
+            mine = frequencies(found, "bending")[0]
             row = {
                 "elements": elements,
                 "k N/m": float(k),

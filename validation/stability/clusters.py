@@ -14,7 +14,8 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.body import Supports
 from solidgear.judge.correlation import subspace_mac
-from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene import Port, Scene, Segment
+from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, curve
 from validation.stability.free_body_shift import shift_invert
 from validation.stability.shift_on_eigenvalue import supported
@@ -38,9 +39,8 @@ COUNTS = (1, 3, 5, 7, 9)
 FEW = (1, 9)
 MOST = 12
 LENGTH, HEAD = 0.6, 0.05
-SPRING = np.diag(
-    [1e9, 1e9, 1e9, 1e6, 1e6, 1e6]
-)  # stiffer ones would cost the dense reference its digits
+# stiffer ones would cost the dense reference its digits
+SPRING = (1e9, 1e9, 1e9, 1e6, 1e6, 1e6)
 
 
 def dumbbell() -> Scene:
@@ -51,16 +51,7 @@ def dumbbell() -> Scene:
         Segment.cylinder("shaft", length=thin, diameter=0.04, y0=HEAD),
         Segment.cylinder("right", length=HEAD, diameter=0.12, y0=HEAD + thin),
     ]
-    bearings = [
-        Bearing(
-            name=str(i),
-            y=LENGTH / 2 + 0.05 * i,
-            seat_width=0.02,
-            matrix=SPRING,
-            attachment="section",
-        )
-        for i in range(-4, 5)
-    ]
+    bearings = [bearing(str(i), LENGTH / 2 + 0.05 * i, 0.02, SPRING) for i in range(-4, 5)]
     return Scene.from_parts(
         segments, bearings=bearings, port=Port(name="end", y=HEAD / 2, lo=0.0, hi=HEAD)
     )
@@ -69,7 +60,7 @@ def dumbbell() -> Scene:
 def held_by(count: int) -> Supports:
     """The innermost bearings only."""
     return Supports(
-        tuple(str(i) for i in range(-(count // 2), count // 2 + 1)), np.kron(np.eye(count), SPRING)
+        tuple(str(i) for i in range(-(count // 2), count // 2 + 1)), np.diag(SPRING * count)
     )
 
 
@@ -153,11 +144,7 @@ def measure(quick: bool = False) -> Finding:
             supports = held_by(count)
             exact, u, m = dense(body, supports)
             whole_k, whole_m = supported(body, supports)
-            bending = [
-                x.frequency_hz
-                for x in sg.modes(body, supports, n=MOST).modes
-                if x.family == "bending" and x.frequency_hz > 0
-            ]
+            bending = frequencies(sg.modes(body, supports, n=MOST), "bending")
             gap = float((np.diff(bending) / bending[:-1]).min())
             for n in (1, 3, 6) if quick else range(1, MOST + 1):
                 row = {

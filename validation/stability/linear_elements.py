@@ -11,9 +11,10 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.scene import Port, Scene, Segment
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
+from validation.manual.models import FIRM, bearing
 from validation.stability.frame import Finding, curve
 
 RADIUS, LENGTH = 0.05, 0.4
@@ -32,13 +33,7 @@ PLAIN = dict(layers=0, edge_layers=0, radial_layers=0)
 
 def shaft() -> Scene:
     """Uniform shaft held by one section and loaded at its first."""
-    clamp = Bearing(
-        name="clamp",
-        y=LENGTH - RADIUS / 2,
-        seat_width=RADIUS,
-        matrix=np.diag([1e24] * 6),
-        attachment="section",
-    )
+    clamp = bearing("clamp", LENGTH - RADIUS / 2, RADIUS, [FIRM] * 6)
     port = Port(y=0.0, lo=0.0, hi=RADIUS, attachment="section")
     return Scene.from_parts(
         [Segment.cylinder("shaft", length=LENGTH, diameter=2 * RADIUS)], bearings=[clamp], port=port

@@ -14,7 +14,8 @@ from skfem import ElementQuad1
 import solidgear as sg
 from solidgear.kernel.assembly import reference, tabulate
 from solidgear.meshing.corners import sharpest_corner
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Port, Scene, Segment
+from validation.manual.models import FIRM, bearing
 from validation.stability.frame import Finding, curve
 
 THIN, THICK, STEP, END = 0.05, 0.075, 0.1, 0.2  # radii and places, m
@@ -29,13 +30,7 @@ def shaft() -> Scene:
         Segment(name="thick", y0=STEP, y1=END, outer0=THICK, outer1=THICK),
     ]
     width = 2e-4 * THIN
-    clamp = Bearing(
-        name="clamp",
-        y=END - width / 2,
-        seat_width=width,
-        matrix=np.diag([1e24] * 6),
-        attachment="section",
-    )
+    clamp = bearing("clamp", END - width / 2, width, [FIRM] * 6)
     return Scene.from_parts(
         segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section")
     )

@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Port, Scene, Segment
+from validation.manual.models import FIRM, bearing
 from validation.stability.frame import Finding, columns, crossing
 
 THIN = 0.1  # diameter, m
@@ -41,13 +42,7 @@ def shaft(ratio: float, reach: float, angle: float | None = None, softer: float 
     width = (
         2e-4 * THIN
     )  # what lies beyond a tie is strained along and stiffens: 0.002 d in tilt at a stub of 0.01 d
-    clamp = Bearing(
-        name="clamp",
-        y=end - width / 2,
-        seat_width=width,
-        matrix=np.diag([1e24] * 6),
-        attachment="section",
-    )
+    clamp = bearing("clamp", end - width / 2, width, [FIRM] * 6)
     return Scene.from_parts(
         segments, bearings=[clamp], port=Port(y=0.0, lo=0.0, hi=width, attachment="section")
     )

@@ -11,7 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Port, Scene, Segment
+from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, crossing, curve
 
 DIAMETER = 0.1
@@ -30,13 +31,7 @@ def shaft(slenderness: float) -> Scene:
     k = 1e3 / (1 / bending + 1 / shear)
     width = 0.02 * length
     bearings = [
-        Bearing(
-            name=f"bearing {i + 1}",
-            y=f * length,
-            seat_width=width,
-            matrix=np.diag([k, k, k, 0, 0, 0]),
-            attachment="section",
-        )
+        bearing(f"bearing {i + 1}", f * length, width, (k, k, k, 0, 0, 0))
         for i, f in enumerate((0.1, 0.9))
     ]
     port = Port(
@@ -53,17 +48,10 @@ def shaft(slenderness: float) -> Scene:
 
 def answers(body, scene) -> dict[str, float]:
     """First bending free, first bending and compliance on bearings."""
-
-    def first(supports):
-        return next(
-            m.frequency_hz
-            for m in sg.modes(body, supports, n=12).modes
-            if m.family == "bending" and m.frequency_hz > 0
-        )
-
+    free, held = (frequencies(sg.modes(body, on, n=12), "bending")[0] for on in ((), scene))
     return {
-        "free f1": first(()),
-        "f1 on bearings": first(scene),
+        "free f1": free,
+        "f1 on bearings": held,
         "C_zz on bearings": sg.condense(body, scene, port="middle").compliance[2, 2],
     }
 

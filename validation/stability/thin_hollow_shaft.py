@@ -2,8 +2,7 @@
 Reference: rings in closed form.
 
 Models: the harmonic solid with its extra harmonics, the full 3D solid on one tube.  The closed form
-is the inextensional ring, ``w^2 = E' I n^2 (n^2-1)^2 / (rho A R^4 (n^2+1))`` (Love, Theory of
-Elasticity, sec. 293): E' = E for a narrow hoop, E / (1 - nu^2) for a long tube.
+is the inextensional ring of a long tube (Love, Theory of Elasticity, sec. 293).
 """
 
 from __future__ import annotations
@@ -11,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Scene, Segment
+from solidgear.scene import Scene, Segment
+from validation.manual.exact import STEEL, ring_frequency
+from validation.manual.models import frequencies as elastic
 from validation.stability.frame import Finding, columns, crossing, curve
 
 OUTER = 0.5  # radius, m: frequencies go with its inverse, ratios do not care
@@ -52,29 +53,14 @@ def frequencies(wall: float, length: float, order: int = 4) -> dict[int, float]:
         size=min(OUTER, length / 2),
         ovalising=WAVES,
     )
-    found = sg.modes(body, (), n=24).modes
-    out = {}
-    for waves in (1, *WAVES):
-        family = "bending" if waves == 1 else f"ovalising n={waves}"
-        out[waves] = next(
-            (m.frequency_hz for m in found if m.family == family and m.frequency_hz > 0), np.nan
-        )
-    return out
+    found = sg.modes(body, (), n=24)
+    families = {1: "bending"} | {n: f"ovalising n={n}" for n in WAVES}
+    return {n: min(elastic(found, family), default=np.nan) for n, family in families.items()}
 
 
-def ring(wall: float, waves: int, long: bool) -> float:
-    """Frequency (Hz) of an inextensional ring."""
-    thickness, radius = wall * OUTER, OUTER * (1 - wall / 2)
-    modulus = STEEL.E / (1 - STEEL.nu**2) if long else STEEL.E
-    omega2 = (
-        modulus
-        * thickness**2
-        / 12
-        * waves**2
-        * (waves**2 - 1) ** 2
-        / (STEEL.density * radius**4 * (waves**2 + 1))
-    )
-    return float(np.sqrt(omega2) / (2 * np.pi))
+def ring(wall: float, waves: int) -> float:
+    """Frequency (Hz) of the inextensional ring of a long tube."""
+    return ring_frequency(waves, wall * OUTER, OUTER * (1 - wall / 2), STEEL)
 
 
 def solid_error(wall: float, slenderness: float, around: int) -> dict[str, float]:
@@ -103,8 +89,8 @@ def solid_error(wall: float, slenderness: float, around: int) -> dict[str, float
 
 def timoshenko(wall: float, slenderness: float) -> float:
     """First bending (Hz) of the free tube as a beam."""
-    found = sg.modes(sg.build(tube(wall, 2 * OUTER * slenderness), "timoshenko"), (), n=8).modes
-    return next(m.frequency_hz for m in found if m.family == "bending" and m.frequency_hz > 0)
+    body = sg.build(tube(wall, 2 * OUTER * slenderness), "timoshenko")
+    return elastic(sg.modes(body, (), n=8), "bending")[0]
 
 
 def measure(quick: bool = False) -> Finding:
@@ -119,7 +105,7 @@ def measure(quick: bool = False) -> Finding:
             known = np.isfinite(ratio)
             row[f"wall / radius, n = {n} meets bending"] = crossing(walls[known], ratio[known], 1.0)
         row["wall / radius, closed form"] = crossing(
-            walls, [ring(w, 2, True) / timoshenko(w, slenderness) for w in walls], 1.0
+            walls, [ring(w, 2) / timoshenko(w, slenderness) for w in walls], 1.0
         )
         rows.append(row)
     solid = [

@@ -12,12 +12,14 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.scene import STEEL, Port, Scene, Segment
 from solidgear.solve.factor import factorise
+from validation.manual.models import bearing
 from validation.stability.frame import Finding, curve
 
 RADIUS, LENGTH = 0.05, 0.3
 SPRING = 1e9  # N/m
+FLAT = {"order": 2, "layers": 0, "edge_layers": 0, "size": RADIUS / 2}
 REFINEMENTS = (1, 2, 4, 8, 16)
 REFINEMENTS_3D = (1, 2, 3)  # of 16 cells around: a corner of elements stays where the load is
 
@@ -25,13 +27,7 @@ REFINEMENTS_3D = (1, 2, 3)  # of 16 cells around: a corner of elements stays whe
 def shaft() -> Scene:
     """Cylinder on two springs at sections near its ends; the load is in the middle."""
     bearings = [
-        Bearing(
-            name=n,
-            y=y,
-            seat_width=0.02,
-            matrix=np.diag([SPRING] * 3 + [0.0] * 3),
-            attachment="section",
-        )
+        bearing(n, y, 0.02, [SPRING] * 3 + [0.0] * 3)
         for n, y in (("one", 0.03), ("two", LENGTH - 0.03))
     ]
     port = Port(y=LENGTH / 2, lo=LENGTH / 2 - 0.01, hi=LENGTH / 2 + 0.01)
@@ -87,25 +83,9 @@ def measure(quick: bool = False) -> Finding:
     scene = shaft()
     rows = []
     for refinement in REFINEMENTS[:4] if quick else REFINEMENTS:
-        body = sg.build(
-            scene,
-            "harmonic",
-            order=2,
-            layers=0,
-            edge_layers=0,
-            size=RADIUS / 2,
-            refinement=refinement,
-            attachments=("average", "section"),
-        )
-        held = sg.build(
-            scene.with_port(attachment="rigid"),
-            "harmonic",
-            order=2,
-            layers=0,
-            edge_layers=0,
-            size=RADIUS / 2,
-            refinement=refinement,
-        )
+        mesh = FLAT | {"refinement": refinement}
+        body = sg.build(scene, "harmonic", attachments=("average", "section"), **mesh)
+        held = sg.build(scene.with_port(attachment="rigid"), "harmonic", **mesh)
         springs = sg.body.as_supports(scene).with_attachment("section")
         row = {"h / R": 0.5 / refinement, "ring line": on_a_ring_line(body)}
         row |= {
