@@ -1,25 +1,15 @@
 """Whole bodies as dense matrices, and what is read off a solution to be compared with theirs."""
 
 import numpy as np
-import scipy.linalg as sla
 
 from solidgear.scene.closed_form import mass_properties
+from validation.side_by_side import side_by_side
 
 
 def whole(body, without=()):
     """K and M of the blocks of a body side by side, and six rows a port that give its motion."""
     blocks = [b for b in body.blocks if b.name not in without]
-    k = sla.block_diag(*(b.stiffness.toarray() for b in blocks))
-    m = sla.block_diag(*(b.mass.toarray() for b in blocks))
-    rows = np.zeros((6 * len(body.ports), len(k)))
-    start = 0
-    for block in blocks:
-        own, c = block.ports.toarray(), len(block.components)
-        for p in range(len(body.ports)):
-            at = [6 * p + i for i in block.components]
-            rows[at, start : start + block.size] = own[c * p : c * p + c]
-        start += block.size
-    return k, m, rows
+    return tuple(matrix.toarray() for matrix in side_by_side(blocks, len(body.ports)))
 
 
 def bearing_by_hand(bearing):

@@ -88,6 +88,15 @@ def plain(value: Any) -> Any:
     return number if math.isfinite(number) else None
 
 
+def toml(value: Any) -> str:
+    """A value as a file of a scene has it; tables are inline."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml(own)}" for key, own in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    return f'"{value}"' if isinstance(value, str) else repr(value)
+
+
 def stamp() -> dict[str, Any]:
     """Date, commit and machine of a result; a changed source is marked with a plus."""
     machine = environment()

@@ -37,6 +37,7 @@ from solidgear.scene.paths import entry, label_of
 from solidgear.scene.toml_file import parse
 from solidgear.studies.sensitivity.entries import around, numbers, put
 from validation.campaign.scenes.shafts import random_scene
+from validation.common import toml
 
 OF = ("bending 1", "C_zz", "K_thx", "axial 1")
 #: of the steps that the program takes
@@ -91,15 +92,7 @@ def toml_of(scene: Scene) -> str:
     }
     if scene.housing_axial is not None:
         tables["housing"] = {"axial": scene.housing_axial}
-    return "\n".join(f"{key} = {_written(value)}" for key, value in tables.items()) + "\n"
-
-
-def _written(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{key} = {_written(own)}" for key, own in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ",\n".join(map(_written, value)) + "]"
-    return f'"{value}"' if isinstance(value, str) else repr(float(value))
+    return "\n".join(f"{key} = {toml(value)}" for key, value in tables.items()) + "\n"
 
 
 def values(body: sg.Body, scene: Scene, wanted: Mapping[str, bool]) -> np.ndarray:

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.linalg as sla
-import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from validation.common import ROOT
+from validation.side_by_side import side_by_side
 from validation.stability.frame import Finding, curve
 
 BODIES = {
@@ -25,13 +25,6 @@ SHIFTS = (0.0, -1e-16, -1e-14, -1e-12, -1e-10, -1e-8, -1e-6, -1e-4, -1e-3, -1e-2
 FEW = (0.0, -1e-12, -1e-3)
 WANTED = 14
 RUNS = 12  # numberings of the unknowns and start vectors, where the result is one of rounding
-
-
-def whole(body) -> tuple[sp.csc_matrix, sp.csc_matrix]:
-    """All blocks of a body as one pair of matrices, as a program without symmetry would hold it."""
-    return sp.block_diag([b.stiffness for b in body.blocks], "csc"), sp.block_diag(
-        [b.mass.tocsr() for b in body.blocks], "csc"
-    )
 
 
 def shift_invert(k, m, sigma: float, wanted: int, seed: int = 0) -> np.ndarray:
@@ -99,7 +92,7 @@ def measure(quick: bool = False) -> Finding:
         if quick and name == "hex20":
             continue
         body = sg.build(scene, fidelity, **options)
-        k, m = whole(body)
+        k, m, _ = side_by_side(body.blocks, len(body.ports))
         exact = sla.eigh(
             k.toarray(), m.toarray(), eigvals_only=True, subset_by_index=(0, WANTED + 2)
         )

@@ -15,8 +15,8 @@ import scipy.sparse.linalg as spla
 import solidgear as sg
 from solidgear.body import as_supports
 from validation.common import ROOT
+from validation.side_by_side import side_by_side
 from validation.stability.frame import Finding, curve
-from validation.stability.free_body_shift import whole
 
 AWAY = (*10.0 ** -np.arange(2, 15.5, 0.5), 0.0)
 BODIES = {
@@ -30,15 +30,8 @@ RUNS = 6
 
 def supported(body, supports) -> tuple[sp.csc_matrix, sp.csc_matrix]:
     """K + G'KbG and M of all blocks at once."""
-    k, m = whole(body)
-    starts = np.cumsum([0] + [b.size for b in body.blocks])
-    count = len(body.ports)
-    rows = sp.lil_matrix((6 * count, k.shape[0]))
-    for block, a, b in zip(body.blocks, starts, starts[1:]):
-        for i in range(count):
-            for j, c in enumerate(block.components):
-                rows[6 * i + c, a:b] = block.ports[i * len(block.components) + j].toarray()
-    g = rows.tocsr()[supports.rows(body)]
+    k, m, motions = side_by_side(body.blocks, len(body.ports))
+    g = motions[supports.rows(body)]
     return (k + g.T @ sp.csr_matrix(supports.stiffness) @ g).tocsc(), m
 
 

@@ -7,6 +7,8 @@ import random
 from dataclasses import dataclass, field
 from typing import Any
 
+from validation.common import toml
+
 Table = dict[str, Any]
 #: sorts of parts, and how often they are drawn
 SORTS = {"cut": 8, "cyclic": 5, "edges": 2, "cut and edges": 3, "smeared and cut": 2}
@@ -38,8 +40,8 @@ class Drawn:
         for kind in ("segment", "feature", "bearing", "mass"):
             plural = {"mass": "masses"}.get(kind, f"{kind}s")
             for table in getattr(self, plural):
-                head += ["", f"[[{kind}]]", *(f"{k} = {_value(v)}" for k, v in table.items())]
-        head += ["", "[port]", *(f"{k} = {_value(v)}" for k, v in self.port.items())]
+                head += ["", f"[[{kind}]]", *(f"{k} = {toml(v)}" for k, v in table.items())]
+        head += ["", "[port]", *(f"{k} = {toml(v)}" for k, v in self.port.items())]
         head += ["", "[ask]", "modes = 6", "tolerance = 0.05"]
         return "\n".join(head) + "\n"
 
@@ -47,14 +49,6 @@ class Drawn:
     def words(self) -> str:
         """Its features in a few words."""
         return " + ".join(f"{f['kind'].replace('_', ' ')}" for f in self.features)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(_value(v) for v in value) + "]"
-    return str(value) if isinstance(value, (int, float)) else f'"{value}"'
 
 
 def _mm(value: float) -> str:

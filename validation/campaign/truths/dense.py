@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.linalg as sla
-import scipy.sparse as sp
+
+from validation.side_by_side import side_by_side
 
 EXACT = np.longdouble
 
@@ -46,23 +47,10 @@ class Dense:
     """A body on its bearings as one dense problem, with residuals in extended precision."""
 
     def __init__(self, body, scene):
-        blocks = body.blocks
-        k, m = (
-            sp.block_diag([getattr(b, name) for b in blocks], format="csr")
-            for name in ("stiffness", "mass")
-        )
-        count, size = len(body.ports), k.shape[0]
-        ports, rigid = np.zeros((6 * count, size)), np.zeros((size, 6))
-        start = 0
-        for b in blocks:
-            rows = b.ports.toarray()
-            for i, c in enumerate(b.components):
-                rigid[start : start + b.size, c] = b.rigid[:, i]
-                for p in range(count):
-                    ports[6 * p + c, start : start + b.size] = rows[p * len(b.components) + i]
-            start += b.size
+        k, m, motions = side_by_side(body.blocks, len(body.ports))
+        rigid = np.vstack([b.rigid @ np.eye(6)[list(b.components)] for b in body.blocks])
         springs = springs_by_hand(scene)
-        at = ports[6 : 6 + len(springs)]
+        at = motions[6 : 6 + len(springs)].toarray()
         # Ports come in the order of the stations, the lumped point first.
         self.k, self.m, self.rigid = k.astype(EXACT), m.astype(EXACT), rigid.astype(EXACT)
         self.ports, self.springs = at.astype(EXACT), springs.astype(EXACT)
