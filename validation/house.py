@@ -16,6 +16,10 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+
 ROOT = Path(__file__).parent.parent
 KINDS = ("code", "docstring", "comment", "blank")
 #: for each kind of addition, one that exists, as the source names it
@@ -100,32 +104,12 @@ def imports(path: Path, known: set[str], *, late: bool) -> set[str]:
 
 
 def circles(graph: dict[str, set[str]]) -> list[list[str]]:
-    """Strongly connected groups of more than one module (Tarjan, 1972)."""
-    order: dict[str, int] = {}
-    low: dict[str, int] = {}
-    stack: list[str] = []
-    out: list[list[str]] = []
-
-    def visit(name: str) -> None:
-        order[name] = low[name] = len(order)
-        stack.append(name)
-        for other in sorted(graph.get(name, ())):
-            if other not in order:
-                visit(other)
-                low[name] = min(low[name], low[other])
-            elif other in stack:
-                low[name] = min(low[name], order[other])
-        if low[name] == order[name]:
-            group = [stack.pop()]
-            while group[-1] != name:
-                group.append(stack.pop())
-            if len(group) > 1:
-                out.append(sorted(group))
-
-    for name in sorted(graph):
-        if name not in order:
-            visit(name)
-    return out
+    """Strongly connected groups of more than one module."""
+    names = sorted(graph)
+    links = np.array([[other in graph[name] for other in names] for name in names])
+    _, group = connected_components(csr_matrix(links), connection="strong")
+    groups = [[names[k] for k in np.flatnonzero(group == one)] for one in np.unique(group)]
+    return sorted(one for one in groups if len(one) > 1)
 
 
 def numbers_of(path: Path) -> dict[str, int]:

@@ -12,6 +12,9 @@ import tempfile
 from pathlib import Path
 
 from console import ROOT, blocks, run
+from PIL import Image
+
+import solidgear as sg
 
 DOCS = Path(__file__).parent.parent
 PICTURES = DOCS / "pictures"
@@ -32,8 +35,6 @@ def tutorial_scene() -> str:
 
 def small(source: Path, name: str) -> None:
     """A picture at the size of the page; a mode in all its colours, for steps look like facets."""
-    from PIL import Image
-
     with Image.open(source) as picture:
         width = WIDTHS[name]
         height = round(picture.height * width / picture.width)
@@ -43,22 +44,26 @@ def small(source: Path, name: str) -> None:
         scaled.save(PICTURES / f"{name}.png", optimize=True)
 
 
+def screenshot(
+    page: Path, target: Path, size: tuple[int, int], milliseconds: int, *flags: str
+) -> None:
+    """A page as a browser without a screen shows it after some time."""
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    if browser is None:
+        raise SystemExit("pictures of pages need Chromium")
+    command = [browser, "--headless", "--no-sandbox", "--hide-scrollbars", *flags]
+    command += ["--window-size={},{}".format(*size), f"--virtual-time-budget={milliseconds}"]
+    subprocess.run([*command, f"--screenshot={target}", page.as_uri()], check=True)
+
+
 def turning(page: Path, target: Path) -> None:
     """What a browser without a screen shows of a page of mode shapes."""
     page.write_text(page.read_text() + POSE)
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if browser is None:
-        raise SystemExit("the picture of the viewer needs Chromium")
-    command = [browser, "--headless", "--no-sandbox", "--enable-unsafe-swiftshader"]
-    command += ["--hide-scrollbars", "--window-size=1200,640", "--virtual-time-budget=8000"]
-    subprocess.run([*command, f"--screenshot={target}", page.as_uri()], check=True)
+    screenshot(page, target, (1200, 640), 8000, "--enable-unsafe-swiftshader")
 
 
 def report(page: Path) -> None:
     """Page one of a report on a desk, in the dark and on a phone, as a browser shows it."""
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if browser is None:
-        raise SystemExit("pictures of the report need Chromium")
     dark = "--blink-settings=preferredColorScheme=0"
     for name, (width, height), flags in (
         ("report_page_one", (1280, 1120), []),
@@ -72,11 +77,7 @@ def report(page: Path) -> None:
         shell = page.with_name(f"{name}.html")
         shell.write_text(f'<!DOCTYPE html><body style="margin: 0">{frame}</iframe>')
         target = page.with_name(f"{name}.png")
-        command = [browser, "--headless", "--no-sandbox", "--hide-scrollbars", *flags]
-        command += [f"--window-size={max(width, 600)},{height}", "--virtual-time-budget=4000"]
-        subprocess.run([*command, f"--screenshot={target}", shell.as_uri()], check=True)
-        from PIL import Image
-
+        screenshot(shell, target, (max(width, 600), height), 4000, *flags)
         with Image.open(target) as picture:
             cut = picture.convert("RGB").crop((0, 0, width, height))
             cut.quantize(64).save(PICTURES / f"{name}.png", optimize=True)
@@ -84,8 +85,6 @@ def report(page: Path) -> None:
 
 def main() -> int:
     """Draw them all."""
-    import solidgear as sg
-
     PICTURES.mkdir(exist_ok=True)
     folder = Path(tempfile.mkdtemp())
     scene = folder / "my_shaft.toml"
