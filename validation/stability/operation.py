@@ -23,7 +23,6 @@ from validation.fuzz.commands import not_whole
 from validation.stability.frame import Finding
 
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")
-CHEAP = ("compare", SCENE, "--models", "timoshenko,euler", "--out")
 SECONDS = 150
 
 
@@ -67,39 +66,47 @@ class Case:
 NO_PARDISO = (("pypardiso", "raise ImportError('hidden')"),)
 NO_MKL = ("PYPARDISO_MKL_RT", "/nowhere/libmkl_rt.so")
 DEATH = (("pyvista", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"),)
+NO_RENDERER = (("SOLIDGEAR_RENDERER", "none"),)
+LITTLE = (("SOLIDGEAR_MEMORY_MB", "30"),)
 MB = 1 << 20
+#: commands that cases share
+MODES, SOLID = ("modes", SCENE, "-f", "timoshenko"), ("modes", SCENE, "-f", "solid")
+STIFFNESS = ("stiffness", SCENE, "-f", "timoshenko")
+RENDER = ("render", SCENE, "-f", "timoshenko", "--out", "{file}")
+COMPARE = ("compare", SCENE, "--models", "timoshenko,euler", "--out")
+BOTH = ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}")
 CASES = (
     Case(
         "memory: limit set to 30 MB, modes of a solid",
-        ("modes", SCENE, "-f", "solid", "-n", "4"),
+        (*SOLID, "-n", "4"),
         (1,),
         "MB are free",
-        env=(("SOLIDGEAR_MEMORY_MB", "30"),),
+        env=LITTLE,
     ),
     Case(
         "memory: limit set to 30 MB, compare",
-        ("compare", SCENE, "--models", "timoshenko,solid", "--no-renders", "--out", "{out}"),
+        (*BOTH, "--no-renders"),
         (0,),
         "MB are free",
-        env=(("SOLIDGEAR_MEMORY_MB", "30"),),
+        env=LITTLE,
     ),
     Case(
         "memory: address space of 900 MB, modes of a fine solid",
-        ("modes", SCENE, "-f", "solid", "--set", "refinement=1.8"),
+        (*SOLID, "--set", "refinement=1.8"),
         (1,),
         "memory",
         limit=(resource.RLIMIT_AS, 900 * MB),
     ),
     Case(
         "memory: limit that is no number",
-        ("modes", SCENE, "-f", "solid"),
+        SOLID,
         (1,),
         "SOLIDGEAR_MEMORY_MB",
         env=(("SOLIDGEAR_MEMORY_MB", "lots"),),
     ),
     Case(
         "back end: one that does not exist",
-        ("stiffness", SCENE, "-f", "timoshenko"),
+        STIFFNESS,
         (1,),
         "back end",
         env=(("SOLIDGEAR_BACKEND", "umfpack"),),
@@ -107,7 +114,7 @@ CASES = (
     ),
     Case(
         "back end: asked for, not installed",
-        ("stiffness", SCENE, "-f", "timoshenko"),
+        STIFFNESS,
         (1,),
         "pardiso",
         env=(("SOLIDGEAR_BACKEND", "pardiso"), NO_MKL),
@@ -116,106 +123,61 @@ CASES = (
     ),
     Case(
         "back end: not installed, not asked for",
-        ("modes", SCENE, "-f", "solid", "--set", "refinement=0.7", "-n", "4"),
+        (*SOLID, "--set", "refinement=0.7", "-n", "4"),
         (0,),
         "Residual",
         env=(NO_MKL,),
         hide=NO_PARDISO,
     ),
-    Case(
-        "renderer: none, render",
-        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
-        (1,),
-        "OpenGL",
-        env=(("SOLIDGEAR_RENDERER", "none"),),
-    ),
-    Case(
-        "renderer: none, compare",
-        (*CHEAP, "{out}"),
-        (0,),
-        "Report",
-        env=(("SOLIDGEAR_RENDERER", "none"),),
-    ),
+    Case("renderer: none, render", RENDER, (1,), "OpenGL", env=NO_RENDERER),
+    Case("renderer: none, compare", (*COMPARE, "{out}"), (0,), "Report", env=NO_RENDERER),
     Case(
         "renderer: dies of a segmentation fault, compare",
-        (*CHEAP, "{out}"),
+        (*COMPARE, "{out}"),
         (0,),
         "Report",
         hide=DEATH,
     ),
-    Case(
-        "renderer: dies of a segmentation fault, render",
-        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
-        (1,),
-        "signal 11",
-        hide=DEATH,
-    ),
+    Case("renderer: dies of a segmentation fault, render", RENDER, (1,), "signal 11", hide=DEATH),
     Case(
         "interrupt: Ctrl-C in the solid of compare",
-        ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
+        BOTH,
         (130,),
         "interrupt",
         stop=("solid: layers", signal.SIGINT),
     ),
-    Case(
-        "interrupt: Ctrl-C at the start",
-        ("compare", SCENE, "--models", "timoshenko,solid", "--out", "{out}"),
-        (130,),
-        "",
-        stop=("timoshenko: build", signal.SIGINT),
-    ),
+    Case("interrupt: Ctrl-C at the start", BOTH, (130,), stop=("timoshenko: build", signal.SIGINT)),
     Case(
         "interrupt: terminated while files are written",
-        (*CHEAP, "{out}"),
+        (*COMPARE, "{out}"),
         (-signal.SIGTERM, 143),
-        "",
         stop=("report", signal.SIGTERM),
     ),
     Case(
         "interrupt: killed while files are written",
-        (*CHEAP, "{out}"),
+        (*COMPARE, "{out}"),
         (-signal.SIGKILL,),
-        "",
         stop=("renders", signal.SIGKILL),
     ),
     Case(
         "disk: full after 60 kB, compare",
-        (*CHEAP, "{out}"),
+        (*COMPARE, "{out}"),
         (1,),
         "File too large",
         limit=(resource.RLIMIT_FSIZE, 60 << 10),
     ),
     Case(
         "disk: full from the start, compare",
-        (*CHEAP, "{out}"),
+        (*COMPARE, "{out}"),
         (1,),
         "File too large",
         limit=(resource.RLIMIT_FSIZE, 0),
     ),
-    Case(
-        "disk: full, render",
-        ("render", SCENE, "-f", "timoshenko", "--out", "{file}"),
-        (1,),
-        "",
-        limit=(resource.RLIMIT_FSIZE, 4 << 10),
-    ),
-    Case(
-        "disk: standard output full",
-        ("modes", SCENE, "-f", "timoshenko", "--json"),
-        (1,),
-        "",
-        stdout="/dev/full",
-        quick=True,
-    ),
-    Case(
-        "pipe: nobody reads",
-        ("modes", SCENE, "-f", "timoshenko"),
-        (0, 1, -signal.SIGPIPE, 141),
-        "",
-        stdout="closed",
-    ),
-    Case("folder: lies below a file", (*CHEAP, SCENE + "/out"), (1,), "--out", quick=True),
-    Case("folder: system folder that takes no files", (*CHEAP, "/proc/solidgear"), (1,), "--out"),
+    Case("disk: full, render", RENDER, (1,), limit=(resource.RLIMIT_FSIZE, 4 << 10)),
+    Case("disk: standard output full", (*MODES, "--json"), (1,), stdout="/dev/full", quick=True),
+    Case("pipe: nobody reads", MODES, (0, 1, -signal.SIGPIPE, 141), stdout="closed"),
+    Case("folder: lies below a file", (*COMPARE, SCENE + "/out"), (1,), "--out", quick=True),
+    Case("folder: system folder that takes no files", (*COMPARE, "/proc/solidgear"), (1,), "--out"),
     Case(
         "scene: a device without end",
         ("check", "/dev/zero"),
