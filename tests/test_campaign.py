@@ -18,7 +18,6 @@ from validation.campaign.cases import CASES, answers, claims, pairs, shafts
 from validation.campaign.cases.answers import goals_of, kind_of
 from validation.campaign.rows import (
     AGREES,
-    CLAIM,
     CONTRADICTS,
     DECIDED,
     FALSE_VALID,
@@ -26,7 +25,6 @@ from validation.campaign.rows import (
     UNCERTAIN,
     VALID,
     Found,
-    Row,
     Said,
     Truth,
     found_of,
@@ -388,7 +386,7 @@ def test_random_shafts_end_to_end(tmp_path):
 
 
 def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
-    rows = [Row(rule=CLAIM, **row) for row in pairs.judged(2)]
+    rows = pairs.judged(2).rows
     assert {row.quantity for row in rows} >= {"C_zz", "K_zz", "bending 1"}
     assert all(row.held for row in rows)
     # a bearing that is stiffer by 0.1, told as one that is softer: every number is on the wrong side
@@ -396,6 +394,6 @@ def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
     monkeypatch.setattr(
         pairs, "_wrong_way", lambda *given, right=pairs._wrong_way: right(*given[:-1], -given[-1])
     )
-    wrong = [Row(rule=CLAIM, **row) for row in pairs.judged(2)]
+    wrong = pairs.judged(2).rows
     assert not any(row.held for row in wrong if row.tags["verdict"] == "resolved")
     assert any(row.tags["verdict"] == "resolved" for row in wrong)

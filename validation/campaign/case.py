@@ -35,6 +35,11 @@ class Run:
     call: Callable[..., tuple[Any, str]]
     tell: Callable[[str], None]
 
+    def found(self, body: str, function: Callable[..., Found], *arguments: Any) -> Found:
+        """Judgement that a function gives in a process of its own, or why it gave none."""
+        found, problem = self.call(function, *arguments)
+        return Found(problems=[f"{body}: {problem}"]) if problem else found
+
     def truths(self, scene: Scene, *limits: int) -> Truths:
         """References of a shaft of revolution; limits are unknowns of the spectral levels."""
         kept = self.folder / "references"

@@ -59,9 +59,8 @@ class Claims(Case):
         given = run.given
         drawn = draw(seed, given.sort)
         more = {"bars": not given.light, "commands": given.commands}
-        found, problem = run.call(partial(judged, **more), drawn.text, f"{seed} {drawn.words}")
-        refused = Found(problems=[f"{seed} {drawn.words}: {problem}"])
-        return found if found is not None else refused
+        body = f"{seed} {drawn.words}"
+        return run.found(body, partial(judged, **more), drawn.text, body)
 
 
 class Part:

@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from solidgear.studies.stress.notch import UNIT_LOADS, FilletFactors, fillet_factors
+from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import DECIDED, Cost, Found, Said, Truth, held
 from validation.campaign.scenes.fillets import NAME, filleted_shoulder
@@ -31,37 +31,23 @@ class Fillets(Case):
         parser.add_argument("--orders", type=int, nargs="+", default=[5, 6, 7])
 
     def judge(self, run: Run, seed: int) -> Found:
-        body = f"seed {seed}"
-        found, problem = run.call(solved, seed, tuple(run.given.orders))
-        if problem:
-            return Found(problems=[f"{body}: {problem}"])
-        out = Found()
-        for order, (said, seconds) in found["orders"].items():
-            out.costs.append(Cost(body, {"order": str(order)}, seconds))
-            for load in UNIT_LOADS:
-                value, bar = said[load]
-                truth, doubt = found["truth"][load]
-                true = Truth(truth, doubt / truth, truth, "a finer mesh")
-                tags = {"load": load, "order": str(order)}
-                one = Said(f"Kt {load}", value, bar / truth, truth)
-                out.rows.append(held(one, true, body=body, tags=tags, rule=DECIDED))
-        return out
+        return run.found(f"seed {seed}", judged, seed, tuple(run.given.orders))
 
 
-def solved(seed: int, orders: tuple[int, ...]) -> dict:
-    """Factors with bars and processor times by order, and the truth with its doubt, by load."""
-    scene = filleted_shoulder(seed)
-    by_order = {}
+def judged(seed: int, orders: tuple[int, ...]) -> Found:
+    """Factors with bars and processor times by order, against the truth with its doubt, by load."""
+    scene, body, out = filleted_shoulder(seed), f"seed {seed}", Found()
+    fine = fillet_factors(scene, NAME, ALL, orders=FINE, refinement=FINER)
+    # the doubt is what the last order changed
+    before, last = (step.factors for step in fine.steps)
     for order in orders:
         start = time.process_time()
         found = fillet_factors(scene, NAME, ALL, orders=(order - 1, order))
-        said = {load: (one.value, one.bar) for load, one in found.factors.items()}
-        by_order[order] = said, time.process_time() - start
-    fine = fillet_factors(scene, NAME, ALL, orders=FINE, refinement=FINER)
-    return {"orders": by_order, "truth": _truth(fine)}
-
-
-def _truth(fine: FilletFactors) -> dict[str, tuple[float, float]]:
-    """Values, and what the last order changed of them."""
-    before, last = (step.factors for step in fine.steps)
-    return {load: (last[load], abs(last[load] - before[load])) for load in UNIT_LOADS}
+        out.costs.append(Cost(body, {"order": str(order)}, time.process_time() - start))
+        for load in UNIT_LOADS:
+            truth, one = last[load], found.factors[load]
+            true = Truth(truth, abs(truth - before[load]) / truth, truth, "a finer mesh")
+            said = Said(f"Kt {load}", one.value, one.bar / truth, truth)
+            tags = {"load": load, "order": str(order)}
+            out.rows.append(held(said, true, body=body, tags=tags, rule=DECIDED))
+    return out

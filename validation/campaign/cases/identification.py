@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -43,14 +42,10 @@ class Identification(Case):
     seeds = (1, 250)
 
     def judge(self, run: Run, seed: int) -> Found:
-        found, problem = run.call(judged, seed)
-        if problem:
-            return Found(problems=[f"seed {seed}: {problem}"])
-        rows = [Row(body=f"seed {seed}", rule=CLAIM, **row) for row in found["rows"]]
-        return Found(rows, failures=found["failures"], problems=found["problems"])
+        return run.found(f"seed {seed}", judged, seed)
 
 
-def judged(seed: int) -> dict[str, list[Any]]:
+def judged(seed: int) -> Found:
     """Errors of what is identified beside their intervals."""
     rng = np.random.default_rng([seed, 4])
     text, true = shaft(rng)
@@ -76,28 +71,27 @@ def judged(seed: int) -> dict[str, list[Any]]:
         except SolidgearError as error:
             told = str(error)
             if open_ and "do not tell" in told:
-                return {"rows": [], "failures": [], "problems": []}
-            return {"rows": [], "failures": [], "problems": [f"seed {seed}: refused: {told}"]}
+                return Found()
+            return Found(problems=[f"seed {seed}: refused: {told}"])
     if open_:
         known = max(entry.deviation for entry in found.entries)
-        return {
-            "rows": [],
-            "problems": [],
-            "failures": [f"seed {seed}: what cannot be told is told, deviation {known:.2g}"],
-        }
+        told = f"seed {seed}: what cannot be told is told, deviation {known:.2g}"
+        return Found(failures=[told])
     answers = [[entry.value for entry in found.entries], *found.alike]
     best = min(answers, key=lambda values: sum(abs(math.log(v / t)) for v, t in zip(values, true)))
     rows = [
-        {
-            "quantity": entry.path,
-            "tags": {"answer": "one of several" if found.alike else "the only one"},
-            "bar": math.log(entry.high / entry.low) / 2,
-            "error": math.log(value / truth),
-            "how": f"{truth:.4g} N/m",
-        }
+        Row(
+            body=f"seed {seed}",
+            quantity=entry.path,
+            tags={"answer": "one of several" if found.alike else "the only one"},
+            bar=math.log(entry.high / entry.low) / 2,
+            error=math.log(value / truth),
+            how=f"{truth:.4g} N/m",
+            rule=CLAIM,
+        )
         for entry, value, truth in zip(found.entries, best, true)
     ]
-    return {"rows": rows, "failures": [], "problems": []}
+    return Found(rows)
 
 
 def shaft(rng: np.random.Generator) -> tuple[str, tuple[float, float]]:

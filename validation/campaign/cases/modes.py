@@ -5,7 +5,6 @@ independent dense solution.
 from __future__ import annotations
 
 import argparse
-from typing import Any
 
 import numpy as np
 
@@ -35,16 +34,12 @@ class Modes(Case):
         parser.add_argument("--draw", type=int, default=1, help="another set of scenes")
 
     def judge(self, run: Run, number: int) -> Found:
-        found, problem = run.call(judged, run.given.draw, number)
         body = f"{run.given.draw}/{number}"
-        if problem:
-            return Found(problems=[f"{body}: {problem}"])
-        rows = [Row(body, **row, rule=CLAIM) for row in found["rows"]]
-        return Found(rows, failures=[f"{body}: {text}" for text in found["failures"]])
+        return run.found(body, judged, body, run.given.draw, number)
 
 
-def judged(seed: int, number: int) -> dict[str, list[Any]]:
-    """Rows and failures of one case, solved both ways."""
+def judged(name: str, seed: int, number: int) -> Found:
+    """Rows or failures of one case, solved both ways."""
     case = small(seed, number)
     body = build(case.scene, case.model, **case.options)
     if body.size > DENSE:
@@ -58,9 +53,9 @@ def judged(seed: int, number: int) -> dict[str, list[Any]]:
     value, change = dense.values(max(n, count))
     exact = np.sqrt(np.maximum(value, 0.0)) / (2 * np.pi)
     if rigid != dense.free:
-        return {"rows": [], "failures": [f"{rigid} rigid motions told, {dense.free} there"]}
+        return Found(failures=[f"{name}: {rigid} rigid motions told, {dense.free} there"])
     if count < min(n, len(exact)):
-        return {"rows": [], "failures": [f"{count} shapes told of {n}"]}
+        return Found(failures=[f"{name}: {count} shapes told of {n}"])
     tags = {"model": case.model, "method": str(found.evidence["method"])}
     rows, place = [], 0
     for mode in elastic:
@@ -72,6 +67,6 @@ def judged(seed: int, number: int) -> dict[str, list[Any]]:
         unknown = found.evidence["coupling_bound"] / 2 + float(change[mine].max())
         allowed = min(mode.error, WRONG) + unknown + springs_lost(case.scene) + 1e-11
         off = float(mode.frequency_hz / true - 1)
-        told = {"bar": float(allowed), "error": off, "how": f"{true:.9g} Hz"}
-        rows.append({"quantity": mode.name, "tags": tags, **told})
-    return {"rows": rows, "failures": []}
+        told = {"error": off, "how": f"{true:.9g} Hz", "rule": CLAIM}
+        rows.append(Row(name, mode.name, tags, float(allowed), **told))
+    return Found(rows)

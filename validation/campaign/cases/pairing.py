@@ -69,16 +69,10 @@ class Pairing(Case):
         parser.add_argument("--frequencies", action="store_true", help=told)
 
     def judge(self, run: Run, seed: int) -> Found:
-        found, problem = run.call(judged, seed, run.given.frequencies)
-        if problem:
-            return Found(problems=[f"seed {seed}: {problem}"])
-        rows = [Row(body=f"seed {seed}", bar=0.5, rule=CLAIM, **row) for row in found]
-        sure = (row for row in rows if row.tags["silent"] == "sure" and row.error)
-        silent = [f"{row.body}, {row.tags['slip']}: sure and wrong, {row.how}" for row in sure]
-        return Found(rows, failures=silent)
+        return run.found(f"seed {seed}", judged, seed, run.given.frequencies)
 
 
-def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
+def judged(seed: int, bare: bool = False) -> Found:
     """Pairs that are told, right (0) or wrong (1); of frequencies and multiplicities alone if `bare`."""
     rng = np.random.default_rng([seed, 5])
     text, springs = shaft(rng)
@@ -115,8 +109,12 @@ def judged(seed: int, bare: bool = False) -> list[dict[str, Any]]:
             seen = "none" if bare else f"{noise:.0%}"
             silent = "sure" if sure else "unsure"
             tags = {"stated": stated, "slip": slip, "noise": seen, "silent": silent}
-            rows.append({"quantity": "pair", "tags": tags, "error": float(not right), "how": how})
-    return rows
+            rows.append(
+                Row(f"seed {seed}", "pair", tags, 0.5, float(not right), how=how, rule=CLAIM)
+            )
+    wrong = (row for row in rows if row.tags["silent"] == "sure" and row.error)
+    silent = [f"{row.body}, {row.tags['slip']}: sure and wrong, {row.how}" for row in wrong]
+    return Found(rows, failures=silent)
 
 
 def _partner(mac: np.ndarray) -> set[int] | None:

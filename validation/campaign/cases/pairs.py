@@ -9,8 +9,6 @@ chapter VI).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from solidgear.quantity import COMPLIANCE, Quantity
@@ -34,10 +32,7 @@ class Pairs(Case):
     seeds = (1, 200)
 
     def judge(self, run: Run, seed: int) -> Found:
-        found, problem = run.call(judged, seed)
-        if problem:
-            return Found(problems=[f"seed {seed}: {problem}"])
-        return Found([Row(rule=CLAIM, **row) for row in found])
+        return run.found(f"seed {seed}", judged, seed)
 
 
 def changed(scene: Scene, seed: int) -> tuple[Scene, str, str, float]:
@@ -61,7 +56,7 @@ def changed(scene: Scene, seed: int) -> tuple[Scene, str, str, float]:
     return scene.with_changes(segments=tuple(segments)), what, sense, by
 
 
-def judged(seed: int) -> list[dict[str, Any]]:
+def judged(seed: int) -> Found:
     """How far each number goes the wrong way, beside the bar of its difference."""
     scene = random_scene(seed)
     other, what, sense, by = changed(scene, seed)
@@ -71,16 +66,17 @@ def judged(seed: int) -> list[dict[str, Any]]:
         if change.name == "mass" or wrong is None or change.change.band is None:
             continue
         rows.append(
-            {
-                "body": f"seed {seed}",
-                "quantity": change.name,
-                "tags": {"verdict": change.verdict, "changed": what},
-                "bar": change.change.band / change.scale,
-                "error": wrong / change.scale,
-                "how": f"{what} {sense} by {by:.1e}",
-            }
+            Row(
+                body=f"seed {seed}",
+                quantity=change.name,
+                tags={"verdict": change.verdict, "changed": what},
+                bar=change.change.band / change.scale,
+                error=wrong / change.scale,
+                how=f"{what} {sense} by {by:.1e}",
+                rule=CLAIM,
+            )
         )
-    return rows
+    return Found(rows)
 
 
 def _wrong_way(name: Quantity, sense: str, difference: float) -> float | None:

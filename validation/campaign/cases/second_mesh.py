@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import time
-from typing import Any
 
 from solidgear.body import as_supports
 from solidgear.judge.bounded import mode_bars
@@ -39,13 +38,10 @@ class SecondMesh(Case):
 
     def judge(self, run: Run, seed: int) -> Found:
         given = run.given
-        found, problem = run.call(judged, seed, given.element, given.refinement)
-        if problem:
-            return Found(problems=[f"seed {seed}: {problem}"])
-        return Found([Row(body=f"seed {seed}", rule=DECIDED, **row) for row in found])
+        return run.found(f"seed {seed}", judged, seed, given.element, given.refinement)
 
 
-def judged(seed: int, element: str, refinement: float) -> list[dict[str, Any]]:
+def judged(seed: int, element: str, refinement: float) -> Found:
     """Bars, errors and what the second mesh cost."""
     scene = random_scene(seed)
     options = {"element": element, "refinement": refinement}
@@ -61,15 +57,18 @@ def judged(seed: int, element: str, refinement: float) -> list[dict[str, Any]]:
     true = modes(exact, scene, scene.ask.modes + MORE)
     doubts = mode_bars(scene, exact, as_supports(scene), true)
     known = {str(mode.name): mode.frequency_hz for mode in true.modes}
-    return [
-        {
-            "quantity": name,
-            "tags": {"cells": element, "family": mode.family},
-            "bar": bars[name],
-            "error": mode.frequency_hz / known[name] - 1,
-            "doubt": doubts.get(name, 0.0),
-            "how": f"second mesh {100 * share:.0f} % more time",
-        }
+    rows = [
+        Row(
+            body=f"seed {seed}",
+            quantity=name,
+            tags={"cells": element, "family": mode.family},
+            bar=bars[name],
+            error=mode.frequency_hz / known[name] - 1,
+            doubt=doubts.get(name, 0.0),
+            how=f"second mesh {100 * share:.0f} % more time",
+            rule=DECIDED,
+        )
         for mode in found.modes
         if (name := str(mode.name)) in bars and name in known
     ]
+    return Found(rows)
