@@ -37,13 +37,15 @@ class Fillets(Case):
 def judged(seed: int, orders: tuple[int, ...]) -> Found:
     """Factors with bars and processor times by order, against the truth with its doubt, by load."""
     scene, body, out = filleted_shoulder(seed), f"seed {seed}", Found()
+    by_order = {}
+    for order in orders:
+        start = time.process_time()
+        by_order[order] = fillet_factors(scene, NAME, ALL, orders=(order - 1, order))
+        out.costs.append(Cost(body, {"order": str(order)}, time.process_time() - start))
     fine = fillet_factors(scene, NAME, ALL, orders=FINE, refinement=FINER)
     # the doubt is what the last order changed
     before, last = (step.factors for step in fine.steps)
-    for order in orders:
-        start = time.process_time()
-        found = fillet_factors(scene, NAME, ALL, orders=(order - 1, order))
-        out.costs.append(Cost(body, {"order": str(order)}, time.process_time() - start))
+    for order, found in by_order.items():
         for load in UNIT_LOADS:
             truth, one = last[load], found.factors[load]
             true = Truth(truth, abs(truth - before[load]) / truth, truth, "a finer mesh")
