@@ -48,9 +48,6 @@ def write_step(
 
     Parameters
     ----------
-    path : path
-    segments : sequence of Segment
-    features : sequence of Keyway, Flat or CrossHole
     corners : sequence of Corner
         Of fillets and chamfers.
     unit : {'mm', 'inch', 'm'}
@@ -103,12 +100,7 @@ def with_unit(text: str, unit: str) -> str:
 
     Parameters
     ----------
-    text : str
     unit : {'mm', 'inch', 'm'}
-
-    Returns
-    -------
-    str
     """
     assert MILLIMETRE in text
     if unit != "inch":
@@ -153,7 +145,6 @@ def write_solids(path: str, solids: Sequence[tuple[float, float, float, float]])
 
     Parameters
     ----------
-    path : str
     solids : sequence of (y0, y1, radius, bore)
         mm; radii, and a bore of 0 is none.
     """

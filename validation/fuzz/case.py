@@ -124,8 +124,6 @@ def run(
 
     Parameters
     ----------
-    fuzz : Fuzz
-    cases, seed : int
     progress : callable, optional
         Given every outcome as it comes.
     """

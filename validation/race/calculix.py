@@ -71,7 +71,6 @@ def solve(
 
     Parameters
     ----------
-    problem : Problem
     kind : str
         Key of ``KINDS``.
     modes : int
@@ -108,8 +107,6 @@ def execute(folder: Path, name: str, *, watch: bool = False, **more) -> tuple[Do
 
     Parameters
     ----------
-    folder : Path
-    name : str
     watch : bool
         For the peak of its memory.
     **more

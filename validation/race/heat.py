@@ -233,13 +233,7 @@ class Heat:
         self.say(f"not raced: {text}")
 
     def run(self, rounds: int, kept: Callable[[], None] = lambda: None) -> None:
-        """Every lane once a round; rows are kept after each.
-
-        Parameters
-        ----------
-        rounds : int
-        kept : callable
-        """
+        """Every lane once a round; rows are kept after each."""
         for k in range(rounds):
             for lane in self.lanes:
                 before = len(lane.samples), lane.error

@@ -76,7 +76,6 @@ def run(
 
     Parameters
     ----------
-    command : list of str
     folder : Path
         Where it runs.
     limit : float

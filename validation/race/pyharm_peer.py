@@ -46,12 +46,10 @@ def followed(
     ----------
     mass, damping, stiffness : (n, n) list
         Without the teeth, of unknowns scaled so that a half gap is one.
-    load : (n,) list
     error : float
         Amplitude at order one.
     begin, end : float
         rad/s.
-    harmonics, instants : int
     step : float
         Longest.
 

@@ -47,9 +47,6 @@ class Race:
 
         Parameters
         ----------
-        name : str
-        heats : collection of str
-        rounds : int
         given : Heat
             Whose limits and settings all have.
         only : str

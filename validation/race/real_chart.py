@@ -33,9 +33,6 @@ def draw(rows: Sequence[Row], part: str, path: Path, target: float = 1e-3) -> No
 
     Parameters
     ----------
-    rows : sequence of Row
-    part : str
-    path : Path
     target : float
         The error that ratios are taken at.
     """

@@ -73,10 +73,6 @@ def limit(values: Sequence[float]) -> Limit:
     ----------
     values : sequence of float
         Three or more, coarse to fine.
-
-    Returns
-    -------
-    Limit
     """
     a, b, c = values[-3:]
     shrink = (c - b) / (b - a) if b != a else 0.0
@@ -109,8 +105,6 @@ def errors(rows: Sequence[Row], part: str, line: str, what: str = "both") -> np.
 
     Parameters
     ----------
-    rows : sequence of Row
-    part, line : str
     what : {'both', 'C_zz', 'bending_1'}
         Both: the larger one of each mesh.
     """
@@ -155,11 +149,6 @@ def cost(error: Sequence[float], costs: Sequence[Sequence[float]], target: float
         Coarse to fine.
     costs : (n, 3) sequence
         Processor seconds, unknowns, MB.
-    target : float
-
-    Returns
-    -------
-    Cost
     """
     # An error counts as no smaller than those of finer meshes: it would be so by a lucky sign.
     reliable = np.maximum.accumulate(np.asarray(error, float)[::-1])[::-1]
@@ -200,9 +189,6 @@ def line_cost(
 
     Parameters
     ----------
-    rows : sequence of Row
-    part, line : str
-    target : float
     what : {'both', 'C_zz', 'bending_1'}
     seconds : {'cpu s', 'cpu_of_modes_s'}
         The second: modes of CalculiX without its loads.

@@ -112,7 +112,6 @@ def demand(found: Found, bore: float, count: int | None = None) -> Demand:
 
     Parameters
     ----------
-    found : Found
     bore : float
         m.
     count : int, optional

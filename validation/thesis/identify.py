@@ -146,12 +146,10 @@ def identify(
     model : callable
         Natural frequencies, Hz, in the order of `published_hz`, from a dict of the unknowns by
         name.
-    unknowns : sequence of Unknown
     published_hz : (n,) array_like
         Positive; leave out zero frequencies, which hold no information.
     starts : int
         The middle of the bounds and ``starts - 1`` seeded random points.
-    seed : int
 
     Notes
     -----

@@ -103,7 +103,6 @@ def ranking(
 
     Parameters
     ----------
-    train : Train
     settings : mapping, optional
         Builder options, for coarser meshes.
     highest : float
