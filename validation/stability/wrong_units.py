@@ -175,12 +175,7 @@ def measure(quick: bool = False) -> Finding:
                 rows.append(row | {"refused": error.reason})
                 continue
             values = ratios(here)
-            fires = [
-                name
-                for name, value in values.items()
-                if not LIMITS[name][0] <= value <= LIMITS[name][1]
-            ]
-            rows.append(row | values | {"refused": "", "fires": ", ".join(fires)})
+            rows.append(row | values | {"refused": "", "fires": ", ".join(_fired(values))})
     false = [r for r in rows if r["slip"] == "sound" and (r["refused"] or r["fires"])]
     caught = {
         slip: (
