@@ -217,9 +217,7 @@ def axle_rows() -> list[dict]:
     for words, scene in scenes:
         beam, solid = (sg.build(scene, f) for f in ("timoshenko", "harmonic"))
         first = {
-            body.fidelity: next(
-                m.frequency_hz for m in sg.modes(body, scene, 8).modes if m.name == "bending 1"
-            )
+            body.fidelity: sg.modes(body, scene, 8).named("bending 1").frequency_hz
             for body in (beam, solid)
         }
         c = {b.fidelity: sg.condense(b, scene, "pinion").compliance[2, 2] for b in (beam, solid)}

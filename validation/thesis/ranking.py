@@ -37,13 +37,9 @@ def with_scenes(train: Train, change) -> Train:
 
 def with_bearings(scene: Scene, factor: float) -> Scene:
     """A shaft with all bearings stiffer or softer by a factor."""
-    bearings = []
-    for b in scene.bearings:
-        matrix = tuple(tuple(factor * float(v) for v in row) for row in b.stiffness)
-        bearings.append(b.with_changes(matrix=matrix, axial_series=()))
     housing = scene.housing_axial
     softer = None if housing is None else factor * housing
-    return scene.with_changes(bearings=tuple(bearings), housing_axial=softer)
+    return scene.with_bearing_scale(factor).with_changes(housing_axial=softer)
 
 
 def with_engine_at_the_end(train: Train) -> Train:
