@@ -17,7 +17,7 @@ from pathlib import Path
 
 from validation.common import ROOT, show
 from validation.stability.frame import Finding
-from validation.stability.page import PAGE, keep, write_page
+from validation.stability.page import PAGE, keep, missing, write_page
 
 #: what scripts share, and what a fillet changes, which is no edge
 NO_EDGE = ("__init__", "__main__", "frame", "page", "fillets")
@@ -61,6 +61,9 @@ def main() -> int:
     )
     options = parser.parse_args()
     if options.page:
+        if names := missing():
+            print(f"not measured yet: {', '.join(names)}")
+            return 1
         write_page()
         print(f"written to {PAGE.relative_to(ROOT)}")
         return 0

@@ -111,10 +111,14 @@ def page(found: dict[str, Finding]) -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
+def missing() -> list[str]:
+    """Findings of the page that are not on file."""
+    names = [name for chapter in CHAPTERS.values() for name in chapter]
+    return [name for name in names if not (folder_of(name) / "finding.json").exists()]
+
+
 def write_page() -> None:
-    """Write the page and its charts, smaller and in few colours; `FileNotFoundError` where a finding
-    is missing: runs that are missing are never mixed.
-    """
+    """Write the page and its charts, smaller and in few colours."""
     found = {name: kept(name) for names in CHAPTERS.values() for name in names}
     PAGE.write_text(page(found))
     PICTURES.mkdir(parents=True, exist_ok=True)
