@@ -35,7 +35,9 @@ from solidgear.scene.toml_file import is_train
 from solidgear.studies.check import cautions
 from solidgear.studies.sweep import sweep as swept
 from solidgear.studies.sweep.choice import settled_for_sweep
-from solidgear.studies.sweep.scene_run import SceneSummary, sweep_scene
+from solidgear.studies.sweep.curves import chartable
+from solidgear.studies.sweep.running import Swept
+from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.vary import of_bearings_alone
 
 #: relative, of frequencies of a shaft
@@ -133,7 +135,11 @@ def _sweep_shaft(
             tell=tell,
             sample=rows.sample,
             seed=rows.seed,
-            **rows.how,
+            out=rows.out,
+            n=rows.n,
+            jobs=rows.jobs,
+            dask=rows.dask,
+            overwrite=rows.overwrite,
         )
     if run.as_json:
         record = asdict(found)
@@ -169,17 +175,17 @@ def _sweep_entries(
     checked_chart(chart)
     automatic = model.automatic()
     with rows.counted(run.as_json) as (show, tell):
-        found = sweep_scene(
+        task = scene_task(
             scene,
             rows.design(vary),
             model=None if automatic else str(model.name),
             tolerance=model.tol,
             options={} if automatic else options(model.pairs),
-            charted=chart is not None,
-            progress=show,
-            tell=tell,
-            **rows.how,
+            n=rows.n,
         )
+        if chart is not None:
+            chartable(task.variants)
+        found = rows.made(task, show, tell)
     written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
     if run.as_json:
         print(record_of(found))
@@ -191,7 +197,7 @@ def _sweep_entries(
     ended_rows(found)
 
 
-def _work(found: SceneSummary) -> list[str]:
+def _work(found: Swept) -> list[str]:
     """Sentences on what was done in this run, and how sure the rows are."""
     new, lines = found.total - found.skipped, []
     if new:

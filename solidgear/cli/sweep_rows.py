@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -20,15 +20,10 @@ from solidgear.report.plot import FORMATS, check_ending
 from solidgear.report.sweep_chart import sweep_chart, sweep_table
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING
+from solidgear.studies.sweep import Summary
+from solidgear.studies.sweep.curves import Curves
 from solidgear.studies.sweep.design import Design
-
-if TYPE_CHECKING:
-    from solidgear.studies.sweep import Summary
-    from solidgear.studies.sweep.curves import Curves
-    from solidgear.studies.sweep.scene_run import SceneSummary
-    from solidgear.studies.sweep.train_run import TrainSummary
-
-    Swept = Summary | SceneSummary | TrainSummary
+from solidgear.studies.sweep.running import FileTask, Swept, run
 
 #: rows that are told on the terminal as well
 FEW = 40
@@ -97,11 +92,17 @@ class Rows(Group):
         False
     )
 
-    @property
-    def how(self) -> dict[str, Any]:
-        """Arguments of a sweep on its rows."""
-        kept = ("out", "n", "jobs", "dask", "overwrite")
-        return {name: getattr(self, name) for name in kept}
+    def made(self, task: FileTask, show: Show, tell: Tell) -> Swept:
+        """Rows of variants of files."""
+        return run(
+            task,
+            self.out,
+            jobs=self.jobs,
+            dask=self.dask,
+            overwrite=self.overwrite,
+            progress=show,
+            tell=tell,
+        )
 
     @property
     def of_files(self) -> bool:
@@ -150,13 +151,13 @@ class Rows(Group):
             raise
 
 
-def rows_there(found: Swept) -> str:
+def rows_there(found: Swept | Summary) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     return f"{path}: {found.total} rows, {found.skipped} of them there before."
 
 
-def refusals(found: Swept) -> list[str]:
+def refusals(found: Swept | Summary) -> list[str]:
     """Sentences on variants that were refused, if any were: a reason each, the commonest first."""
     most = sorted(found.whys.items(), key=lambda why: -why[1])
     told = [
@@ -168,10 +169,10 @@ def refusals(found: Swept) -> list[str]:
     return told
 
 
-def record_of(found: Swept) -> str:
+def record_of(found: Swept, **more: Any) -> str:
     """The account as JSON, without the rows."""
-    record = {k: v for k, v in vars(found).items() if k not in ("curves", "columns")}
-    return json.dumps(record, default=str)
+    kept = ("path", "total", "skipped", "refused", "whys", "seconds", "repairs")
+    return json.dumps({name: getattr(found, name) for name in kept} | more, default=str)
 
 
 def ended_rows(found: Swept) -> None:

@@ -25,9 +25,9 @@ from solidgear.cli.sweep_rows import (
 from solidgear.cli.train_options import Pair, Reduced
 from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import parse
-from solidgear.studies.sweep.train_run import TrainSummary
-from solidgear.studies.sweep.train_run import sweep_train as swept
-from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES
+from solidgear.studies.sweep.curves import chartable
+from solidgear.studies.sweep.running import Swept
+from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
 from solidgear.studies.sweep.train_variants import shafts_in
 from solidgear.studies.train.shaft import JUDGE, told_mix
 
@@ -77,57 +77,59 @@ def sweep_train(
     reduced.checked()
     mix = pair.of([*shafts_in(parse(str(train)))], train.stem)
     with rows.counted(run.as_json) as (show, tell):
-        found = swept(
+        task = train_task(
             train,
             rows.design(vary),
             models=mix,
             mesh=told.mesh,
             settings=of_shafts(settings, mix),
             ask=told.ask or ASKED,
+            n=rows.n,
             every_point=told.every_point,
-            charted=told.chart is not None,
             max_frequency=reduced.max_frequency,
             point=reduced.point,
             reduction=reduced.reduction,
             kept=reduced.kept,
             local_harmonics=reduced.harmonics,
-            progress=show,
-            tell=tell,
-            **rows.how,
         )
-    curves = found.curves
-    written = drawn(curves, found.title, _lead(found, mix), told.chart, found.cautions)
+        if told.chart is not None:
+            chartable(task.variants)
+        found = rows.made(task, show, tell)
+    title = task.usual.title or task.usual.name
+    made = task.bench.made if rows.jobs == 1 and rows.dask is None else None
+    cut, curves = task.cut(found.columns), found.curves
+    written = drawn(curves, title, _lead(found, mix), told.chart, task.cautions)
     if run.as_json:
-        print(record_of(found))
+        print(record_of(found, bodies=made, cut=cut, title=title, cautions=task.cautions))
         ended_rows(found)
         return
-    say(f"{found.title}: {told_mix(mix)}")
+    say(f"{title}: {told_mix(mix)}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
         say(sweep_table(curves))
-    say(rows_there(found), *_work(found), *refusals(found), *_limits(found, told, mix), *written)
-    say(*map(caution, found.cautions))
+    say(rows_there(found), *_work(found, made), *refusals(found), *_limits(cut, told, mix))
+    say(*written, *map(caution, task.cautions))
     ended_rows(found)
 
 
-def _work(found: TrainSummary) -> list[str]:
+def _work(found: Swept, made: int | None) -> list[str]:
     """Sentence on what was done in this run."""
     new = found.total - found.skipped
     if not new:
         return []
-    shafts = "" if found.bodies is None else f"{found.bodies} shafts meshed and reduced; "
+    shafts = "" if made is None else f"{made} shafts meshed and reduced; "
     return [
         f"{shafts}{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
         f"{found.refused} refused."
     ]
 
 
-def _limits(found: TrainSummary, told: Told, mix: Mapping[str, str]) -> list[str]:
+def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
     """Sentences on what rows do not tell."""
     lines = []
-    if found.cut > 0:
+    if cut > 0:
         lines.append(
-            f"Rows have up to {MOST_MODES + found.cut} natural frequencies, and columns for "
-            f"{MOST_MODES}: give -n {MOST_MODES + found.cut} for all."
+            f"Rows have up to {MOST_MODES + cut} natural frequencies, and columns for "
+            f"{MOST_MODES}: give -n {MOST_MODES + cut} for all."
         )
     if MODES in (told.ask or (MODES,)):
         meshed = JUDGE in mix.values()
@@ -136,6 +138,6 @@ def _limits(found: TrainSummary, told: Told, mix: Mapping[str, str]) -> list[str
     return lines
 
 
-def _lead(found: TrainSummary, mix: Mapping[str, str]) -> str:
+def _lead(found: Swept, mix: Mapping[str, str]) -> str:
     models = told_mix(mix)
     return f"{models[0].upper()}{models[1:]}; rows in {found.path.name}."

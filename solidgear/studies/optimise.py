@@ -22,7 +22,7 @@ from solidgear.scene.toml_file import parse
 from solidgear.studies.optimum import Design, Optimum
 from solidgear.studies.sweep.entries import Entry, Kept, entries_of, in_si, kept_of
 from solidgear.studies.sweep.file_variants import OWN, in_own_file
-from solidgear.studies.sweep.scene_variants import STATICS, SceneTask, SceneVariants
+from solidgear.studies.sweep.scene_task import STATICS, SceneTask, SceneVariants
 from solidgear.studies.wishes import Wish, limit_of, plain_number, wish_of
 
 #: designs that are solved at most, with the file as it is: a few for one entry, more for each other
@@ -119,7 +119,7 @@ class _Search:
         )
         self.variants.tried(0)
         self.variants.refuse_hopeless()
-        base = self.variants.scene(0)
+        base = self.variants.of(0)
         tol = base.ask.tolerance / 10 if tol is None else tol
         self.task = SceneTask(self.variants, model, tol, {}, MODES)
         self.title = base.title or base.name

@@ -9,7 +9,7 @@ from typing import Any
 
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.units import quantity
-from solidgear.studies.sweep.scene_variants import MOST_MODES, STATICS
+from solidgear.studies.sweep.scene_task import MOST_MODES, STATICS
 
 _GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
 _KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")

@@ -12,14 +12,23 @@ import numpy as np
 from solidgear.errors import SolidgearError, listed
 from solidgear.studies.sweep.entries import Entry, in_si
 from solidgear.studies.sweep.file_variants import POINT, FileVariants
-from solidgear.studies.sweep.train_task import force_of, misaligned
 
 #: rows that curves are made of
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
 #: what columns of mesh forces begin with
-FORCE = force_of("mesh")
+FORCE = "mesh_force"
+
+
+def force_of(mesh: str) -> str:
+    """Column of the force of a mesh at rest."""
+    return f"{FORCE}{mesh.removeprefix('mesh').replace(' ', '_')}"
+
+
+def misaligned(name: str) -> str:
+    """Column of a number of the misalignment."""
+    return f"misalignment_{name.replace(' ', '_')}"
 
 
 @dataclass(frozen=True, eq=False)

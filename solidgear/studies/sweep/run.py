@@ -132,11 +132,6 @@ def sweep(
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
     plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
-    repairs: list[str] = []
-
-    def mended(text: str) -> None:
-        repairs.append(text)
-        tell(text)
 
     def body() -> tuple[Body, int]:
         shaft = variants.shaft()
@@ -146,14 +141,14 @@ def sweep(
         return build(shaft, fidelity, **options), seats
 
     total = len(variants)
-    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, mended) as file:
+    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, tell) as file:
         skipped = len(file.done)
         todo = [i for i in range(total) if i not in file.done]
         found = Summary(file.path, total, skipped, settling=_settling(variants))
         if todo:
             found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
         file.finish()
-    return replace(found, repairs=tuple(repairs))
+    return replace(found, repairs=tuple(file.repairs))
 
 
 def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress) -> Summary:

@@ -5,70 +5,15 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any
 
-import numpy as np
-
-from solidgear.display import Displayed
-from solidgear.errors import SolidgearError, listed, nearest
 from solidgear.scene.toml_file import is_train
 from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.scene_run import sweep_scene
-from solidgear.studies.sweep.train_run import sweep_train
-
-if TYPE_CHECKING:
-    from solidgear.studies.sweep.curves import Curves
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Swept(Displayed):
-    """Rows of a sweep.
-
-    Attributes
-    ----------
-    columns : dict of str to list
-        Values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
-        numbers as ``f1_hz bar``, in the same unit.
-    whys : dict of str to int
-        Why variants were refused, and how many for that reason.
-    curves : Curves or None
-        Where one number varies.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> rows = sg.sweep("geometry/shaft_stepped.toml", "segment.left.diameter=45 mm,55 mm", n=2)
-    >>> len(rows), bool(rows["f2_hz"][0] < rows["f2_hz"][1]), bool(max(rows["f2_hz bar"]) < 10)
-    (2, True, True)
-    """
-
-    shown: ClassVar[str] = "swept"
-
-    columns: dict[str, list[Any]]
-    varied: tuple[str, ...]
-    whys: dict[str, int]
-    curves: Curves | None
-
-    def __len__(self) -> int:
-        return len(self.columns["variant"])
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self.columns:
-            raise SolidgearError(
-                f"a sweep has no column {name!r}{nearest(name, self.columns)}; "
-                f"it has {listed(self.columns)}"
-            )
-        values = self.columns[name]
-        texts = any(isinstance(value, str) for value in values)
-        return np.array(values, object if texts else float)
-
-    def to_dataframe(self) -> Any:
-        """All columns as a data frame of pandas, which must be installed."""
-        import pandas
-
-        return pandas.DataFrame(self.columns)
+from solidgear.studies.sweep.rows import tell_in_log
+from solidgear.studies.sweep.running import FileTask, Swept, run
+from solidgear.studies.sweep.scene_task import scene_task
+from solidgear.studies.sweep.train_task import train_task
 
 
 def sweep(
@@ -81,7 +26,11 @@ def sweep(
     table: str | os.PathLike | None = None,
     keep_sum: Iterable[str] = (),
     out: str | os.PathLike | None = None,
+    jobs: int = 1,
+    dask: str | None = None,
+    overwrite: bool = False,
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
+    tell: Callable[[str], None] = tell_in_log,
     **how: Any,
 ) -> Swept:
     """Solve many variants of the file of a shaft or of a train.
@@ -102,11 +51,11 @@ def sweep(
         ``PATH+PATH``: sums that stay what they are in the file.
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
-    progress : callable
-        Called with rows that are there, rows in all, and what is being done.
+    jobs, dask, overwrite, progress, tell
+        As of :func:`solidgear.studies.sweep.running.run`.
     **how
-        Of a shaft those of :func:`solidgear.studies.sweep.scene_run.sweep_scene`, of a train those
-        of :func:`solidgear.studies.sweep.train_run.sweep_train`, such as ``model``, ``n``, ``jobs``.
+        Of a shaft those of :func:`solidgear.studies.sweep.scene_task.scene_task`, of a train those
+        of :func:`solidgear.studies.sweep.train_task.train_task`, such as ``model`` and ``n``.
 
     Returns
     -------
@@ -131,10 +80,10 @@ def sweep(
     texts = (vary,) if isinstance(vary, str) else tuple(vary)
     own = None if table is None else Path(table)
     design = Design(texts, sample, seed, one_at_a_time, own, tuple(keep_sum))
-    run: Callable[..., Any] = sweep_train if is_train(Path(file)) else sweep_scene
+    make: Callable[..., FileTask] = train_task if is_train(Path(file)) else scene_task
+    task = make(Path(file), design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)
-        found = run(Path(file), design, rows, progress=progress, **how)
-    columns = list(found.columns)
-    varied = tuple(columns[1 : columns.index("status")])
-    return Swept(found.columns, varied, found.whys, found.curves)
+        return run(
+            task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress, tell=tell
+        )
