@@ -88,6 +88,7 @@ def test_words_of_goals_and_limits():
         ([SPAN], "max bnding 1", [], "has no bnding 1.*bending 1"),
         ([SPAN], "max f1", ["C_zz = 5"], "NUMBER < VALUE"),
         ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is no unit"),
+        ([SPAN], "max f1", ["C_zz < five"], "is no number with a unit"),
     ],
 )
 def test_bad_words_end_in_a_sentence(vary, goal, keep, said):

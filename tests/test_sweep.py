@@ -310,7 +310,7 @@ def test_workers_get_the_small_operators_only(monkeypatch):
 
     variants = variants_of(SCENE, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)
-    task = runner.Task(variants, reduce(body, 6), 6, 1e-6)
+    task = runner.Task(variants, (reduce(body, 6),), 6, 1e-6)
     mesh = sum(b.stiffness.data.nbytes for b in body.blocks[:1])
     assert len(pickle.dumps(task)) < 150_000 < mesh / 10
 

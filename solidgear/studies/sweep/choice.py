@@ -7,7 +7,7 @@ finest that one of these needs serves all.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ import numpy as np
 from solidgear.errors import SceneError
 from solidgear.judge.settle import Settled, settle
 from solidgear.quantity import Quantity
+from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.run import variants_of
 
 if TYPE_CHECKING:
@@ -71,12 +72,12 @@ def settled_for_sweep(
     """
     scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
     found: list[Settled] = []
-    last: dict[tuple, Settled] = {}
+    last: dict[Hashable, Settled] = {}
     for k, one in enumerate(scenes, start=1):
         told = _numbered(progress, k, len(scenes))
         # bearings that sit where others did are other springs on the same body
-        own = settle(one, tol, "all", before=last.get(_seats(one)), progress=told)
-        last[_seats(one)] = own
+        own = settle(one, tol, "all", before=last.get(surface(one)), progress=told)
+        last[surface(one)] = own
         found.append(own)
     finest = max(found, key=lambda settled: settled.body.size)
     bars: dict[Quantity, float] = {}
@@ -89,11 +90,6 @@ def settled_for_sweep(
         reached=all(settled.reached for settled in found),
         judged_on=len(found),
     )
-
-
-def _seats(scene: Scene) -> tuple:
-    """Places of stations, and their ties."""
-    return tuple((s.name, s.y, s.lo, s.hi, s.attachment) for s in scene.stations)
 
 
 def _ends(variants: Variants) -> list[Scene]:

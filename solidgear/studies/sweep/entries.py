@@ -97,7 +97,7 @@ class Entry(Span):
     @property
     def shown_in(self) -> str:
         """Unit that its numbers are read in, as the user wrote it; empty for SI."""
-        units = {amount[2] if (amount := _amount(word)) else "" for word in self.words}
+        units = {found[2] if (found := amount(word)) else "" for word in self.words}
         return self.unit or (units.pop() if len(units) == 1 else "")
 
     @property
@@ -333,7 +333,7 @@ def in_si(value: object) -> float | None:
         return float(value)
     if not isinstance(value, str):
         return None
-    if not (found := _amount(value)) or not found[2]:
+    if not (found := amount(value)) or not found[2]:
         return None
     for dimension in DIMENSIONS:
         try:
@@ -343,7 +343,7 @@ def in_si(value: object) -> float | None:
     return None
 
 
-def _amount(word: object) -> re.Match[str] | None:
+def amount(word: object) -> re.Match[str] | None:
     """Number and unit of a text."""
     return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
 

@@ -156,11 +156,11 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
     total, start = found.total, time.perf_counter()
     body, seats = body()
     progress(found.skipped, total, f"reducing {body.size} unknowns")
-    solver = _Solver(body, Task(variants, reduce(body, n, file.basis or 0), n, tolerance))
+    solver = _Solver(body, Task(variants, (reduce(body, n, file.basis or 0),), n, tolerance))
     if file.basis is None:
         # Of all variants, whatever is left of them: the basis is the same after an interruption.
         solver.settle(range(total)[:: max(1, total // PROBES)])
-        file.basis = solver.task.reduced.level
+        file.basis = solver.task.bases[0].level
     once, start = time.perf_counter() - start, time.perf_counter()
     full, whys = 0, Counter[str]()
     size = max(1, min(50, len(todo) // (4 * jobs)))
@@ -176,7 +176,7 @@ def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress
         full=full,
         unknowns=body.size,
         seats=seats,
-        basis=solver.task.largest.size,
+        basis=solver.task.bases[-1].size,
         seconds_once=once,
         seconds_each=(time.perf_counter() - start) / len(todo),
         whys=dict(whys),
@@ -219,13 +219,13 @@ class _Solver:
         """Have a larger basis for variants that need it; False if there is none."""
         basis = self._next()
         if basis:
-            self.task = replace(self.task, larger=(*self.task.larger, basis))
+            self.task = replace(self.task, bases=(*self.task.bases, basis))
         return basis is not None
 
     def settle(self, probes: Sequence[int]) -> None:
         """Begin with a basis that does for some variants, or with the largest."""
         while any(map(self.task.weak, self.task.rows(probes))) and (basis := self._next()):
-            self.task = replace(self.task, reduced=basis)
+            self.task = replace(self.task, bases=(basis,))
 
     def repaired(self, row: dict[str, Any]) -> dict[str, Any]:
         """A row within the tolerance."""
@@ -236,7 +236,7 @@ class _Solver:
         return self.task.in_full(row, self.body) if self.task.weak(row) else row
 
     def _next(self) -> Reduced | None:
-        level = self.task.largest.level + 1
+        level = self.task.bases[-1].level + 1
         return reduce(self.body, self.task.n, level) if level < len(LEVELS) else None
 
     def _again(self, row: dict[str, Any]) -> dict[str, Any]:

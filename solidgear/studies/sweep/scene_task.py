@@ -41,6 +41,24 @@ class SceneVariants(FileVariants[Scene]):
         return scene_of(self.put(OWN, varied, row), self.path)
 
 
+def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
+    """Points of a sweep over entries of a scene file.
+
+    Parameters
+    ----------
+    example : str
+        Of something to vary, told where nothing is.
+
+    Raises
+    ------
+    SolidgearError
+        For a file and texts that cannot be read, and too many variants.
+    """
+    files = {OWN: parse(str(path))}
+    points = design.points(files, in_own_file, example=example)
+    return SceneVariants(path, files, *points, design)
+
+
 @dataclass(frozen=True)
 class SceneTask(FileTask):
     """Everything that turns variants of a scene into rows: each is read, meshed and solved for
@@ -189,8 +207,7 @@ def scene_task(
     True
     """
     given = {} if model is None else LADDER[model].checked(dict(options or {}))
-    files = {OWN: parse(str(scene))}
-    variants = SceneVariants(scene, files, *design.points(files, in_own_file), design)
+    variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
     first = variants.first_sound()
     n = variants.of(first).ask.modes if n is None else n
     number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)

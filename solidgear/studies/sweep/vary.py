@@ -273,7 +273,7 @@ def _read(text: str, place: tuple[int | None, bool], field: str, label: str, spe
 def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
     of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
     dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
-    values, spacing = spread(spec, lambda text: _number(text, dimension))
+    values, spacing = spread(spec, lambda text: quantity(plain_number(text.strip()), dimension))
     if field == "position":
         values = [round(v, POSITION_DECIMALS) + 0.0 for v in values]
     # the same value twice would be the same row twice
@@ -310,11 +310,9 @@ def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
     ).tolist(), spacing
 
 
-def _number(text: str, dimension: str) -> float:
-    text = text.strip()
+def plain_number(text: str) -> str | float:
+    """A number where a text is one, else the text."""
     try:
-        return quantity(float(text), dimension)
-    except ValueError as error:
-        if isinstance(error, SceneError):
-            raise
-        return quantity(text, dimension)
+        return float(text)
+    except ValueError:
+        return text
