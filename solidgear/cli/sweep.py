@@ -24,6 +24,7 @@ from solidgear.cli.sweep_rows import (
     record_of,
     refusals,
     rows_there,
+    solved,
 )
 from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
@@ -35,7 +36,6 @@ from solidgear.scene.toml_file import is_train
 from solidgear.studies.check import cautions
 from solidgear.studies.sweep import sweep as swept
 from solidgear.studies.sweep.choice import settled_for_sweep
-from solidgear.studies.sweep.curves import chartable
 from solidgear.studies.sweep.running import Swept
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.vary import of_bearings_alone
@@ -183,9 +183,7 @@ def _sweep_entries(
             options={} if automatic else options(model.pairs),
             n=rows.n,
         )
-        if chart is not None:
-            chartable(task.variants)
-        found = rows.made(task, show, tell)
+        found = rows.made(task, chart, show, tell)
     written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
     if run.as_json:
         print(record_of(found))
@@ -199,13 +197,10 @@ def _sweep_entries(
 
 def _work(found: Swept) -> list[str]:
     """Sentences on what was done in this run, and how sure the rows are."""
-    new, lines = found.total - found.skipped, []
-    if new:
-        lines.append(
-            "The shaft varies: every variant is meshed and solved for itself. "
-            f"{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
-            f"{found.refused} refused."
-        )
+    lines = []
+    if found.total > found.skipped:
+        own = "The shaft varies: every variant is meshed and solved for itself."
+        lines.append(f"{own} {solved(found)}")
     bars = [
         bar / hz
         for bar, hz in zip(found.columns.get("f1_hz bar", []), found.columns["f1_hz"])

@@ -21,7 +21,7 @@ from solidgear.report.sweep_chart import sweep_chart, sweep_table
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING
 from solidgear.studies.sweep import Summary
-from solidgear.studies.sweep.curves import Curves
+from solidgear.studies.sweep.curves import Curves, chartable
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.running import FileTask, Swept, run
 
@@ -92,8 +92,10 @@ class Rows(Group):
         False
     )
 
-    def made(self, task: FileTask, show: Show, tell: Tell) -> Swept:
-        """Rows of variants of files."""
+    def made(self, task: FileTask, chart: Path | None, show: Show, tell: Tell) -> Swept:
+        """Rows of variants of files; refused before where a chart of them cannot be drawn."""
+        if chart is not None:
+            chartable(task.variants)
         return run(
             task,
             self.out,
@@ -155,6 +157,13 @@ def rows_there(found: Swept | Summary) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     return f"{path}: {found.total} rows, {found.skipped} of them there before."
+
+
+def solved(found: Swept) -> str:
+    """Sentence on what was done in this run."""
+    new = found.total - found.skipped
+    each = 1e3 * found.seconds / new
+    return f"{new} variants in {found.seconds:.1f} s, {each:.0f} ms each; {found.refused} refused."
 
 
 def refusals(found: Swept | Summary) -> list[str]:

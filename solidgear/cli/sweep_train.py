@@ -21,11 +21,11 @@ from solidgear.cli.sweep_rows import (
     record_of,
     refusals,
     rows_there,
+    solved,
 )
 from solidgear.cli.train_options import Pair, Reduced
 from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import parse
-from solidgear.studies.sweep.curves import chartable
 from solidgear.studies.sweep.running import Swept
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
 from solidgear.studies.sweep.train_variants import shafts_in
@@ -92,9 +92,7 @@ def sweep_train(
             kept=reduced.kept,
             local_harmonics=reduced.harmonics,
         )
-        if told.chart is not None:
-            chartable(task.variants)
-        found = rows.made(task, show, tell)
+        found = rows.made(task, told.chart, show, tell)
     title = task.usual.title or task.usual.name
     made = task.bench.made if rows.jobs == 1 and rows.dask is None else None
     cut, curves = task.cut(found.columns), found.curves
@@ -113,14 +111,10 @@ def sweep_train(
 
 def _work(found: Swept, made: int | None) -> list[str]:
     """Sentence on what was done in this run."""
-    new = found.total - found.skipped
-    if not new:
+    if found.total == found.skipped:
         return []
     shafts = "" if made is None else f"{made} shafts meshed and reduced; "
-    return [
-        f"{shafts}{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
-        f"{found.refused} refused."
-    ]
+    return [f"{shafts}{solved(found)}"]
 
 
 def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear import __version__
+from solidgear.bearings.solved import waiting
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build as build_any
@@ -20,7 +21,7 @@ from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
 from solidgear.studies.sweep.task import Task, columns
-from solidgear.studies.sweep.variants import SeatedShaft, Variants, waiting
+from solidgear.studies.sweep.variants import SeatedShaft, Variants
 from solidgear.studies.sweep.workers import workers
 
 #: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
@@ -91,9 +92,7 @@ def sweep(
     vary_texts : iterable of str
         See :mod:`solidgear.studies.sweep.vary`.
     out : path
-        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
-        again; they are in a database beside the file (``rows.csv.sqlite``), from which the file is
-        written in one step, see :mod:`solidgear.studies.sweep.rows`.
+        ``.csv`` or ``.parquet``, see :mod:`solidgear.studies.sweep.rows`.
     fidelity, options
         As for :func:`solidgear.ladder.build`.
     n : int, optional
@@ -103,19 +102,10 @@ def sweep(
     tolerance : float
         Relative error of frequencies against the same body solved in full. A variant whose bound
         exceeds it makes the basis larger, and where that does not do it is solved in full.
-    jobs : int
-        Processes on this machine (joblib), at most eight for each processor.
-    dask : str, optional
-        Address of a Dask scheduler, whose workers have solidgear installed.
-    overwrite : bool
-        Discard rows that are there.
+    jobs, dask, overwrite, progress, tell
+        As of :func:`solidgear.studies.sweep.running.run`.
     build : callable
         Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a model and options.
-    progress : callable
-        Called with rows that are there, rows in all, and what is being done.
-    tell : callable
-        Called with a sentence for every damage to the files that was found and mended; by default
-        a warning of the logger.
 
     Raises
     ------
