@@ -2,13 +2,12 @@
 is refused, and stops.
 """
 
-import csv
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command import command
+from command import command, numbers
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
@@ -39,24 +38,12 @@ def counted(train, vary, out, progress=lambda *_: None, jobs=1, **how):
     drawn = {k: how.pop(k) for k in ("sample", "seed") if k in how}
     task = train_task(train, Design(tuple(vary), **drawn), **{**LIGHT, **how})
     found = run(task, out, progress=progress, jobs=jobs)
-    return found, rows_of(out), task.bench.made
+    return found, numbers(out), task.bench.made
 
 
 def swept(*of, **how):
     """The same without bodies."""
     return counted(*of, **how)[:2]
-
-
-def rows_of(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{k: _plain(v) for k, v in row.items()} for row in csv.DictReader(file)]
-
-
-def _plain(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def by_hand(folder, file, *edits):
@@ -392,7 +379,7 @@ def test_a_stopped_sweep_goes_on_and_gives_the_same_digits(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         swept(AXLE, VARY, tmp_path / "rows.csv", progress=stop)
-    assert len(rows_of(tmp_path / "rows.csv")) == 2
+    assert len(numbers(tmp_path / "rows.csv")) == 2
     rest, _ = swept(AXLE, VARY, tmp_path / "rows.csv")
     assert (rest.skipped, rest.total) == (2, whole.total) == (2, 6)
     assert (tmp_path / "rows.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
@@ -446,7 +433,7 @@ def test_the_command_draws_curves_over_one_number(ending, tmp_path):
     assert "operation.full.torque, N*m" in drawn and "radial load of bearings in N" in drawn
     # words on every place of a curve, in the unit that was asked in
     assert "operation.full.torque: 60 N*m" in drawn and "gear bending 1" in drawn
-    (row,) = (r for r in rows_of(tmp_path / "rows.csv") if r["operation.full.torque"] == 60)
+    (row,) = (r for r in numbers(tmp_path / "rows.csv") if r["operation.full.torque"] == 60)
     assert "mesh force" in done.stdout and f"{row['mesh_force']:.4g}" in done.stdout
 
 
