@@ -153,6 +153,36 @@ class Rows(Group):
             raise
 
 
+@dataclass(frozen=True)
+class Told(Group):
+    """Numbers that rows of a train tell."""
+
+    ask: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--ask",
+            help="Of a train: what rows tell, system-modes, response or deflect; repeatable, all by "
+            "default.",
+        ),
+    ] = None
+    every_point: Annotated[
+        bool, typer.Option("--every-point", help="Of a train: a row for each operating point.")
+    ] = False
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Of a train: whose transmission error drives it, of several; the first."
+        ),
+    ] = None
+    chart: Annotated[
+        Path | None,
+        typer.Option(
+            "--chart",
+            help="Curves over the number that varies, as .png, .svg or .html.",
+        ),
+    ] = None
+
+
 def rows_there(found: Swept | Summary) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text

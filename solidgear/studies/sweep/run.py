@@ -13,7 +13,7 @@ from solidgear import __version__
 from solidgear.bearings.solved import waiting
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.ladder import build as build_any
+from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
@@ -81,7 +81,6 @@ def sweep(
     jobs: int = 1,
     dask: str | None = None,
     overwrite: bool = False,
-    build: Callable[..., Body] = build_any,
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
     tell: Callable[[str], None] = tell_in_log,
 ) -> Summary:
@@ -104,8 +103,6 @@ def sweep(
         exceeds it makes the basis larger, and where that does not do it is solved in full.
     jobs, dask, overwrite, progress, tell
         As of :func:`solidgear.studies.sweep.running.run`.
-    build : callable
-        Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a model and options.
 
     Raises
     ------

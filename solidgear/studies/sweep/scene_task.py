@@ -42,17 +42,8 @@ class SceneVariants(FileVariants[Scene]):
 
 
 def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
-    """Points of a sweep over entries of a scene file.
-
-    Parameters
-    ----------
-    example : str
-        Of something to vary, told where nothing is.
-
-    Raises
-    ------
-    SolidgearError
-        For a file and texts that cannot be read, and too many variants.
+    """Points of a sweep over entries of a scene file; the example of something to vary is told where
+    nothing is.
     """
     files = {OWN: parse(str(path))}
     points = design.points(files, in_own_file, example=example)

@@ -112,24 +112,8 @@ def train_variants(
     every_point: bool = False,
     local_harmonics: Sequence[int] = (),
 ) -> TrainVariants:
-    """Points of a sweep of a train.
-
-    Parameters
-    ----------
-    path : Path
-        Of the train file.
-    design : Design
-    point : str, optional
-        Operating point that is looked at; the first by default, or the one that varies.
-    every_point : bool
-        Look at each of the file.
-    local_harmonics : sequence of int
-        Of every mesh, in place of those of the file.
-
-    Raises
-    ------
-    SolidgearError
-        For files and texts that cannot be read, and for too many variants.
+    """Points of a sweep of a train, as :func:`solidgear.studies.sweep.train_task.train_task` has
+    them.
     """
     own = parse(str(path))
     if isinstance(own.get("mesh"), list):
