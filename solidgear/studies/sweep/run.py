@@ -120,54 +120,43 @@ def sweep(
     team = workers(jobs, dask)
     plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
 
-    def body() -> tuple[Body, int]:
-        shaft = variants.shaft()
-        _check_seats(shaft, scene, fidelity, options)
-        seats = len(shaft.stations) - len(scene.ports)
-        progress(len(file.done), total, f"body with {seats} seats")
-        return build(shaft, fidelity, **options), seats
-
     total = len(variants)
     with RowFile(Path(out), columns(variants, n), plan, total, overwrite, tell) as file:
-        skipped = len(file.done)
+        skipped, start = len(file.done), time.perf_counter()
         todo = [i for i in range(total) if i not in file.done]
         found = Summary(file.path, total, skipped, settling=_settling(variants))
         if todo:
-            found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
+            shaft = variants.shaft()
+            seats = _checked_seats(shaft, scene, fidelity, options)
+            progress(skipped, total, f"body with {seats} seats")
+            body = build(shaft, fidelity, **options)
+            progress(skipped, total, f"reducing {body.size} unknowns")
+            basis = reduce(body, n, file.basis or 0)
+            solver = _Solver(body, Task(variants, (basis,), n, tolerance))
+            if file.basis is None:
+                # Of all variants, whatever is left of them: the basis is the same after an
+                # interruption.
+                solver.settle(range(total)[:: max(1, total // PROBES)])
+                file.basis = solver.task.bases[0].level
+            ready = time.perf_counter()
+            size = max(1, min(50, len(todo) // (4 * jobs)))
+            parts = [todo[i : i + size] for i in range(0, len(todo), size)]
+            for rows in team(lambda: solver.task, parts):
+                file.append([solver.repaired(row) for row in rows])
+                progress(len(file.done), total, "solving")
+            found = replace(
+                found,
+                refused=solver.whys.total(),
+                full=solver.full,
+                unknowns=body.size,
+                seats=seats,
+                basis=solver.task.bases[-1].size,
+                seconds_once=ready - start,
+                seconds_each=(time.perf_counter() - ready) / len(todo),
+                whys=dict(solver.whys),
+            )
         file.finish()
     return replace(found, repairs=tuple(file.repairs))
-
-
-def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress) -> Summary:
-    """Solve some variants and append their rows."""
-    total, start = found.total, time.perf_counter()
-    body, seats = body()
-    progress(found.skipped, total, f"reducing {body.size} unknowns")
-    solver = _Solver(body, Task(variants, (reduce(body, n, file.basis or 0),), n, tolerance))
-    if file.basis is None:
-        # Of all variants, whatever is left of them: the basis is the same after an interruption.
-        solver.settle(range(total)[:: max(1, total // PROBES)])
-        file.basis = solver.task.bases[0].level
-    once, start = time.perf_counter() - start, time.perf_counter()
-    full, whys = 0, Counter[str]()
-    size = max(1, min(50, len(todo) // (4 * jobs)))
-    for rows in team(lambda: solver.task, [todo[i : i + size] for i in range(0, len(todo), size)]):
-        rows = [solver.repaired(row) for row in rows]
-        file.append(rows)
-        whys.update(row["status"] for row in rows if row["status"] != "ok")
-        full += sum(row["how"] == "full" for row in rows)
-        progress(len(file.done), total, "solving")
-    return replace(
-        found,
-        refused=whys.total(),
-        full=full,
-        unknowns=body.size,
-        seats=seats,
-        basis=solver.task.bases[-1].size,
-        seconds_once=once,
-        seconds_each=(time.perf_counter() - start) / len(todo),
-        whys=dict(whys),
-    )
 
 
 def variants_of(
@@ -197,10 +186,12 @@ def _settling(variants: Variants) -> str:
 
 
 class _Solver:
-    """A body, and the task with the bases that were needed so far."""
+    """A body, the task with the bases that were needed so far, and what became of its rows."""
 
     def __init__(self, body: Body, task: Task):
         self.body, self.task = body, task
+        self.whys = Counter[str]()
+        self.full = 0
 
     def grow(self) -> bool:
         """Have a larger basis for variants that need it; False if there is none."""
@@ -216,11 +207,17 @@ class _Solver:
 
     def repaired(self, row: dict[str, Any]) -> dict[str, Any]:
         """A row within the tolerance."""
+        if row["status"] != "ok":
+            self.whys[row["status"]] += 1
+            return row
         if self.task.weak(row):
             row = self._again(row)  # there may be a larger basis by now
         while self.task.weak(row) and self.grow():
             row = self._again(row)
-        return self.task.in_full(row, self.body) if self.task.weak(row) else row
+        if self.task.weak(row):
+            self.full += 1
+            row = self.task.in_full(row, self.body)
+        return row
 
     def _next(self) -> Reduced | None:
         level = self.task.bases[-1].level + 1
@@ -230,9 +227,10 @@ class _Solver:
         return self.task.rows([row["variant"]])[0]
 
 
-def _check_seats(
+def _checked_seats(
     shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
-) -> None:
+) -> int:
+    """Number of seats, which one body must carry."""
     seats, most = len(shaft.stations) - len(scene.ports), LADDER[fidelity].most_seats
     if most is not None and seats > most:
         raise SolidgearError(
@@ -246,6 +244,7 @@ def _check_seats(
             "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot "
             "be rigid in a sweep of positions"
         )
+    return seats
 
 
 def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:
