@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.studies.sweep import sweep
+from solidgear.studies.sweep.bearing_sweep import sweep
 from solidgear.studies.sweep.rows import RowFile
 from tests.command import command
 

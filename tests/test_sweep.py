@@ -12,10 +12,9 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
-from solidgear.studies.sweep import run as runner
-from solidgear.studies.sweep import sweep
-from solidgear.studies.sweep.run import variants_of
-from solidgear.studies.sweep.task import ENTRIES
+from solidgear.studies.sweep import bearing_sweep as runner
+from solidgear.studies.sweep.bearing_sweep import sweep, variants_of
+from solidgear.studies.sweep.bearing_task import ENTRIES
 from tests.command import command, numbers
 
 SCENE = sg.load("geometry/pinion_overhung.toml")

@@ -36,9 +36,9 @@ from solidgear.ladder.registry import LADDER
 from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import is_train, parse
 from solidgear.studies.check import cautions
-from solidgear.studies.sweep import sweep as swept
+from solidgear.studies.sweep.bearing_sweep import sweep as swept
 from solidgear.studies.sweep.choice import settled_for_sweep
-from solidgear.studies.sweep.running import Swept
+from solidgear.studies.sweep.file_task import Swept
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
 from solidgear.studies.sweep.train_variants import shafts_in

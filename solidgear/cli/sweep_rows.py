@@ -20,10 +20,10 @@ from solidgear.report.plot import FORMATS, check_ending
 from solidgear.report.sweep_chart import sweep_chart, sweep_table
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING
-from solidgear.studies.sweep import Summary
+from solidgear.studies.sweep.bearing_sweep import Summary
 from solidgear.studies.sweep.curves import Curves, chartable
 from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.running import FileTask, Swept, run
+from solidgear.studies.sweep.file_task import FileTask, Swept, run
 
 #: rows that are told on the terminal as well
 FEW = 40

@@ -16,13 +16,13 @@ import numpy as np
 from solidgear.errors import SceneError
 from solidgear.judge.settle import Settled, settle
 from solidgear.quantity import Quantity
+from solidgear.studies.sweep.bearing_sweep import variants_of
 from solidgear.studies.sweep.bench import surface
-from solidgear.studies.sweep.run import variants_of
 
 if TYPE_CHECKING:
     from solidgear.judge.refinement import Progress
     from solidgear.scene import Scene
-    from solidgear.studies.sweep.variants import Variants
+    from solidgear.studies.sweep.bearing_variants import Variants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
 MOST = 8
@@ -46,7 +46,7 @@ def settled_for_sweep(
     tol : float, optional
         Relative; by default the tolerance of the scene.
     sample, seed : int, optional
-        As for :func:`solidgear.studies.sweep.sweep`.
+        As for :func:`solidgear.studies.sweep.bearing_sweep.sweep`.
     progress : callable
         Called with a sentence at every step.
 

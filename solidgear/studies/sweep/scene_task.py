@@ -24,8 +24,8 @@ from solidgear.studies.one_shaft import mass_of, one_shaft
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry
+from solidgear.studies.sweep.file_task import FileTask
 from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file, plain
-from solidgear.studies.sweep.running import FileTask
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)

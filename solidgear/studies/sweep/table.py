@@ -10,8 +10,8 @@ from typing import Any
 
 from solidgear.scene.toml_file import is_train
 from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.file_task import FileTask, Swept, run
 from solidgear.studies.sweep.rows import tell_in_log
-from solidgear.studies.sweep.running import FileTask, Swept, run
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.train_task import train_task
 
@@ -52,7 +52,7 @@ def sweep(
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
     jobs, dask, overwrite, progress, tell
-        As of :func:`solidgear.studies.sweep.running.run`.
+        As of :func:`solidgear.studies.sweep.file_task.run`.
     **how
         Of a shaft those of :func:`solidgear.studies.sweep.scene_task.scene_task`, of a train those
         of :func:`solidgear.studies.sweep.train_task.train_task`, such as ``model`` and ``n``.

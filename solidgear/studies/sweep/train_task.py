@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,8 +19,8 @@ from solidgear.scene.train import Train
 from solidgear.studies.sweep.bench import Bench
 from solidgear.studies.sweep.curves import force_of, misaligned
 from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.file_task import FileTask
 from solidgear.studies.sweep.file_variants import plain
-from solidgear.studies.sweep.running import FileTask
 from solidgear.studies.sweep.train_variants import TrainVariants, train_variants
 from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.misalignment import measured_names, misalignment
@@ -68,14 +68,14 @@ class TrainTask(FileTask):
 
     variants: TrainVariants
     models: Mapping[str, str]
-    ask: tuple[str, ...] = ASKED
-    n: int | None = None
-    max_frequency: float | None = None
-    reduction: str = "rubin"
-    kept: int = KEPT
-    settings: Mapping[Any, Mapping] = field(default_factory=dict)
-    mesh: str | None = None
-    first: int = 0
+    ask: tuple[str, ...]
+    n: int | None
+    max_frequency: float | None
+    reduction: str
+    kept: int
+    settings: Mapping[Any, Mapping]
+    mesh: str | None
+    first: int
 
     @cached_property
     def bench(self) -> Bench:

@@ -1,4 +1,4 @@
-"""Run a sweep: the body once, its reduction once, then small problems, row by row."""
+"""Sweeps of bearings alone: the body once, its reduction once, then small problems, row by row."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.bearing_task import Task, columns
+from solidgear.studies.sweep.bearing_variants import SeatedShaft, Variants
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
-from solidgear.studies.sweep.task import Task, columns
-from solidgear.studies.sweep.variants import SeatedShaft, Variants
 from solidgear.studies.sweep.workers import workers
 
 #: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
@@ -102,7 +102,7 @@ def sweep(
         Relative error of frequencies against the same body solved in full. A variant whose bound
         exceeds it makes the basis larger, and where that does not do it is solved in full.
     jobs, dask, overwrite, progress, tell
-        As of :func:`solidgear.studies.sweep.running.run`.
+        As of :func:`solidgear.studies.sweep.file_task.run`.
 
     Raises
     ------

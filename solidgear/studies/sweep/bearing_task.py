@@ -1,4 +1,4 @@
-"""Solution of one variant of a sweep: statics at the lumped point and first modes, as a row."""
+"""Solution of one bearing set: statics at the lumped point and first modes, as a row."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from solidgear.machine.threads import pinned
 from solidgear.reduction.moments import Reduced
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
+from solidgear.studies.sweep.bearing_variants import Variants
 from solidgear.studies.sweep.ritz import Seats, ritz_modes
-from solidgear.studies.sweep.variants import Variants
 
 #: Entries of the stiffness and the compliance that a row holds.
 ENTRIES = {
