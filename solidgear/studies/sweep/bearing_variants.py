@@ -173,16 +173,6 @@ def settled_anew(scene: Scene) -> Scene:
     them there.
 
     A bearing's tangent is that of its load, and where a seat moves, loads move with it.
-
-    Returns
-    -------
-    Scene
-        The same where no bearing waits for the load of the scene.
-
-    Raises
-    ------
-    SceneError
-        Where shaft and bearings find no equilibrium.
     """
     if not waiting(scene):
         return scene

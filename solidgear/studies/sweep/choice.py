@@ -39,27 +39,9 @@ def settled_for_sweep(
 ) -> Settled:
     """The cheapest body whose error bars are within a tolerance on the scene and at the ends of a sweep.
 
-    Parameters
-    ----------
-    vary_texts : iterable of str
-        See :mod:`solidgear.studies.sweep.vary`.
-    tol : float, optional
-        Relative; by default the tolerance of the scene.
-    sample, seed : int, optional
-        As for :func:`solidgear.studies.sweep.bearing_sweep.sweep`.
-    progress : callable
-        Called with a sentence at every step.
-
-    Returns
-    -------
-    Settled
-        Of the finest mesh that one of the bearing sets needs, with the largest bar of each quantity
-        over all of them; ``judged_on`` says how many there were.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`solidgear.judge.settle.settle`, and for texts that cannot be read.
+    Of a sweep with these texts, sample and seed; the tolerance is relative, that of the scene by
+    default. What is settled is of the finest mesh that one of the bearing sets needs, with the
+    largest bar of each quantity over all of them; ``judged_on`` says how many there were.
 
     Examples
     --------

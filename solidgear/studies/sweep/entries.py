@@ -119,13 +119,7 @@ class Entry(Span):
 def entries_of(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner
 ) -> tuple[Entry, ...]:
-    """Read all ``PATH=VALUES`` texts of a study.
-
-    Parameters
-    ----------
-    texts : iterable of str
-    files : mapping of str to mapping
-        Tables by the name of their file.
+    """Read all ``PATH=VALUES`` texts of a study over files, by their names.
 
     Raises
     ------

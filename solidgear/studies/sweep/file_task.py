@@ -86,7 +86,7 @@ class Swept(Displayed):
     curves : Curves or None
         Where one number varies.
     path : Path
-        File that they are in.
+        File that they were written to; of a sweep from Python without one it is gone.
     skipped : int
         Rows that were there before.
     seconds : float
