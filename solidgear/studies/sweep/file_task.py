@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from solidgear import __version__
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, listed, nearest
 from solidgear.machine.threads import pinned
@@ -37,12 +38,12 @@ class FileTask:
 
     @property
     def columns(self) -> dict[str, type]:
-        """Names and types of the columns of a row, in order."""
+        """Names and types of the numbers of a variant, in order."""
         raise NotImplementedError
 
     @property
     def plan(self) -> dict[str, Any]:
-        """Facts that rows depend on, as data for JSON."""
+        """Facts that rows depend on beside what varies, as data for JSON."""
         raise NotImplementedError
 
     @property
@@ -184,7 +185,9 @@ def run(
     start = time.perf_counter()
     number("sweep", "jobs", jobs, least=1, whole=True)
     team, total = workers(jobs, dask), len(task.variants)
-    with RowFile(out, task.columns, task.plan, total, overwrite, tell) as file:
+    columns = {"variant": int, **task.variants.columns, "status": str, **task.columns}
+    plan = {**task.plan, **task.variants.plan, "version": __version__}
+    with RowFile(out, columns, plan, total, overwrite, tell) as file:
         skipped = len(file.done)
         todo = task.variants.in_turn(k for k in range(total) if k not in file.done)
         progress(skipped, total, "solving")
@@ -193,11 +196,11 @@ def run(
             file.append(rows)
             progress(len(file.done), total, "solving")
         file.finish()
-        columns = file.by_column()
+        values = file.by_column()
     return Swept(
-        columns,
+        values,
         tuple(task.variants.columns),
-        curves_of(columns, task.variants, task.measured),
+        curves_of(values, task.variants, task.measured),
         file.path,
         skipped,
         time.perf_counter() - start,

@@ -88,8 +88,8 @@ class FileVariants(Generic[T]):
         """Variants in the order in which they are solved."""
         return sorted(numbers)
 
-    def first_sound(self) -> int:
-        """Number of the first variant that the rules of the files let pass.
+    def first_sound(self) -> tuple[int, T]:
+        """The first variant that the rules of the files let pass: its number, scene or train.
 
         Raises
         ------
@@ -99,8 +99,7 @@ class FileVariants(Generic[T]):
         refusal: Exception | None = None
         for index in dict.fromkeys(np.linspace(0, len(self) - 1, LOOKED).astype(int).tolist()):
             try:
-                self.tried(index)
-                return index
+                return index, self.tried(index)
             except SolidgearError as error:
                 refusal = refusal or self.located(error, index)
         self.refuse_hopeless()
@@ -126,9 +125,11 @@ class FileVariants(Generic[T]):
         """
         return self.read(self.entries, self.values[index].tolist())
 
-    def tried(self, index: int) -> None:
-        """Read a variant; SceneError if files with these values would be refused."""
-        self.of(index)
+    def tried(self, index: int) -> T:
+        """Scene or train of one variant, as far as it is checked before a sweep; raises like
+        :meth:`of`.
+        """
+        return self.of(index)
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> T:
         """Scene or train of the files with some entries replaced."""

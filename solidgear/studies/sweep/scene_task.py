@@ -8,7 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from solidgear import __version__
 from solidgear.body import Body, as_supports
 from solidgear.judge.settle import Settled
 from solidgear.judge.solving import answered
@@ -83,8 +82,7 @@ class SceneTask(FileTask):
 
     @property
     def columns(self) -> dict[str, type]:
-        out: dict[str, type] = {"variant": int, **self.variants.columns}
-        out |= {"status": str, "model": str, "unknowns": int, "mass": float}
+        out: dict[str, type] = {"model": str, "unknowns": int, "mass": float}
         for name in STATICS:
             out |= self._with_bar(str(name), float)
         for k in range(1, self.n + 1):
@@ -100,12 +98,10 @@ class SceneTask(FileTask):
         return {
             "scene": plain(self.variants.tables(self.first)[OWN]),
             "part": part and part.model_dump(mode="json"),
-            **self.variants.plan,
             "model": self.model,
             "set": plain(self.options),
             "tolerance": self.tolerance,
             "n": self.n,
-            "version": __version__,
         }
 
     def numbers(self, index: int) -> dict[str, Any]:
@@ -199,7 +195,7 @@ def scene_task(
     """
     given = {} if model is None else LADDER[model].checked(dict(options or {}))
     variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
-    first = variants.first_sound()
-    n = variants.of(first).ask.modes if n is None else n
+    first, usual = variants.first_sound()
+    n = usual.ask.modes if n is None else n
     number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)
     return SceneTask(variants, model, tolerance, given, n, first)

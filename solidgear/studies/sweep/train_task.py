@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from solidgear import __version__
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.models.limits import number
 from solidgear.scene import Scene
@@ -98,10 +97,7 @@ class TrainTask(FileTask):
 
     @property
     def columns(self) -> dict[str, type]:
-        train = self.usual
-        out: dict[str, type] = {"variant": int}
-        out |= self.variants.columns
-        out["status"] = str
+        train, out = self.usual, dict[str, type]()
         if train.operation:
             out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
         if train.operation and DEFLECTION in self.ask:
@@ -131,7 +127,6 @@ class TrainTask(FileTask):
             "cells": cells,
             "parts": [part and part.model_dump(mode="json") for part in parts],
             "scenes": {word: plain(tables) for word, tables in variants.scenes_in_turn()},
-            **variants.plan,
             "point": variants.point,
             "models": [*self.models.values()],
             "mesh": self.mesh,
@@ -139,7 +134,6 @@ class TrainTask(FileTask):
             "max_frequency": self.max_frequency,
             "reduction": [self.reduction, self.kept],
             "set": plain({" ".join(key): dict(own) for key, own in self.settings.items()}),
-            "version": __version__,
         }
 
     def cut(self, columns: Mapping[str, list[Any]]) -> int:
@@ -288,8 +282,7 @@ def train_task(
     variants = train_variants(
         train, design, point=point, every_point=every_point, local_harmonics=local_harmonics
     )
-    first = variants.first_sound()
-    usual = variants.of(first)
+    first, usual = variants.first_sound()
     usual.named_mesh(mesh)
     for side in given:
         usual.named_shaft(side)

@@ -78,11 +78,11 @@ class TrainVariants(FileVariants[Train]):
                 for word in one.words:
                     yield str(word), parse(str(self.path.parent / str(word)))
 
-    def tried(self, index: int) -> None:
-        """Read a variant; SceneError if files with these values would be refused."""
+    def tried(self, index: int) -> Train:
         train = self.of(index)
         self.at(index, train)
         contacts(train)
+        return train
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
         def of_side(side: str, path: Path, alone: bool) -> Scene:
