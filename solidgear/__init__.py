@@ -81,7 +81,7 @@ _WHERE = {
     "budget": "solidgear.studies.budget",
     "compare": "solidgear.studies.comparison",
     "optimise": "solidgear.studies.optimise",
-    "sweep": "solidgear.studies.sweep.table",
+    "sweep": "solidgear.studies.sweep.file_sweep",
     "sensitivities": "solidgear.studies.sensitivity.run",
     "shaft_stress": "solidgear.studies.stress.shaft",
     "turn": "solidgear.report.viewer",
@@ -173,7 +173,7 @@ if TYPE_CHECKING:
     from solidgear.studies.optimise import optimise
     from solidgear.studies.sensitivity.run import sensitivities
     from solidgear.studies.stress.shaft import shaft_stress
-    from solidgear.studies.sweep.table import sweep
+    from solidgear.studies.sweep.file_sweep import sweep
     from solidgear.system import (
         BearingSpring,
         CentralMember,

@@ -5,12 +5,11 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
-from solidgear.studies.sweep import sweep
+from solidgear.studies.sweep.bearing_sweep import sweep
 from solidgear.studies.sweep.rows import RowFile
+from tests.command import command
 
 SCENE = "geometry/pinion_overhung.toml"
 VARY = "bearing.1.scale=log:0.1:10:12"
@@ -75,5 +74,5 @@ def light(out, **rest):
 
 
 def call(out, *more):
-    words = ["sweep", SCENE, "-f", "timoshenko", "--set", "elements=40", "-n", "4", "--vary", VARY]
-    return CliRunner().invoke(app, [*words, "--out", str(out), *more])
+    light = "-f timoshenko --set elements=40 -n 4".split()
+    return command("sweep", SCENE, *light, "--vary", VARY, "--out", out, *more)

@@ -16,7 +16,7 @@ from solidgear.body import as_supports
 from solidgear.scene import Bearing, Elastic, Housing
 from solidgear.springs import in_series
 from solidgear.studies.sweep import vary
-from solidgear.studies.sweep.run import sweep, variants_of
+from solidgear.studies.sweep.bearing_sweep import sweep, variants_of
 from tests.command import table
 from tests.dense import relative, rigid_at, whole
 

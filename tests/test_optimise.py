@@ -7,11 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli.app import app
 from solidgear.studies.wishes import Wish, limit_of, wish_of
+from tests.command import command
 
 SHAFT = "geometry/shaft_stepped.toml"
 #: the tilt compliance of the middle has its least value inside this range
@@ -88,6 +87,7 @@ def test_words_of_goals_and_limits():
         ([SPAN], "max bnding 1", [], "has no bnding 1.*bending 1"),
         ([SPAN], "max f1", ["C_zz = 5"], "NUMBER < VALUE"),
         ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is no unit"),
+        ([SPAN], "max f1", ["C_zz < five"], "is no number with a unit"),
     ],
 )
 def test_bad_words_end_in_a_sentence(vary, goal, keep, said):
@@ -98,12 +98,12 @@ def test_bad_words_end_in_a_sentence(vary, goal, keep, said):
 def test_the_command_writes_its_path_and_says_where_no_design_will_do(tmp_path):
     out = tmp_path / "out"
     words = ["optimise", SHAFT, "--vary", "bearing.B.position=-40 mm:-30 mm", "-f", "euler"]
-    told = CliRunner().invoke(app, [*words, "--goal", "max f1", "-o", str(out)])
+    told = command(*words, "--goal", "max f1", "-o", out)
     assert told.exit_code == 0 and "designs solved" in told.output
     data = json.loads((out / "optimum.json").read_text())
     values = [one["value"] for one in data["designs"] if one["kept"]]
     assert data["designs"][data["best"]]["value"] == max(values)
     assert (out / "designs.png").stat().st_size > 1000
-    never = CliRunner().invoke(app, [*words, "--goal", "max f1", "--keep", "f1 > 1 MHz"])
+    never = command(*words, "--goal", "max f1", "--keep", "f1 > 1 MHz")
     assert never.exit_code == 3
     assert np.isfinite(values).all()

@@ -15,7 +15,7 @@ import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.body.cache import Cache
 from solidgear.reduction.effective_mass import synthesise
-from solidgear.studies.sweep.run import sweep
+from solidgear.studies.sweep.bearing_sweep import sweep
 from tests.command import table
 from tests.dense import every, whole
 

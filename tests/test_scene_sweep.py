@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import math
 
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli.app import app
 from solidgear.studies.sweep.vary import of_bearings_alone
+from tests.command import command, table
 
 SHAFT = "geometry/shaft_stepped.toml"
 BEAM = {"model": "timoshenko", "n": 2}
-
-
-def run(*arguments):
-    return CliRunner().invoke(app, ["sweep", *map(str, arguments)])
 
 
 def by_hand(tmp_path, *changes):
@@ -73,9 +67,9 @@ def test_one_at_a_time_begins_with_the_file_and_leaves_the_others_as_they_are():
 
 
 def test_a_table_of_ones_own_says_every_variant_and_an_empty_cell_leaves_the_file(tmp_path):
-    table = tmp_path / "mine.csv"
-    table.write_text("segment.left.diameter,bearing.A.seat_width\n52 mm,\n,20 mm\n-1 mm,\n")
-    rows = sg.sweep(SHAFT, table=table, **BEAM)
+    mine = tmp_path / "mine.csv"
+    mine.write_text("segment.left.diameter,bearing.A.seat_width\n52 mm,\n,20 mm\n-1 mm,\n")
+    rows = sg.sweep(SHAFT, table=mine, **BEAM)
     assert rows["segment.left.diameter"].tolist() == [0.052, 0.05, -0.001]
     assert rows["bearing.A.seat_width"].tolist() == [0.025, 0.02, 0.025]
     (why,) = rows.whys
@@ -98,7 +92,7 @@ def test_a_table_of_ones_own_says_every_variant_and_an_empty_cell_leaves_the_fil
     ],
 )
 def test_bad_input_ends_in_a_sentence_and_leaves_nothing(tmp_path, arguments, said):
-    failed = run(SHAFT, "-o", tmp_path / "rows.csv", *arguments)
+    failed = command("sweep", SHAFT, "-o", tmp_path / "rows.csv", *arguments)
     assert failed.exit_code == 1
     with pytest.raises(sg.SolidgearError, match=said):
         raise failed.exception
@@ -108,18 +102,24 @@ def test_bad_input_ends_in_a_sentence_and_leaves_nothing(tmp_path, arguments, sa
 def test_the_command_says_what_was_solved_and_why_variants_were_refused(tmp_path):
     rows = tmp_path / "rows.csv"
     vary = ("--vary", "segment.left.length=40 mm:60 mm:3", "-f", "timoshenko", "-o", rows)
-    told = " ".join(run(SHAFT, *vary).output.split())
+    told = " ".join(command("sweep", SHAFT, *vary).output.split())
     assert "every variant is meshed and solved for itself. 3 variants" in told
     assert "Refused:" in told and "across the step of the outer radius at 0.04 m" in told
-    with rows.open(newline="") as file:
-        assert [row["status"] == "ok" for row in csv.DictReader(file)] == [False, True, True]
-    assert "3 of them there before" in run(SHAFT, *vary).output
+    assert [row["status"] == "ok" for row in table(rows)] == [False, True, True]
+    assert "3 of them there before" in command("sweep", SHAFT, *vary).output
 
 
 def test_springs_alone_go_the_way_of_one_body(tmp_path):
     assert of_bearings_alone(["bearing.A.stiffness.kzz=1e8,2e8"]) == ["bearing.A.kzz=1e8,2e8"]
     assert of_bearings_alone(["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]) is None
-    told = run(
-        SHAFT, "--vary", "bearing.A.stiffness.kzz=1e8,2e8", "-f", "euler", "-o", tmp_path / "r.csv"
+    told = command(
+        "sweep",
+        SHAFT,
+        "--vary",
+        "bearing.A.stiffness.kzz=1e8,2e8",
+        "-f",
+        "euler",
+        "-o",
+        tmp_path / "r.csv",
     )
     assert "one body does for all" in told.output

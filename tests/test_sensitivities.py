@@ -4,13 +4,12 @@ import json
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli.app import app
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import changed, entry, keys_of
 from solidgear.scene.toml_file import parse
+from tests.command import command
 
 #: of the strongest elasticity: central differences of fine meshes that are made anew repeat to 3e-6
 AGREES = 1e-5
@@ -233,17 +232,8 @@ def test_what_has_no_derivative_is_refused_in_a_sentence(tmp_path, model, more, 
 
 def test_the_command_writes_what_it_tells(tmp_path):
     out = tmp_path / "out"
-    words = [
-        "sensitivities",
-        str(shaft(tmp_path)),
-        "-f",
-        "euler",
-        "--of",
-        "C_zz",
-        "--out",
-        str(out),
-    ]
-    done = CliRunner().invoke(app, words)
+    words = ["sensitivities", shaft(tmp_path), "-f", "euler", "--of", "C_zz", "--out", out]
+    done = command(*words)
     assert done.exit_code == 0, done.output
     assert "What would move C_zz" in done.output
     data = json.loads((out / "sensitivities.json").read_text())

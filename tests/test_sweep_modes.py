@@ -8,8 +8,8 @@ import solidgear as sg
 from solidgear.body import Supports
 from solidgear.reduction import moments as reduction
 from solidgear.reduction.moments import reduce
+from solidgear.studies.sweep.bearing_sweep import variants_of
 from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
-from solidgear.studies.sweep.run import variants_of
 from tests.dense import whole
 
 SCENE = sg.load("geometry/pinion_overhung.toml")

@@ -23,7 +23,6 @@ from synthetic_sweep import (
 
 from solidgear.errors import SolidgearError
 from solidgear.studies.sweep.rows import RowFile
-from solidgear.studies.sweep.store import Store
 
 
 # ------------------------------------------------------------------------------------------ shared
@@ -183,10 +182,3 @@ def test_a_store_taken_away_under_a_running_sweep_is_told(tmp_path):
         file.append(map(row, range(10)))
         (tmp_path / "rows.csv.sqlite").unlink()
         file.append(map(row, range(10, 20)))
-
-
-def test_a_file_that_is_gone_is_not_the_same_file(tmp_path, monkeypatch):
-    """Taken away before and after the lock: nobody would find what is written to it then."""
-    monkeypatch.setattr(Store, "_identity", lambda self: None)
-    with pytest.raises(SolidgearError, match="in use by another process"):
-        write(tmp_path / "rows.csv")

@@ -8,8 +8,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.sweep import sweep, vary
-from solidgear.studies.sweep.run import variants_of
+from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.bearing_sweep import sweep, variants_of
 
 SCENE = sg.load("geometry/pinion_overhung.toml")
 GEAR = sg.load("geometry/gear_shaft.toml")

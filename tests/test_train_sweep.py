@@ -2,21 +2,21 @@
 is refused, and stops.
 """
 
-import csv
 import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command import command
+from command import command, numbers
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.scene.paths import changed, keys_of, label_of
 from solidgear.scene.toml_file import parse
-from solidgear.studies.sweep import running
+from solidgear.studies.sweep import file_task
 from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.train_run import sweep_train
+from solidgear.studies.sweep.file_task import run
+from solidgear.studies.sweep.train_task import train_task
 from solidgear.studies.train import models
 from solidgear.studies.train.deflection import deflection
 from solidgear.studies.train.misalignment import measured_names
@@ -33,23 +33,17 @@ LIGHT = {**BEAMS, "max_frequency": 1500.0}
 MODES, AT_REST = ["system-modes"], ["deflect"]
 
 
-def swept(train, vary, out, **how):
-    """Account and rows of a sweep, numbers as numbers."""
+def counted(train, vary, out, progress=lambda *_: None, jobs=1, **how):
+    """Account and rows of a sweep, numbers as numbers, and how many bodies were made."""
     drawn = {k: how.pop(k) for k in ("sample", "seed") if k in how}
-    found = sweep_train(train, Design(tuple(vary), **drawn), out, **{**LIGHT, **how})
-    return found, rows_of(out)
+    task = train_task(train, Design(tuple(vary), **drawn), **{**LIGHT, **how})
+    found = run(task, out, progress=progress, jobs=jobs)
+    return found, numbers(out), task.bench.made
 
 
-def rows_of(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return [{k: _plain(v) for k, v in row.items()} for row in csv.DictReader(file)]
-
-
-def _plain(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def swept(*of, **how):
+    """The same without bodies."""
+    return counted(*of, **how)[:2]
 
 
 def by_hand(folder, file, *edits):
@@ -118,8 +112,10 @@ def test_a_row_of_three_shafts_is_what_the_same_files_edited_by_hand_give(tmp_pa
         "middle.bearing.E.position=18 mm",
         "output.head.mass=12 kg,13 kg",
     ]
-    found, rows = swept(TWO_STAGE, vary, tmp_path / "rows.csv", max_frequency=700.0, **how)
-    assert (found.total, found.refused, found.bodies) == (4, 0, 3 + 2)
+    found, rows, bodies = counted(
+        TWO_STAGE, vary, tmp_path / "rows.csv", max_frequency=700.0, **how
+    )
+    assert (found.total, found.refused, bodies) == (4, 0, 3 + 2)
     (row,) = (r for r in rows if list(r.values())[1:4] == [9e8, 0.018, 13.0])
     path = by_hand(
         tmp_path,
@@ -254,20 +250,20 @@ NOT_OF_THE_BODY = (
 
 
 def test_what_is_no_part_of_a_body_makes_none(tmp_path):
-    found, rows = swept(AXLE, NOT_OF_THE_BODY, tmp_path / "rows.csv")
-    assert (found.total, found.bodies) == (32, 2)
+    found, rows, bodies = counted(AXLE, NOT_OF_THE_BODY, tmp_path / "rows.csv")
+    assert (found.total, bodies) == (32, 2)
     assert len({row["peak1_force"] for row in rows}) > 8
     moved = [*NOT_OF_THE_BODY[:1], "pinion.bearing.2.position=140 mm,145 mm,150 mm"]
-    found, _ = swept(AXLE, moved, tmp_path / "moved.csv")
-    assert (found.total, found.bodies) == (6, 3 + 1)
+    found, _, bodies = counted(AXLE, moved, tmp_path / "moved.csv")
+    assert (found.total, bodies) == (6, 3 + 1)
 
 
 def test_torques_make_a_body_of_each_shaft_for_each_model_of_it(tmp_path):
     vary = ["operation.full.torque=20 N*m:200 N*m:4"]
     how = {"pinion": "euler", "gear": "lumped/euler", "ask": AT_REST}
-    found, rows = swept(GEARBOX, vary, tmp_path / "rows.csv", **how)
+    found, rows, bodies = counted(GEARBOX, vary, tmp_path / "rows.csv", **how)
     # bearings settle on Timoshenko shafts, and the rows are told by Euler ones
-    assert (found.total, found.bodies) == (4, 4)
+    assert (found.total, bodies) == (4, 4)
     assert [row["pinion.B.radial"] for row in rows] == sorted(r["pinion.B.radial"] for r in rows)
 
 
@@ -383,12 +379,12 @@ def test_a_stopped_sweep_goes_on_and_gives_the_same_digits(tmp_path):
 
     with pytest.raises(KeyboardInterrupt):
         swept(AXLE, VARY, tmp_path / "rows.csv", progress=stop)
-    assert len(rows_of(tmp_path / "rows.csv")) == 2
+    assert len(numbers(tmp_path / "rows.csv")) == 2
     rest, _ = swept(AXLE, VARY, tmp_path / "rows.csv")
     assert (rest.skipped, rest.total) == (2, whole.total) == (2, 6)
     assert (tmp_path / "rows.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
-    again, _ = swept(AXLE, VARY, tmp_path / "rows.csv")
-    assert (again.skipped, again.bodies) == (6, 0)
+    again, _, bodies = counted(AXLE, VARY, tmp_path / "rows.csv")
+    assert (again.skipped, bodies) == (6, 0)
     for other in ({"gear": "euler"}, {"max_frequency": 1400.0}, {"ask": MODES}):
         with pytest.raises(SolidgearError, match=r"another sweep .*--overwrite"):
             swept(AXLE, VARY, tmp_path / "rows.csv", **other)
@@ -426,23 +422,25 @@ def call(tmp_path, *words):
     return command("sweep", *words, *beams, "--out", tmp_path / "rows.csv")
 
 
-@pytest.mark.parametrize("ending", ["svg", "html"])
-def test_the_command_draws_curves_over_one_number(ending, tmp_path):
-    chart = tmp_path / f"curves.{ending}"
-    vary = ("--vary", "operation.full.torque=20 N*m:100 N*m:3", "--chart", chart)
-    done = call(tmp_path, GEARBOX, *vary)
-    assert done.exit_code == 0, done.output
-    assert "2 shafts meshed and reduced" in done.stdout
-    drawn = chart.read_text()
-    assert "operation.full.torque, N*m" in drawn and "radial load of bearings in N" in drawn
-    # words on every place of a curve, in the unit that was asked in
-    assert "operation.full.torque: 60 N*m" in drawn and "gear bending 1" in drawn
-    (row,) = (r for r in rows_of(tmp_path / "rows.csv") if r["operation.full.torque"] == 60)
-    assert "mesh force" in done.stdout and f"{row['mesh_force']:.4g}" in done.stdout
+def test_the_command_draws_curves_over_one_number(tmp_path):
+    vary = ("--vary", "operation.full.torque=20 N*m:100 N*m:3")
+    for ending, said in (
+        ("svg", "2 shafts meshed and reduced"),
+        ("html", "3 of them there before"),
+    ):
+        chart = tmp_path / f"curves.{ending}"
+        done = call(tmp_path, GEARBOX, *vary, "--chart", chart)
+        assert done.exit_code == 0 and said in done.stdout, done.output
+        drawn = chart.read_text()
+        assert "operation.full.torque, N*m" in drawn and "radial load of bearings in N" in drawn
+        # words on every place of a curve, in the unit that was asked in
+        assert "operation.full.torque: 60 N*m" in drawn and "gear bending 1" in drawn
+        (row,) = (r for r in numbers(tmp_path / "rows.csv") if r["operation.full.torque"] == 60)
+        assert "mesh force" in done.stdout and f"{row['mesh_force']:.4g}" in done.stdout
 
 
 def test_the_command_refuses_what_it_cannot_draw_before_anything_is_solved(tmp_path, monkeypatch):
-    monkeypatch.setattr(running, "RowFile", None)
+    monkeypatch.setattr(file_task, "RowFile", None)
     two = ("--vary", "mesh.stiffness=1e8,2e8", "--vary", "losses.mesh=0.1,0.2")
     for words, says in (
         ((*two, "--chart", "a.png"), "here vary: mesh.stiffness, losses.mesh"),

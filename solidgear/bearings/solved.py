@@ -67,12 +67,20 @@ class Solved:
     equilibrium: Equilibrium | None = None
 
 
+def waiting(scene: Scene) -> tuple[str, ...]:
+    """Names of the bearings that wait for the load that the shaft brings them."""
+    if scene.load is None:
+        return ()
+    return tuple(
+        b.name
+        for b in scene.bearings
+        if b.catalogue is not None and b.catalogue.load is None and b.catalogue.displacement is None
+    )
+
+
 def wants_equilibrium(scene: Scene) -> bool:
     """True where a bearing of the scene waits for the load that the shaft brings."""
-    return scene.load is not None and any(
-        b.catalogue is not None and b.catalogue.load is None and b.catalogue.displacement is None
-        for b in scene.bearings
-    )
+    return bool(waiting(scene))
 
 
 def solved(

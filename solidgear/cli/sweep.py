@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -11,32 +12,38 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import Progress as Steps
-from solidgear.cli.app import command, say
+from solidgear.cli.app import caution, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.settled import ended, over_the_sweep
+from solidgear.cli.shaft_settings import of_shafts
 from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, relative
 from solidgear.cli.sweep_rows import (
     FEW,
     Rows,
+    Told,
     checked_chart,
     drawn,
     ended_rows,
     record_of,
     refusals,
     rows_there,
+    solved,
 )
-from solidgear.cli.sweep_train import Told, sweep_train
 from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.report.sweep_chart import sweep_table
-from solidgear.scene.toml_file import is_train
+from solidgear.scene.toml_file import is_train, parse
 from solidgear.studies.check import cautions
-from solidgear.studies.sweep import sweep as swept
+from solidgear.studies.sweep.bearing_sweep import sweep as swept
 from solidgear.studies.sweep.choice import settled_for_sweep
-from solidgear.studies.sweep.scene_run import SceneSummary, sweep_scene
+from solidgear.studies.sweep.file_task import Swept
+from solidgear.studies.sweep.scene_task import scene_task
+from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
+from solidgear.studies.sweep.train_variants import shafts_in
 from solidgear.studies.sweep.vary import of_bearings_alone
+from solidgear.studies.train.shaft import JUDGE, told_mix
 
 #: relative, of frequencies of a shaft
 TOLERANCE = 1e-6
@@ -83,7 +90,7 @@ def sweep(
             "--tolerance": tolerance != TOLERANCE,
         }
         refuse_given(of_shaft, scene, "its models are those of --pinion and --gear")
-        sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
+        _sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
         return
     of_train = {
         "--pinion": pair.pinion != MODEL,
@@ -128,12 +135,15 @@ def _sweep_shaft(
             fidelity=name,
             options=given,
             tolerance=tolerance,
-            build=build,
             progress=show,
             tell=tell,
             sample=rows.sample,
             seed=rows.seed,
-            **rows.how,
+            out=rows.out,
+            n=rows.n,
+            jobs=rows.jobs,
+            dask=rows.dask,
+            overwrite=rows.overwrite,
         )
     if run.as_json:
         record = asdict(found)
@@ -143,7 +153,7 @@ def _sweep_shaft(
         ended(settled)
         return
     for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), name):
-        print(f"caution: {sentence}", file=sys.stderr)
+        print(caution(sentence), file=sys.stderr)
     new = found.total - found.skipped
     print(rows_there(found))
     if new:
@@ -169,17 +179,15 @@ def _sweep_entries(
     checked_chart(chart)
     automatic = model.automatic()
     with rows.counted(run.as_json) as (show, tell):
-        found = sweep_scene(
+        task = scene_task(
             scene,
             rows.design(vary),
             model=None if automatic else str(model.name),
             tolerance=model.tol,
             options={} if automatic else options(model.pairs),
-            charted=chart is not None,
-            progress=show,
-            tell=tell,
-            **rows.how,
+            n=rows.n,
         )
+        found = rows.made(task, chart, show, tell)
     written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
     if run.as_json:
         print(record_of(found))
@@ -191,15 +199,12 @@ def _sweep_entries(
     ended_rows(found)
 
 
-def _work(found: SceneSummary) -> list[str]:
+def _work(found: Swept) -> list[str]:
     """Sentences on what was done in this run, and how sure the rows are."""
-    new, lines = found.total - found.skipped, []
-    if new:
-        lines.append(
-            "The shaft varies: every variant is meshed and solved for itself. "
-            f"{new} variants in {found.seconds:.1f} s, {1e3 * found.seconds / new:.0f} ms each; "
-            f"{found.refused} refused."
-        )
+    lines = []
+    if found.total > found.skipped:
+        own = "The shaft varies: every variant is meshed and solved for itself."
+        lines.append(f"{own} {solved(found)}")
     bars = [
         bar / hz
         for bar, hz in zip(found.columns.get("f1_hz bar", []), found.columns["f1_hz"])
@@ -210,3 +215,74 @@ def _work(found: SceneSummary) -> list[str]:
     else:
         lines.append("A model that is given has no error bars; -f auto has.")
     return lines
+
+
+def _sweep_train(
+    train: Path,
+    vary: list[str],
+    rows: Rows,
+    pair: Pair,
+    settings: list[str],
+    told: Told,
+    reduced: Reduced,
+    run: Run,
+) -> None:
+    """Sweep a train and tell of it."""
+    checked_chart(told.chart)
+    reduced.checked()
+    mix = pair.of([*shafts_in(parse(str(train)))], train.stem)
+    with rows.counted(run.as_json) as (show, tell):
+        task = train_task(
+            train,
+            rows.design(vary),
+            models=mix,
+            mesh=told.mesh,
+            settings=of_shafts(settings, mix),
+            ask=told.ask or ASKED,
+            n=rows.n,
+            every_point=told.every_point,
+            max_frequency=reduced.max_frequency,
+            point=reduced.point,
+            reduction=reduced.reduction,
+            kept=reduced.kept,
+            local_harmonics=reduced.harmonics,
+        )
+        found = rows.made(task, told.chart, show, tell)
+    title = task.usual.title or task.usual.name
+    made = task.bench.made if rows.jobs == 1 and rows.dask is None else None
+    shafts = "" if made is None else f"{made} shafts meshed and reduced; "
+    cut, curves = task.cut(found.columns), found.curves
+    written = drawn(curves, title, _lead(found, mix), told.chart, task.cautions)
+    if run.as_json:
+        print(record_of(found, bodies=made, cut=cut, title=title, cautions=task.cautions))
+        ended_rows(found)
+        return
+    say(f"{title}: {told_mix(mix)}")
+    if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
+        say(sweep_table(curves))
+    work = []
+    if found.total > found.skipped:
+        work.append(f"{shafts}{solved(found)}")
+    say(rows_there(found), *work, *refusals(found), *_limits(cut, told, mix))
+    say(*written, *map(caution, task.cautions))
+    ended_rows(found)
+
+
+def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
+    """Sentences on what rows do not tell."""
+    lines = []
+    if cut > 0:
+        lines.append(
+            f"Rows have up to {MOST_MODES + cut} natural frequencies, and columns for "
+            f"{MOST_MODES}: give -n {MOST_MODES + cut} for all."
+        )
+    if MODES in (told.ask or (MODES,)):
+        meshed = JUDGE in mix.values()
+        meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
+        lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
+    return lines
+
+
+def _lead(found: Swept, mix: Mapping[str, str]) -> str:
+    models = told_mix(mix)
+    return f"{models[0].upper()}{models[1:]}; rows in {found.path.name}."

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -20,15 +20,10 @@ from solidgear.report.plot import FORMATS, check_ending
 from solidgear.report.sweep_chart import sweep_chart, sweep_table
 from solidgear.report.train_sheet import write_sheet
 from solidgear.report.units import ENGINEERING
+from solidgear.studies.sweep.bearing_sweep import Summary
+from solidgear.studies.sweep.curves import Curves, chartable
 from solidgear.studies.sweep.design import Design
-
-if TYPE_CHECKING:
-    from solidgear.studies.sweep import Summary
-    from solidgear.studies.sweep.curves import Curves
-    from solidgear.studies.sweep.scene_run import SceneSummary
-    from solidgear.studies.sweep.train_run import TrainSummary
-
-    Swept = Summary | SceneSummary | TrainSummary
+from solidgear.studies.sweep.file_task import FileTask, Swept, run
 
 #: rows that are told on the terminal as well
 FEW = 40
@@ -97,11 +92,19 @@ class Rows(Group):
         False
     )
 
-    @property
-    def how(self) -> dict[str, Any]:
-        """Arguments of a sweep on its rows."""
-        kept = ("out", "n", "jobs", "dask", "overwrite")
-        return {name: getattr(self, name) for name in kept}
+    def made(self, task: FileTask, chart: Path | None, show: Show, tell: Tell) -> Swept:
+        """Rows of variants of files; refused before where a chart of them cannot be drawn."""
+        if chart is not None:
+            chartable(task.variants)
+        return run(
+            task,
+            self.out,
+            jobs=self.jobs,
+            dask=self.dask,
+            overwrite=self.overwrite,
+            progress=show,
+            tell=tell,
+        )
 
     @property
     def of_files(self) -> bool:
@@ -150,13 +153,50 @@ class Rows(Group):
             raise
 
 
-def rows_there(found: Swept) -> str:
+@dataclass(frozen=True)
+class Told(Group):
+    """Numbers that rows of a train tell."""
+
+    ask: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--ask",
+            help="Of a train: what rows tell, system-modes, response or deflect; repeatable, all by "
+            "default.",
+        ),
+    ] = None
+    every_point: Annotated[
+        bool, typer.Option("--every-point", help="Of a train: a row for each operating point.")
+    ] = False
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Of a train: whose transmission error drives it, of several; the first."
+        ),
+    ] = None
+    chart: Annotated[
+        Path | None,
+        typer.Option(
+            "--chart",
+            help="Curves over the number that varies, as .png, .svg or .html.",
+        ),
+    ] = None
+
+
+def rows_there(found: Swept | Summary) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     return f"{path}: {found.total} rows, {found.skipped} of them there before."
 
 
-def refusals(found: Swept) -> list[str]:
+def solved(found: Swept) -> str:
+    """Sentence on what was done in this run."""
+    new = found.total - found.skipped
+    each = 1e3 * found.seconds / new
+    return f"{new} variants in {found.seconds:.1f} s, {each:.0f} ms each; {found.refused} refused."
+
+
+def refusals(found: Swept | Summary) -> list[str]:
     """Sentences on variants that were refused, if any were: a reason each, the commonest first."""
     most = sorted(found.whys.items(), key=lambda why: -why[1])
     told = [
@@ -168,10 +208,10 @@ def refusals(found: Swept) -> list[str]:
     return told
 
 
-def record_of(found: Swept) -> str:
+def record_of(found: Swept, **more: Any) -> str:
     """The account as JSON, without the rows."""
-    record = {k: v for k, v in vars(found).items() if k not in ("curves", "columns")}
-    return json.dumps(record, default=str)
+    kept = ("path", "total", "skipped", "refused", "whys", "seconds", "repairs")
+    return json.dumps({name: getattr(found, name) for name in kept} | more, default=str)
 
 
 def ended_rows(found: Swept) -> None:

@@ -11,11 +11,12 @@ from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import NUMBER, Column, Table, text
 
+KEPT, MISSED, BEST = "keeps every limit", "misses a limit", "best"
 #: looks of designs
 LOOKS = {
-    "keeps every limit": Series("#00805e"),
-    "misses a limit": Series("#b3305c", "square"),
-    "best": Series("#0072b2", "diamond"),
+    KEPT: Series("#00805e"),
+    MISSED: Series("#b3305c", "square"),
+    BEST: Series("#0072b2", "diamond"),
 }
 
 
@@ -42,9 +43,14 @@ def _value(label: str, one: Any) -> Any:
 def _said(found: Any, one: Any) -> str:
     if one.status != "ok":
         return str(one.status)[:60]
+    look = _look(found, one)
+    return "" if look == KEPT else look
+
+
+def _look(found: Any, one: Any) -> str:
     if found.best is not None and one.number == found.best.number:
-        return "best"
-    return "" if one.kept else "misses a limit"
+        return BEST
+    return KEPT if one.kept else MISSED
 
 
 def designs_chart(found: Any, title: str, width: float = WIDE) -> Chart:
@@ -72,15 +78,13 @@ def designs_chart(found: Any, title: str, width: float = WIDE) -> Chart:
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bars)
     rows = []
     for a, one in zip(x, told):
-        best = found.best is not None and one.number == found.best.number
-        name = "best" if best else "keeps every limit" if one.kept else "misses a limit"
         facts = [(label, f"{value:.6g}", "") for label, value in one.values.items()]
         goal = (found.goal.name, f"{one.value:.6g}", "")
         rows.append(
             {
                 "x": a,
                 "y": one.value,
-                "name": name,
+                "name": _look(found, one),
                 "told": readout(f"design {one.number}", *facts, goal),
             }
         )

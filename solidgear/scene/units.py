@@ -188,11 +188,11 @@ def _read_text(text: str, dimension: str) -> float:
                 f'or add a unit as in "{example}"'
             )
         return number
-    known = _si_factor(unit)
+    known = si_factor(unit)
     if known is None:
         raise wrong(f'unknown unit {show(unit)}; write for example "{example}"')
     factor, radians, dimensionality = known
-    own = _si_factor(si) if si else None
+    own = si_factor(si) if si else None
     if dimensionality != (own[2] if own else ()) or radians not in powers:
         what = dimension.replace("_", " ")
         kind = f"not a unit of {what}" if si else "a unit, but this is a plain ratio"
@@ -205,7 +205,7 @@ def _read_text(text: str, dimension: str) -> float:
 
 
 @functools.lru_cache(maxsize=256)
-def _si_factor(unit: str) -> tuple[float, float, Dimension] | None:
+def si_factor(unit: str) -> tuple[float, float, Dimension] | None:
     """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
     does not know it.
     """

@@ -53,6 +53,16 @@ def beside(scene: Scene, body: Body | None = None) -> OpenNumbers:
     body : Body, optional
         As for :class:`solidgear.studies.open_inputs.Points`.
     """
+    return _by_the_way(scene, lambda: _Study(scene, open_inputs(scene), body).record(()))
+
+
+def opened(scene: Scene) -> OpenNumbers:
+    """The whole budget for a report, left out where :func:`beside` leaves it out."""
+    return _by_the_way(scene, lambda: budget(scene))
+
+
+def _by_the_way(scene: Scene, found: Callable[[], OpenNumbers]) -> OpenNumbers:
+    """Numbers that a scene leaves open, or why they are left out."""
     inputs = open_inputs(scene)
     if len(inputs) > MOST_BY_THE_WAY:
         why = f"{len(inputs)} open inputs take a while; solidgear budget tells what they leave open"
@@ -60,19 +70,9 @@ def beside(scene: Scene, body: Body | None = None) -> OpenNumbers:
     if not inputs:
         return OpenNumbers()
     try:
-        return _Study(scene, inputs, body).record(())
+        return found()
     except SolidgearError as error:
         return OpenNumbers(inputs=_recorded(inputs), left_out=str(error))
-
-
-def opened(scene: Scene) -> OpenNumbers:
-    """The whole budget for a report, left out where :func:`beside` leaves it out."""
-    if not 0 < len(open_inputs(scene)) <= MOST_BY_THE_WAY:
-        return beside(scene)
-    try:
-        return budget(scene)
-    except SolidgearError as error:
-        return OpenNumbers(inputs=_recorded(open_inputs(scene)), left_out=str(error))
 
 
 def budget(

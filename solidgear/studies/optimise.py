@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError, nearest
-from solidgear.scene.toml_file import parse
 from solidgear.studies.optimum import Design, Optimum
-from solidgear.studies.sweep.entries import Entry, Kept, entries_of, in_si, kept_of
-from solidgear.studies.sweep.file_variants import OWN, in_own_file
-from solidgear.studies.sweep.scene_variants import STATICS, SceneTask, SceneVariants
-from solidgear.studies.wishes import Wish, limit_of, plain_number, wish_of
+from solidgear.studies.sweep import design
+from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.scene_task import STATICS, SceneTask, scene_variants
+from solidgear.studies.sweep.vary import plain_number
+from solidgear.studies.wishes import Wish, limit_of, wish_of
 
 #: designs that are solved at most, with the file as it is: a few for one entry, more for each other
 MOST, MORE = 12, 12
@@ -85,7 +85,15 @@ def optimise(
     >>> found.best.number > 0, found.gain.relative > 0.1, found.at_end
     (True, True, ('bearing.B.position',))
     """
-    return _Search(os.fspath(scene), vary, goal, keep, keep_sum, model, tol, progress).run()
+    wanted, limits = wish_of(goal), tuple(map(limit_of, keep))
+    texts = tuple(map(_ends, vary))
+    drawn = design.Design(texts, one_at_a_time=True, keep_sum=tuple(keep_sum))
+    variants = scene_variants(Path(scene), drawn, "bearing.B.position=180 mm:240 mm")
+    base = variants.of(0)  # the file as it is
+    variants.refuse_hopeless()
+    tol = base.ask.tolerance / 10 if tol is None else tol
+    task = SceneTask(variants, model, tol, {}, MODES)
+    return _Search(wanted, limits, task, progress).run(base.title or base.name)
 
 
 class _Search:
@@ -93,36 +101,14 @@ class _Search:
 
     def __init__(
         self,
-        path: str,
-        vary: Iterable[str],
-        goal: str,
-        keep: Iterable[str],
-        keep_sum: Iterable[str],
-        model: str | None,
-        tol: float | None,
+        goal: Wish,
+        keep: tuple[Wish, ...],
+        task: SceneTask,
         progress: Callable[[str], None],
     ):
-        self.goal = wish_of(goal)
-        self.keep = tuple(map(limit_of, keep))
-        self.progress = progress
-        files = {OWN: parse(path)}
-        texts = [_ends(text) for text in vary]
-        self.entries: tuple[Entry, ...] = entries_of(texts, files, in_own_file)
-        if not self.entries:
-            raise SolidgearError(
-                'nothing is varied; give for example --vary "bearing.B.position=180 mm:240 mm"'
-            )
-        kept: tuple[Kept, ...] = kept_of(keep_sum, files, in_own_file, self.entries)
-        # the variant that is read next is the last one
-        self.variants = SceneVariants(
-            Path(path), files, self.entries, np.full((1, len(self.entries)), math.nan), kept
-        )
-        self.variants.tried(0)
-        self.variants.refuse_hopeless()
-        base = self.variants.scene(0)
-        tol = base.ask.tolerance / 10 if tol is None else tol
-        self.task = SceneTask(self.variants, model, tol, {}, MODES)
-        self.title = base.title or base.name
+        self.goal, self.keep, self.task, self.progress = goal, keep, task, progress
+        # the first of them is the one that is read next
+        self.variants, self.entries = task.variants, task.variants.entries
         self.designs: list[Design] = []
         self.places: list[np.ndarray] = []
 
@@ -130,9 +116,10 @@ class _Search:
     def most(self) -> int:
         return MOST + MORE * (len(self.entries) - 1 + len(self.keep))
 
-    def run(self) -> Optimum:
-        """Search from the file as it is."""
-        self._of_file()
+    def run(self, title: str) -> Optimum:
+        """Search from the file as it is, at its place in the ranges as far as it is in them."""
+        self._solved(np.full(len(self.entries), math.nan))
+        self.places[0] = self._place_of_file()
         if len(self.entries) == 1 and not self.keep:
             self._scalar()
         else:
@@ -144,9 +131,8 @@ class _Search:
             if one.kept and one.value is not None and np.all(np.isfinite(place))
         ]
         best = min(sound, key=self._loss, default=None)
-        return Optimum(
-            self.title, self.goal, self.keep, tuple(self.designs), best, self._at_end(best)
-        )
+        at_end = () if best is None else self._at_end(best)
+        return Optimum(title, self.goal, self.keep, tuple(self.designs), best, at_end)
 
     def _loss(self, one: Design) -> float:
         assert one.value is not None
@@ -201,8 +187,7 @@ class _Search:
             if np.array_equal(place, there) or np.all(abs(place - there) < SAME / 10):
                 return one
         number = len(self.designs)
-        values = [_between(entry, x) for entry, x in zip(self.entries, place)]
-        self.variants.values[0] = values
+        self.variants.values[0] = [_between(entry, x) for entry, x in zip(self.entries, place)]
         self.progress(f"design {number}")
         row = self.task.rows([0])[0]
         told = self.goal.of(row)
@@ -223,12 +208,6 @@ class _Search:
             f"it has {', '.join(has)}"
         )
 
-    def _of_file(self) -> Design:
-        """The file as it is, at its place in the ranges as far as it is in them."""
-        first = self._solved(np.full(len(self.entries), math.nan))
-        self.places[0] = self._place_of_file()
-        return first
-
     def _place_of_file(self) -> np.ndarray:
         """Place of the file in the ranges; not a number beyond them."""
         out = []
@@ -242,9 +221,7 @@ class _Search:
             out.append(x if 0 <= x <= 1 else math.nan)
         return np.array(out)
 
-    def _at_end(self, best: Design | None) -> tuple[str, ...]:
-        if best is None:
-            return ()
+    def _at_end(self, best: Design) -> tuple[str, ...]:
         place = self.places[best.number]
         return tuple(entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) < AT_END)
 

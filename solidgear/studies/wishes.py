@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.scene.units import quantity
-from solidgear.studies.sweep.scene_variants import MOST_MODES, STATICS
+from solidgear.scene.units import quantity, si_factor
+from solidgear.studies.sweep.entries import amount
+from solidgear.studies.sweep.scene_task import MOST_MODES, STATICS
+from solidgear.studies.sweep.vary import plain_number
 
 _GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
 _KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")
@@ -92,29 +94,21 @@ def _in_unit_of(name: str, value: str, text: str) -> float:
     if (plain := plain_number(value)) is not value:
         return float(plain)
     known = next((q for q in STATICS if str(q) == name), None)
-    number, unit = re.fullmatch(r"([\d.eE+-]+)\s*(.*)", value, re.S).groups("")  # type: ignore[union-attr]
     try:
         if known is None:
             return quantity(value, "mass" if name == "mass" else "frequency")
-        return float(number) * _factor(unit, known.unit)
-    except (SceneError, ValueError) as error:
+        return _static(value, known.unit)
+    except SceneError as error:
         raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
 
 
-def _factor(unit: str, wanted: str) -> float:
-    """Factor of a unit to another of its dimension; of compliances and stiffnesses any will do."""
-    import pint
-
-    registry: Any = pint.UnitRegistry(on_redefinition="ignore")
-    try:
-        return float(registry.Quantity(1.0, unit).to(wanted.replace(" ", "*")).magnitude)
-    except Exception:  # pint raises a dozen kinds
-        raise SolidgearError(f"--keep: {unit!r} is no unit of what is told in {wanted}") from None
-
-
-def plain_number(text: str) -> str | float:
-    """A number where a text is one, else the text."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
+def _static(value: str, wanted: str) -> float:
+    """A compliance or stiffness in SI, which any unit of its dimension will do for."""
+    found = amount(value)
+    if found is None:
+        raise SceneError(f"{show(value)} is no number with a unit")
+    number, unit = found.groups()
+    own, si = si_factor(unit), si_factor(wanted)
+    if own is None or si is None or own[2] != si[2]:
+        raise SceneError(f"{unit!r} is no unit of what is told in {wanted}")
+    return float(number) * own[0]

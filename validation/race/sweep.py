@@ -20,8 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.studies.sweep import sweep
-from solidgear.studies.sweep.run import variants_of
+from solidgear.studies.sweep.bearing_sweep import sweep, variants_of
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.process import spent

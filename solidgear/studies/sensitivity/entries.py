@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +14,7 @@ from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
 from solidgear.studies.loading import part_of
-from solidgear.studies.sweep.entries import in_si
+from solidgear.studies.sweep.entries import amount, in_si
 
 #: relative step of a number in the file, and that of a place, in lengths of the shaft: what
 #: they move is linear in it but for angles, materials and springs in series
@@ -26,13 +25,6 @@ HELD_TABLES = ("material", "segment", "feature", "bearing", "mass", "housing", "
 WORDS = ("name", "note", "status", "kind", "from", "at", "attach_to", "source", "title")
 #: keys of lengths that may be zero
 PLACES = {"position", "span"}
-_AMOUNT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.S)
-
-
-def unit_of(text: str) -> str:
-    """Unit of a number as the file has it; empty for SI."""
-    found = _AMOUNT.fullmatch(text)
-    return found[2] if found else ""
 
 
 def numbers(tables: Tables, by: Sequence[str] | None) -> Iterator[Keys]:
@@ -55,7 +47,7 @@ def _is_number(keys: Keys, tables: Tables) -> bool:
     value = entry(keys, tables)
     if keys[0] not in HELD_TABLES or "catalogue" in keys or isinstance(value, bool):
         return False
-    if keys[-1] in WORDS or (isinstance(value, str) and not _AMOUNT.fullmatch(value)):
+    if keys[-1] in WORDS or (isinstance(value, str) and not amount(value)):
         return False
     if len(keys) > 2 and keys[-3] == "matrix" and int(keys[-2]) > int(keys[-1]):
         return False  # its mirror moves with the other
@@ -73,6 +65,10 @@ class Around:
         One of them the scene itself where the file allows no number on that side.
     step : float
         Between them, SI.
+    written : str
+        The entry as the file has it.
+    unit : str
+        That the file gives it in; empty for SI.
     at : float
         The entry, SI.
     side : {'', 'larger', 'smaller'}
@@ -82,6 +78,8 @@ class Around:
     low: Scene
     high: Scene
     step: float
+    written: str
+    unit: str
     at: float
     side: str = ""
 
@@ -94,10 +92,10 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:
     SceneError
         Where the file allows no other number on either side.
     """
-    written = entry(keys, tables)
-    number, unit = _AMOUNT.fullmatch(str(written)).groups()  # type: ignore[union-attr]
+    written = str(entry(keys, tables))
+    number, unit = amount(written).groups()  # type: ignore[union-attr]
     one = (in_si(f"1 {unit}") or 1.0) if unit else 1.0
-    at = float(in_si(written) or 0.0)
+    at = in_si(entry(keys, tables)) or 0.0
     step = OF_PLACES * scene.length if PLACES.intersection(keys[-2:]) else STEP * abs(at)
     sides: list[Scene | None] = []
     for sign in (-1, 1):
@@ -112,9 +110,9 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:
     if low is None and high is None:
         raise refused
     if low is not None and high is not None:
-        return Around(low, high, 2 * step, at)
+        return Around(low, high, 2 * step, written, unit, at)
     side = "larger" if low is None else "smaller"
-    return Around(low or scene, high or scene, step, at, side)
+    return Around(low or scene, high or scene, step, written, unit, at, side)
 
 
 def _text(value: float, unit: str) -> str | float:

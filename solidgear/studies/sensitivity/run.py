@@ -18,13 +18,13 @@ from solidgear.ladder import build
 from solidgear.machine.threads import pinned
 from solidgear.quantity import Quantity
 from solidgear.scene import Scene
-from solidgear.scene.paths import entry, label_of
+from solidgear.scene.paths import label_of
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import Form, of_entry, of_mode
 from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
 from solidgear.studies.sensitivity.derivatives import Derivatives
-from solidgear.studies.sensitivity.entries import around, numbers, unit_of
+from solidgear.studies.sensitivity.entries import around, numbers
 from solidgear.studies.sweep.entries import in_si
 
 #: what is asked for
@@ -247,14 +247,11 @@ def sensitivities(
         except SolidgearError as error:
             without[path] = _plainly(error)
             continue
-        at, text = sides.at, str(entry(keys, tables))
-        unit = unit_of(text)
         for k, value in enumerate(found[0].values):
-            scale = at / value
+            scale = sides.at / value
             apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
-            rows[k].append(
-                Derivative(path, text, at, unit, fine[k], fine[k] * scale, apart, sides.side)
-            )
+            told = path, sides.written, sides.at, sides.unit, fine[k], fine[k] * scale
+            rows[k].append(Derivative(*told, apart, sides.side))
     first = found[0]
     given = [
         OfNumber(str(q), v, q.unit, pair, _ranked(r))

@@ -7,7 +7,7 @@ finest that one of these needs serves all.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,12 +16,13 @@ import numpy as np
 from solidgear.errors import SceneError
 from solidgear.judge.settle import Settled, settle
 from solidgear.quantity import Quantity
-from solidgear.studies.sweep.run import variants_of
+from solidgear.studies.sweep.bearing_sweep import variants_of
+from solidgear.studies.sweep.bench import surface
 
 if TYPE_CHECKING:
     from solidgear.judge.refinement import Progress
     from solidgear.scene import Scene
-    from solidgear.studies.sweep.variants import Variants
+    from solidgear.studies.sweep.bearing_variants import Variants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
 MOST = 8
@@ -38,27 +39,9 @@ def settled_for_sweep(
 ) -> Settled:
     """The cheapest body whose error bars are within a tolerance on the scene and at the ends of a sweep.
 
-    Parameters
-    ----------
-    vary_texts : iterable of str
-        See :mod:`solidgear.studies.sweep.vary`.
-    tol : float, optional
-        Relative; by default the tolerance of the scene.
-    sample, seed : int, optional
-        As for :func:`solidgear.studies.sweep.sweep`.
-    progress : callable
-        Called with a sentence at every step.
-
-    Returns
-    -------
-    Settled
-        Of the finest mesh that one of the bearing sets needs, with the largest bar of each quantity
-        over all of them; ``judged_on`` says how many there were.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`solidgear.judge.settle.settle`, and for texts that cannot be read.
+    Of a sweep with these texts, sample and seed; the tolerance is relative, that of the scene by
+    default. What is settled is of the finest mesh that one of the bearing sets needs, with the
+    largest bar of each quantity over all of them; ``judged_on`` says how many there were.
 
     Examples
     --------
@@ -71,12 +54,12 @@ def settled_for_sweep(
     """
     scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
     found: list[Settled] = []
-    last: dict[tuple, Settled] = {}
+    last: dict[Hashable, Settled] = {}
     for k, one in enumerate(scenes, start=1):
         told = _numbered(progress, k, len(scenes))
         # bearings that sit where others did are other springs on the same body
-        own = settle(one, tol, "all", before=last.get(_seats(one)), progress=told)
-        last[_seats(one)] = own
+        own = settle(one, tol, "all", before=last.get(surface(one)), progress=told)
+        last[surface(one)] = own
         found.append(own)
     finest = max(found, key=lambda settled: settled.body.size)
     bars: dict[Quantity, float] = {}
@@ -89,11 +72,6 @@ def settled_for_sweep(
         reached=all(settled.reached for settled in found),
         judged_on=len(found),
     )
-
-
-def _seats(scene: Scene) -> tuple:
-    """Places of stations, and their ties."""
-    return tuple((s.name, s.y, s.lo, s.hi, s.attachment) for s in scene.stations)
 
 
 def _ends(variants: Variants) -> list[Scene]:

@@ -12,14 +12,23 @@ import numpy as np
 from solidgear.errors import SolidgearError, listed
 from solidgear.studies.sweep.entries import Entry, in_si
 from solidgear.studies.sweep.file_variants import POINT, FileVariants
-from solidgear.studies.sweep.train_task import force_of, misaligned
 
 #: rows that curves are made of
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
 #: what columns of mesh forces begin with
-FORCE = force_of("mesh")
+FORCE = "mesh_force"
+
+
+def force_of(mesh: str) -> str:
+    """Column of the force of a mesh at rest."""
+    return f"{FORCE}{mesh.removeprefix('mesh').replace(' ', '_')}"
+
+
+def misaligned(name: str) -> str:
+    """Column of a number of the misalignment."""
+    return f"misalignment_{name.replace(' ', '_')}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,15 +91,15 @@ class Curves:
         return not any(lists)
 
 
-def varied_number(varied: Sequence[Entry]) -> Entry:
-    """The one entry whose values curves go over.
+def chartable(variants: FileVariants) -> Entry:
+    """The one entry that curves go over; refused before a sweep begins where there is none.
 
     Raises
     ------
     SolidgearError
-        If there are several, or its values are words.
+        If there are several, its values are words, or there are too many.
     """
-    several = [one for one in varied if len(one.values) > 1]
+    several = [one for one in variants.entries if len(one.values) > 1]
     if len(several) != 1:
         named = listed(one.label for one in several) or "none"
         raise SolidgearError(
@@ -100,47 +109,29 @@ def varied_number(varied: Sequence[Entry]) -> Entry:
     one = several[0]
     if one.label != POINT and not one.numeric:
         raise SolidgearError(f"a chart has curves over a number, and {one.label} varies by words")
-    return one
-
-
-def chartable(variants: FileVariants) -> None:
-    """Refuse a sweep of which no curves can be drawn, before it begins.
-
-    Raises
-    ------
-    SolidgearError
-    """
-    varied_number(variants.entries)
     if len(variants) > MOST_CURVED:
         raise SolidgearError(
             f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
         )
+    return one
 
 
 def curves_of(
     columns: Mapping[str, list[Any]], variants: FileVariants, measured: Sequence[str] = ()
 ) -> Curves | None:
-    """Curves of a finished sweep; None of one that has none."""
-    if len(variants) > MOST_CURVED:
-        return None
-    try:
-        return curves(columns, varied_number(variants.entries), measured)
-    except SolidgearError:
-        return None
-
-
-def curves(columns: Mapping[str, list[Any]], one: Entry, measured: Sequence[str] = ()) -> Curves:
-    """Curves of a finished sweep over one of its entries.
+    """Curves of a finished sweep; None of one that has none.
 
     Parameters
     ----------
     columns : mapping of str to list
-        Values of all rows by the names of columns.
-    one : Entry
-        What varies; of operating points curves go over their torque.
+        Values of all rows by the names of columns; of operating points curves go over their torque.
     measured : sequence of str
         Names of the numbers of the misalignment of a train.
     """
+    try:
+        one = chartable(variants)
+    except SolidgearError:
+        return None
     of_points = one.label == POINT
     x = _numbers(columns["torque" if of_points else one.label])
     order = np.argsort(x, kind="stable")

@@ -61,7 +61,8 @@ class Design:
         files: Mapping[str, Tables],
         owner: Owner,
         further: Further = lambda _: (),
-        example: str = "segment.1.diameter=30 mm:40 mm:5",
+        *,
+        example: str,
     ) -> tuple[tuple[Entry, ...], np.ndarray, tuple[Kept, ...]]:
         """Entries that vary, (n, entries) their values in every variant, and sums that are kept.
 

@@ -97,7 +97,7 @@ class Entry(Span):
     @property
     def shown_in(self) -> str:
         """Unit that its numbers are read in, as the user wrote it; empty for SI."""
-        units = {amount[2] if (amount := _amount(word)) else "" for word in self.words}
+        units = {found[2] if (found := amount(word)) else "" for word in self.words}
         return self.unit or (units.pop() if len(units) == 1 else "")
 
     @property
@@ -119,13 +119,7 @@ class Entry(Span):
 def entries_of(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner
 ) -> tuple[Entry, ...]:
-    """Read all ``PATH=VALUES`` texts of a study.
-
-    Parameters
-    ----------
-    texts : iterable of str
-    files : mapping of str to mapping
-        Tables by the name of their file.
+    """Read all ``PATH=VALUES`` texts of a study over files, by their names.
 
     Raises
     ------
@@ -333,7 +327,7 @@ def in_si(value: object) -> float | None:
         return float(value)
     if not isinstance(value, str):
         return None
-    if not (found := _amount(value)) or not found[2]:
+    if not (found := amount(value)) or not found[2]:
         return None
     for dimension in DIMENSIONS:
         try:
@@ -343,7 +337,7 @@ def in_si(value: object) -> float | None:
     return None
 
 
-def _amount(word: object) -> re.Match[str] | None:
+def amount(word: object) -> re.Match[str] | None:
     """Number and unit of a text."""
     return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.paths import Keys, Tables, changed
+from solidgear.scene.paths import Tables
+from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry, Kept, hinted, put_in
 
 #: name of the file that was asked about, among others that it names
@@ -26,8 +27,12 @@ def in_own_file(path: str) -> tuple[str, str]:
     return OWN, path
 
 
+#: a scene or a train
+T = TypeVar("T")
+
+
 @dataclass(frozen=True)
-class FileVariants:
+class FileVariants(Generic[T]):
     """Points of a sweep over entries of files.
 
     Attributes
@@ -42,6 +47,8 @@ class FileVariants:
         Not a number where a variant leaves an entry as it is in the file.
     kept : tuple of Kept
         Sums that stay what they are in the file.
+    design : Design
+        They are the points of.
     """
 
     path: Path
@@ -49,6 +56,7 @@ class FileVariants:
     entries: tuple[Entry, ...]
     values: np.ndarray
     kept: tuple[Kept, ...] = ()
+    design: Design = Design()
 
     def __len__(self) -> int:
         return len(self.values)
@@ -69,14 +77,19 @@ class FileVariants:
         return out | dict.fromkeys((one.label for one in self.kept), float)
 
     @property
-    def plan(self) -> dict[str, list[Any]]:
-        """Entries that vary, as data for JSON."""
-        return {
+    def plan(self) -> dict[str, Any]:
+        """Entries that vary and how they are drawn, as data for JSON."""
+        vary = {
             one.label: [one.spacing, one.unit, *(one.words or one.values)] for one in self.entries
         }
+        return {"vary": vary, "sample": self.design.plan}
 
-    def first_sound(self) -> int:
-        """Number of the first variant that the rules of the files let pass.
+    def in_turn(self, numbers: Iterable[int]) -> list[int]:
+        """Variants in the order in which they are solved."""
+        return sorted(numbers)
+
+    def first_sound(self) -> tuple[int, T]:
+        """The first variant that the rules of the files let pass: its number, scene or train.
 
         Raises
         ------
@@ -86,8 +99,7 @@ class FileVariants:
         refusal: Exception | None = None
         for index in dict.fromkeys(np.linspace(0, len(self) - 1, LOOKED).astype(int).tolist()):
             try:
-                self.tried(index)
-                return index
+                return index, self.tried(index)
             except SolidgearError as error:
                 refusal = refusal or self.located(error, index)
         self.refuse_hopeless()
@@ -103,11 +115,23 @@ class FileVariants:
         for one in self.entries:
             self._refuse_whatever_its_value(one)
 
-    def tried(self, index: int) -> None:
-        """Read a variant; SceneError if files with these values would be refused."""
-        self.read(self.entries, self.values[index].tolist())
+    def of(self, index: int) -> T:
+        """Scene or train of one variant.
 
-    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Any:
+        Raises
+        ------
+        SceneError
+            If files with these values would be refused.
+        """
+        return self.read(self.entries, self.values[index].tolist())
+
+    def tried(self, index: int) -> T:
+        """Scene or train of one variant, as far as it is checked before a sweep; raises like
+        :meth:`of`.
+        """
+        return self.of(index)
+
+    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> T:
         """Scene or train of the files with some entries replaced."""
         raise NotImplementedError
 
@@ -124,10 +148,6 @@ class FileVariants:
                 first = first or own[0]
         if first is not None:
             raise SolidgearError(f"--vary {one.label}: {hinted(first, one.label, self.files)}")
-
-    def with_entry(self, file: str, keys: Keys, value: Any) -> Self:
-        """The same with an entry of a file replaced in all of them."""
-        return replace(self, files={**self.files, file: changed(self.files[file], keys, value)})
 
     def located(self, error: SolidgearError, index: int) -> SolidgearError:
         """An error of one variant told with the key and the value of its own file."""

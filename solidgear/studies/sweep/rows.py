@@ -52,6 +52,8 @@ class RowFile:
     ----------
     done : set of int
         Rows that are there already.
+    repairs : list of str
+        What was found damaged and how it was mended, a sentence each.
 
     Raises
     ------
@@ -75,8 +77,9 @@ class RowFile:
         self._parquet = self.path.suffix == ".parquet"
         if self._parquet:
             _pyarrow()
+        self.done: set[int] = set()
+        self.repairs: list[str] = []
         beside = self.path.with_name(self.path.name + ".sqlite")
-        self._opened: Store | None = None
         with self._writing():
             self.path.parent.mkdir(parents=True, exist_ok=True)
             for place in (self.path, beside):
@@ -84,24 +87,14 @@ class RowFile:
                     raise SolidgearError(
                         f"--out {self.path}: {place} is there and is no file; choose another name"
                     )
-            if self.path.exists() and not overwrite and not _size(beside):
-                raise self._unknown(beside)
-            self._opened = Store(beside, {"columns": list(columns), **plan}, total, overwrite)
+            self._store = Store(beside, {"columns": list(columns), **plan}, overwrite)
+        self.done = self._store.done
         try:
             with self._writing():
                 self._compare(overwrite)
         except BaseException:
             self._store.close()
             raise
-
-    @property
-    def done(self) -> set[int]:
-        return self._opened.done if self._opened else set()
-
-    @property
-    def _store(self) -> Store:
-        assert self._opened is not None  # or there would be no file of rows
-        return self._opened
 
     @property
     def basis(self) -> int | None:
@@ -124,9 +117,9 @@ class RowFile:
     def __exit__(self, kind, *_) -> None:
         """Whatever happened, the rows that are there are in the file if it is a CSV file."""
         try:
-            if self._behind and self.done and not self._parquet:
-                with suppress(SolidgearError) if kind else nullcontext(), self._writing():
-                    self._export()
+            if self.done and not self._parquet:
+                with suppress(SolidgearError) if kind else nullcontext():
+                    self.finish()
         finally:
             self._store.close()
 
@@ -139,29 +132,21 @@ class RowFile:
         if overwrite:
             self.path.unlink(missing_ok=True)
         if self._store.repaired:
-            self._tell(self._store.repaired)
-        exported, found = self._written_as, _digest(self.path)
-        self._written = self._store.facts.get("file", {}).get("rows", 0)
-        up_to_date = exported and found == exported[-1] and self._written == len(self.done)
-        self._behind = not up_to_date
-        if found and found not in exported and not self.done:
-            raise self._unknown(self._store.path)
-        missing = exported and not found
-        changed = found and found not in exported
-        if missing:
-            self._tell(f"{self.path} was gone and is written anew from {self._store.path.name}")
-        if (missing or changed) and self.done and not self._parquet:
-            self._export()
-
-    def _unknown(self, beside: Path) -> SolidgearError:
-        return SolidgearError(
-            f"{self.path}: is there already, and nothing beside it says that it came from this "
-            f"sweep (no rows in {beside.name}); choose another --out, or add --overwrite"
-        )
+            self._mended(self._store.repaired)
+        found = _digest(self.path)
+        if found and found not in self._written_as and not self.done:
+            raise SolidgearError(
+                f"{self.path}: is there already, and nothing beside it says that it came from this "
+                f"sweep (no rows in {self._store.path.name}); choose another --out, or add --overwrite"
+            )
+        up_to_date = found and found in self._written_as[-1:]
+        self._written = self._store.facts["file"]["rows"] if up_to_date else 0
 
     def _set_aside(self) -> str | None:
         """Digest of the file as it was written last; one that was changed gets another name."""
-        found = _digest(self.path)
+        found, beside = _digest(self.path), self._store.path.name
+        if self._written_as and not found:
+            self._mended(f"{self.path} was gone and is written anew from {beside}")
         if not found or found in self._written_as:
             return found
         aside, count = self.path.with_name(self.path.name + ".changed"), 1
@@ -169,26 +154,29 @@ class RowFile:
             count += 1
             aside = self.path.with_name(f"{self.path.name}.changed{count}")
         os.replace(self.path, aside)
-        self._tell(
+        self._mended(
             f"{self.path} does not match the record of what was written: what was there is now "
-            f"{aside.name}, and it is written anew from {self._store.path.name}"
+            f"{aside.name}, and it is written anew from {beside}"
         )
         return None
+
+    def _mended(self, text: str) -> None:
+        self.repairs.append(text)
+        self._tell(text)
 
     # ---------------------------------------------------------------------------------- writing
     def append(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows; they are on the disk when this returns."""
         with self._writing():
             self._store.append((row["variant"], self._line(row)) for row in rows)
-            self._behind = True
             # at every doubling, so that a sweep of any length writes each row about twice
             if not self._parquet and len(self.done) >= 2 * self._written:
                 with suppress(OSError):  # such as a spreadsheet that has it open; it is tried again
                     self._export()
 
     def finish(self) -> None:
-        """All rows are there: make the file unless it is up to date."""
-        if self._behind:
+        """Make the file of all rows that are there, unless it is up to date."""
+        if len(self.done) != self._written:
             with self._writing():
                 self._export()
 
@@ -202,7 +190,7 @@ class RowFile:
             # If the process is killed here, either file may be found.
             digests = [digest for digest in (before, _digest(partial)) if digest]
             self._store.note("file", {"digests": digests, "rows": len(self.done)})
-        self._written, self._behind = len(self.done), False
+        self._written = len(self.done)
 
     def _write_csv(self, partial: Path) -> None:
         with partial.open("w", newline="", encoding="utf-8") as f:
@@ -262,10 +250,6 @@ def _digest(path: Path) -> str | None:
             return hashlib.file_digest(f, "sha256").hexdigest()
     except FileNotFoundError:
         return None
-
-
-def _size(path: Path) -> int:
-    return path.stat().st_size if path.exists() else 0
 
 
 def _pyarrow():

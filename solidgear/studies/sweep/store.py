@@ -12,12 +12,9 @@ answers:
   ends; the second sweep is refused at once.
 - *The same row twice.*  The number of the row is the primary key.
 - *A row was altered, or put there by another.*  Its checksum covers the key of the sweep (scene,
-  options, variation, columns), the number of the row and its text.
-- *The structure of the database is damaged.*  SQLite checks it at every opening.
-
-A damaged database is made anew from the rows that can still be reached by their number and match
-their checksum; the others count as not solved.  The key is not needed for that, because a row
-proves by its checksum to which sweep it belongs.
+  options, variation, columns), the number of the row and its text.  It counts as not solved.
+- *The structure of the database is damaged.*  SQLite checks it at every opening; the sweep is
+  refused.
 """
 
 from __future__ import annotations
@@ -25,7 +22,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -51,9 +48,7 @@ CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL, checksum TEXT NO
 CREATE TABLE rows (variant INTEGER PRIMARY KEY, line TEXT NOT NULL, checksum TEXT NOT NULL);
 """
 ALL_ROWS = "SELECT variant, line, checksum FROM rows ORDER BY variant"
-ONE_ROW = "SELECT variant, line, checksum FROM rows WHERE variant = ?"
-ADD_ROW = "INSERT INTO rows VALUES (?, ?, ?)"
-SET_FACT = "INSERT OR REPLACE INTO facts VALUES (?, ?, ?)"
+DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
 
 
 class Store:
@@ -63,114 +58,94 @@ class Store:
     ----------
     key : mapping
         What the rows depend on, JSON-serialisable; rows of another key are never mixed in.
-    total : int
-        Rows there are to be; they are numbered from 0.
     overwrite : bool
         Start anew whatever is there.
 
     Attributes
     ----------
     done : set of int
-        Numbers of the rows that are there.
+        Numbers of the rows that are there, from 0.
     repaired : str
         What was found damaged and how it was mended, in a sentence; empty if nothing was.
     facts : dict
-        What goes with the rows, JSON-serialisable: ``rows``, how many there are, and what
-        :meth:`note` has put there.
+        What :meth:`note` has put beside the rows.
 
     Raises
     ------
     SolidgearError
-        If another process holds the database, it has rows of another sweep, or it is damaged
-        beyond telling whose rows it has.
+        If another process holds the database, it has rows of another sweep, or it is damaged.
     OSError, sqlite3.Error
         If it cannot be written.
     """
 
-    def __init__(self, path: Path, key: Mapping[str, Any], total: int, overwrite: bool = False):
-        self.path, self.total = Path(path), total
-        self._key = json.loads(json.dumps(key))
-        self._fingerprint = _digest(_json(self._key))
+    def __init__(self, path: Path, key: Mapping[str, Any], overwrite: bool = False):
+        self.path = Path(path)
+        self._key = _json(key)
+        self._fingerprint = _digest(self._key)
         self.done: set[int] = set()
         self.repaired = ""
-        self.facts: dict[str, Any] = {"rows": 0}
-        self._db, self._file = self._lock(overwrite)
+        self.facts: dict[str, Any] = {}
+        if overwrite:
+            self._discard()
+        self._db = self._connected()
         try:
-            if overwrite:
-                self._discard()
-            else:
-                self._open()
+            _lock(self._db)
+            self._still_there()  # a process that ends without rows takes its file away
+            self._take()
             self._db.execute("PRAGMA journal_mode = WAL")
             self._db.execute("PRAGMA synchronous = NORMAL")
-        except BaseException:
+        except BaseException as error:
             self._db.close()
-            raise
+            raise self._told(error) from None
 
     # ---------------------------------------------------------------------------------- opening
-    def _lock(self, discard: bool) -> tuple[sqlite3.Connection, tuple[int, int]]:
-        """The database under its exclusive lock, and which file that is."""
-        for _ in range(3):
-            if not self.path.exists():
-                self.path.open("ab").close()  # says why, where it cannot be; SQLite does not
-            file = self._identity()
-            db = sqlite3.connect(self.path.absolute(), timeout=0, isolation_level=None)
-            db.text_factory = lambda raw: raw.decode("utf-8", "surrogateescape")
-            try:
-                db.execute("PRAGMA trusted_schema = OFF")
-                db.execute("PRAGMA writable_schema = ON")  # lets a file be read that was cut off
-                db.execute("PRAGMA locking_mode = EXCLUSIVE")  # not given back after a transaction
-                db.execute("BEGIN EXCLUSIVE")
-                db.execute("COMMIT")
-                db.execute("PRAGMA journal_mode = DELETE")  # what a killed process left in its log
-            except sqlite3.DatabaseError as error:
-                db.close()
-                if _is(error, sqlite3.SQLITE_BUSY):
-                    raise self._taken() from None
-                if not _is(error, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT):
-                    raise
-                if not discard:
-                    raise self._lost(error) from None
-                self.path.unlink()
-                continue
-            # Another process that ends without rows takes its file away, perhaps just now.
-            if file is not None and self._identity() == file:
-                return db, file
-            db.close()
-        raise self._taken()
+    def _connected(self) -> sqlite3.Connection:
+        self.path.open("ab").close()  # says why, where it cannot be; SQLite does not
+        self._file = self._identity()
+        return sqlite3.connect(self.path.absolute(), timeout=0, isolation_level=None)
 
-    def _open(self) -> None:
+    def _discard(self) -> None:
+        """Take away what is there, unless another process holds it."""
+        db = self._connected()
         try:
-            self._take()
+            _lock(db)
         except sqlite3.DatabaseError as error:
-            if _is(error, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR):
-                raise self._lost(error) from None
-            raise
+            if _is(error, sqlite3.SQLITE_BUSY):
+                raise self._told(error) from None
+        finally:
+            db.close()
+        for ending in ("", "-wal", "-shm", "-journal"):
+            self.path.with_name(self.path.name + ending).unlink(missing_ok=True)
 
     def _take(self) -> None:
-        """Take the rows that are there, and mend what is damaged."""
+        """Take the rows that are there; those that were altered are dropped."""
         if self._is_new():
-            self._remake([])
+            self._db.executescript(TABLES)
+        if self._one("PRAGMA integrity_check(1)") != "ok":
+            raise self._lost("its structure is not intact")
+        if not self._one("SELECT count(*) FROM rows"):
+            self._db.execute("DELETE FROM facts")
+            self._set("key", self._key)
             return
-        key, facts, sound = self._facts_there()
-        if key is not None and self._is_other(key):
-            self._remake([])
-            return
-        if sound and self._is_sound() and facts.get("rows") == len(self.done):
-            self.facts = facts
-            return
-        if key is None and next(self._reachable(), None) is None:
-            raise self._lost("neither its key nor any row of this sweep is intact")
-        self.done, self.facts = set(), facts
-        before = min(facts.get("rows", self.total), self.total)
-        self._remake(self._reachable())
-        kept = len(self.done)
-        if kept == 0:
-            found = "none of its rows is intact, all are solved again"
-        elif kept < before:
-            found = f"{kept} of its rows are intact and kept, the others are solved again"
-        else:
-            found = f"all {kept} rows are intact and were saved into a new one"
-        self.repaired = f"{self.path} was damaged: {found}"
+        facts = {
+            name: text
+            for name, text, checksum in self._db.execute("SELECT name, value, checksum FROM facts")
+            if name == "key" or checksum == self._checksum(name, text)
+        }
+        self._refuse_other(facts.pop("key", ""))
+        self.facts = {name: json.loads(text) for name, text in facts.items()}
+        altered = []
+        for number, line, checksum in self._db.execute(ALL_ROWS):
+            if checksum == self._checksum(number, line):
+                self.done.add(number)
+            else:
+                altered.append((number,))
+        if altered:
+            self._db.executemany("DELETE FROM rows WHERE variant = ?", altered)
+            self.repaired = (
+                f"{self.path} was damaged: {len(self.done)} of its rows are intact and kept, the "
+                "others are solved again"
+            )
 
     def _is_new(self) -> bool:
         marks = [self._one(f"PRAGMA {name}") for name in ("application_id", "user_version")]
@@ -183,69 +158,23 @@ class Store:
             )
         return False
 
-    def _facts_there(self) -> tuple[Any, dict[str, Any], bool]:
-        """Key of the sweep that is there, or None; facts that are intact; whether all of it is."""
-        key, facts, sound = None, {}, True
+    def _refuse_other(self, text: str) -> None:
+        """Refuse rows of a key that is not that of this sweep."""
+        if text == self._key:
+            return
         try:
-            with closing(self._db.execute("SELECT name, value, checksum FROM facts")) as found:
-                for name, text, checksum in found:
-                    if not isinstance(text, str):
-                        sound = False
-                    elif name == "key" and checksum == _digest(text):
-                        key = json.loads(text)
-                    elif checksum == self._checksum(name, text):
-                        facts[name] = json.loads(text)
-                    else:
-                        sound = False
-        except sqlite3.DatabaseError:
-            sound = False
-        key = key if isinstance(key, dict) else None
-        return key, facts, sound and key is not None
-
-    def _is_other(self, key: Mapping[str, Any]) -> bool:
-        """Tell whether a key is that of another sweep; refused if there are rows of it."""
+            key, own = dict(json.loads(text)), json.loads(self._key)
+        except (TypeError, ValueError):
+            raise self._lost("its key is not intact") from None
         # as texts, for a number that is none is not equal to itself
-        names = sorted({*key, *self._key})
-        differ = [name for name in names if _json(key.get(name)) != _json(self._key.get(name))]
-        if differ and self._one("SELECT count(*) FROM rows"):
-            # columns follow from the rest; alone they differ between versions only
-            told = ", ".join([name for name in differ if name != "columns"] or differ)
-            raise SolidgearError(
-                f"{self.path.with_suffix('')}: holds the rows of another sweep (it differs in: "
-                f"{told}); choose another --out, or add --overwrite"
-            )
-        return bool(differ)
-
-    def _is_sound(self) -> bool:
-        """Tell whether the structure and all rows are intact; `done` has the numbers then."""
-        try:
-            if self._one("PRAGMA integrity_check(1)") != "ok":
-                return False
-            with closing(self._db.execute(ALL_ROWS)) as rows:
-                for number, line, checksum in rows:
-                    if not self._intact(number, line, checksum):
-                        return False
-                    self.done.add(number)
-        except sqlite3.DatabaseError:
-            return False
-        return True
-
-    def _reachable(self) -> Iterator[tuple[int, str]]:
-        """Rows that are intact, in a database of which parts may be unreadable."""
-        for number in range(self.total):
-            try:
-                found = self._db.execute(ONE_ROW, (number,)).fetchall()
-            except sqlite3.DatabaseError:
-                continue
-            if found and self._intact(*found[0]):
-                yield number, found[0][1]
-
-    def _intact(self, number: Any, line: Any, checksum: Any) -> bool:
-        typed = isinstance(number, int) and isinstance(line, str)
-        return typed and 0 <= number < self.total and checksum == self._checksum(number, line)
-
-    def _checksum(self, name: Any, text: Any) -> str:
-        return _digest(f"{self._fingerprint}\n{name}\n{text}")
+        names = sorted({*key, *own})
+        differ = [name for name in names if _json(key.get(name)) != _json(own.get(name))]
+        # columns follow from the rest; alone they differ between versions only
+        told = ", ".join([name for name in differ if name != "columns"] or differ)
+        raise SolidgearError(
+            f"{self.path.with_suffix('')}: holds the rows of another sweep (it differs in: "
+            f"{told}); choose another --out, or add --overwrite"
+        )
 
     def _one(self, query: str) -> Any:
         return self._db.execute(query).fetchall()[0][0]
@@ -258,70 +187,37 @@ class Store:
         return found.st_dev, found.st_ino
 
     # ---------------------------------------------------------------------------------- writing
-    def _remake(self, rows: Iterable[tuple[int, str]]) -> None:
-        """Some rows in place of all that is there, in one step and under the same lock."""
-        with closing(sqlite3.connect("", isolation_level=None)) as new:  # a temporary file
-            new.executescript(TABLES)
-            with new:
-                new.execute("BEGIN")
-                for number, line in rows:
-                    new.execute(ADD_ROW, (number, line, self._checksum(number, line)))
-                    self.done.add(number)
-                key = _json(self._key)
-                new.execute(SET_FACT, ("key", key, _digest(key)))
-                self.facts["rows"] = len(self.done)
-                new.executemany(SET_FACT, map(self._fact, self.facts.items()))
-            new.backup(self._db)
-
-    def _discard(self) -> None:
-        try:
-            self._remake([])
-        except sqlite3.DatabaseError as error:
-            if not _is(error, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT):
-                raise
-            self._db.close()
-            self.path.unlink()
-            self._db, self._file = self._lock(True)
-            self._remake([])
-
     def append(self, rows: Iterable[tuple[int, str]]) -> None:
         """Add rows, each a number and its text; all are on the disk when this returns, or none."""
         self._still_there()
         new = [(number, line, self._checksum(number, line)) for number, line in rows]
         with self._db:
             self._db.execute("BEGIN")
-            self._db.executemany(ADD_ROW, new)
-            self._db.execute(SET_FACT, self._fact(("rows", len(self.done) + len(new))))
+            self._db.executemany("INSERT INTO rows VALUES (?, ?, ?)", new)
         self.done.update(number for number, _, _ in new)
-        self.facts["rows"] = len(self.done)
 
     def note(self, name: str, value: Any) -> None:
-        """Keep something beside the rows."""
+        """Keep something beside the rows, JSON-serialisable."""
         self._still_there()
-        self._db.execute(SET_FACT, self._fact((name, value)))
+        self._set(name, _json(value))
         self.facts[name] = value
 
-    def _fact(self, item: tuple[str, Any]) -> tuple[str, str, str]:
-        name, value = item
-        return name, _json(value), self._checksum(name, _json(value))
+    def _set(self, name: str, text: str) -> None:
+        fact = name, text, self._checksum(name, text)
+        self._db.execute("INSERT OR REPLACE INTO facts VALUES (?, ?, ?)", fact)
+
+    def _checksum(self, name: Any, text: Any) -> str:
+        return _digest(f"{self._fingerprint}\n{name}\n{text}")
 
     def lines(self) -> Iterator[str]:
-        """Texts of the rows by ascending number, each checked once more."""
-        count = 0
-        with closing(self._db.execute(ALL_ROWS)) as rows:
-            for number, line, checksum in rows:
-                if not self._intact(number, line, checksum):
-                    raise self._changed()
-                count += 1
-                yield line
-        if count != len(self.done):
-            raise self._changed()
+        """Texts of the rows by ascending number."""
+        return (line for _, line, _ in self._db.execute(ALL_ROWS))
 
     def close(self) -> None:
         """Let another process have the database; one without rows is taken away."""
         with suppress(sqlite3.Error, OSError):  # a full disk, say: the log is kept then
             self._db.execute("PRAGMA journal_mode = DELETE")
-            if not self._one("SELECT count(*) FROM rows") and self._identity() == self._file:
+            if not self.done and self._identity() == self._file:
                 self.path.unlink()  # not on Windows, which keeps a file that is open
         self._db.close()
 
@@ -333,11 +229,16 @@ class Store:
             )
 
     # --------------------------------------------------------------------------------- refusals
-    def _taken(self) -> SolidgearError:
-        return SolidgearError(
-            f"{self.path}: is in use by another process, perhaps the same sweep; "
-            "wait for it to end, or choose another --out"
-        )
+    def _told(self, error: BaseException) -> BaseException:
+        """An error of opening, in a sentence where it is one of the database."""
+        if isinstance(error, sqlite3.DatabaseError) and _is(error, sqlite3.SQLITE_BUSY):
+            return SolidgearError(
+                f"{self.path}: is in use by another process, perhaps the same sweep; "
+                "wait for it to end, or choose another --out"
+            )
+        if isinstance(error, sqlite3.DatabaseError) and _is(error, *DAMAGED):
+            return self._lost(error)
+        return error
 
     def _lost(self, reason: Any) -> SolidgearError:
         return SolidgearError(
@@ -345,10 +246,12 @@ class Store:
             "or add --overwrite to solve all rows again"
         )
 
-    def _changed(self) -> SolidgearError:
-        return SolidgearError(
-            f"{self.path}: was changed while the sweep was writing to it; the same command mends it"
-        )
+
+def _lock(db: sqlite3.Connection) -> None:
+    """Take the exclusive lock and keep it."""
+    db.execute("PRAGMA locking_mode = EXCLUSIVE")  # not given back after a transaction
+    db.execute("BEGIN EXCLUSIVE")
+    db.execute("COMMIT")
 
 
 def _is(error: sqlite3.Error, *codes: int) -> bool:

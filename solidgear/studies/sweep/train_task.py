@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.machine.threads import pinned
+from solidgear.errors import SolidgearError, nearest, show
+from solidgear.models.limits import number
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.sweep.bench import Bench
-from solidgear.studies.sweep.train_variants import TrainVariants
+from solidgear.studies.sweep.curves import force_of, misaligned
+from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.file_task import FileTask
+from solidgear.studies.sweep.file_variants import plain
+from solidgear.studies.sweep.train_variants import TrainVariants, train_variants
+from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.misalignment import measured_names, misalignment
 from solidgear.studies.train.models import KEPT
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.operation import SHAFT, OperatingState, settled
 from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import LUMPED, checked_rung
+from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung
 from solidgear.studies.train.turn import over_a_turn, told_over_a_turn
 
 #: what a row may tell, by the commands that tell the same of one train
@@ -29,6 +35,8 @@ MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
 ASKED = (MODES, RESPONSE, DEFLECTION)
 #: natural frequencies of a row, unless it is asked for so many
 MOST_MODES = 20
+#: most that can be asked for
+MOST_SHAPES = 200
 #: peaks of the mesh force
 PEAKS = 3
 #: of a bearing, N, N and N m
@@ -36,7 +44,7 @@ CARRIED = ("radial", "axial", "moment")
 
 
 @dataclass(frozen=True)
-class TrainTask:
+class TrainTask(FileTask):
     """Everything that turns variants of a train into rows.
 
     Attributes
@@ -53,35 +61,47 @@ class TrainTask:
         Builder options by (side, model).
     mesh : str or None
         Whose transmission error drives the train; the first by default.
+    first : int
+        A variant that can be read.
     """
 
     variants: TrainVariants
     models: Mapping[str, str]
-    ask: tuple[str, ...] = ASKED
-    n: int | None = None
-    max_frequency: float | None = None
-    reduction: str = "rubin"
-    kept: int = KEPT
-    settings: Mapping[Any, Mapping] = field(default_factory=dict)
-    mesh: str | None = None
+    ask: tuple[str, ...]
+    n: int | None
+    max_frequency: float | None
+    reduction: str
+    kept: int
+    settings: Mapping[Any, Mapping]
+    mesh: str | None
+    first: int
 
     @cached_property
     def bench(self) -> Bench:
-        """Things kept from row to row; not sent to other processes."""
+        """Things kept from row to row."""
         return Bench(self.reduction, self.kept, self.settings)
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in vars(self).items() if key != "bench"}
+    @cached_property
+    def usual(self) -> Train:
+        """Train of the first variant that can be read."""
+        return self.variants.of(self.first)
 
-    def columns(self, train: Train) -> dict[str, type]:
-        """Names and types of the columns of a row of such a train, in order."""
-        out: dict[str, type] = {"variant": int}
-        out |= self.variants.columns
-        out["status"] = str
+    @property
+    def measured(self) -> tuple[str, ...]:
+        return tuple(measured_names(self.usual))
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Things that do not fit together in the usual train but can be solved."""
+        return tuple(text for met in contacts(self.usual).values() for text in met.cautions)
+
+    @property
+    def columns(self) -> dict[str, type]:
+        train, out = self.usual, dict[str, type]()
         if train.operation:
             out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
         if train.operation and DEFLECTION in self.ask:
-            out |= dict.fromkeys(map(misaligned, measured_names(train)), float)
+            out |= dict.fromkeys(map(misaligned, self.measured), float)
             out |= {once(stage.called): float for stage in told_over_a_turn(train)}
             out |= dict.fromkeys(_loads(train), float)
         if train.operation:
@@ -95,24 +115,43 @@ class TrainTask:
                 out |= {f"peak{k}_hz": float, f"peak{k}_force": float, f"peak{k}_mode": str}
         return out
 
-    @pinned
-    def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
-        """Rows of some variants; none depends on those before it."""
-        return [self._row(index) for index in indices]
+    @property
+    def plan(self) -> dict[str, Any]:
+        variants, usual = self.variants, self.usual
+        files = {name or "train": plain(t) for name, t in variants.tables(self.first).items()}
+        # what these files name
+        cells = [cell.model_dump() for mesh in usual.meshes for cell in mesh.contact_cells]
+        parts = [own.scene.body for own in usual.shafts.values()]
+        return {
+            "files": files,
+            "cells": cells,
+            "parts": [part and part.model_dump(mode="json") for part in parts],
+            "scenes": {word: plain(tables) for word, tables in variants.scenes_in_turn()},
+            "point": variants.point,
+            "models": [*self.models.values()],
+            "mesh": self.mesh,
+            "n": self.n,
+            "max_frequency": self.max_frequency,
+            "reduction": [self.reduction, self.kept],
+            "set": plain({" ".join(key): dict(own) for key, own in self.settings.items()}),
+        }
 
-    def _row(self, index: int) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
-        try:
-            train = self.variants.train(index)
-            point = self.variants.at(index, train)
-            at, found = train, dict[str, Any]()
-            if point is not None:
-                at, found = self._at_rest(index, train, point)
-            if {MODES, RESPONSE} & {*self.ask}:
-                found |= self._moving(at)
-        except SolidgearError as error:
-            return row | {"status": self.variants.status(error, index)}
-        return row | {"status": "ok"} | found
+    def cut(self, columns: Mapping[str, list[Any]]) -> int:
+        """Natural frequencies up to the highest frequency that the widest row has and no column
+        holds.
+        """
+        widest = max((count for count in columns.get("modes", []) if count), default=0)
+        return max(0, widest - MOST_MODES) if self.n is None else 0
+
+    def numbers(self, index: int) -> dict[str, Any]:
+        train = self.variants.of(index)
+        point = self.variants.at(index, train)
+        at, found = train, dict[str, Any]()
+        if point is not None:
+            at, found = self._at_rest(index, train, point)
+        if {MODES, RESPONSE} & {*self.ask}:
+            found |= self._moving(at)
+        return found
 
     # ------------------------------------------------------------------------------ at rest
     def _at_rest(
@@ -170,6 +209,102 @@ class TrainTask:
         return out
 
 
+def train_task(
+    train: Path,
+    design: Design,
+    *,
+    pinion: str | None = None,
+    gear: str | None = None,
+    models: Mapping[str, str] | None = None,
+    mesh: str | None = None,
+    ask: Iterable[str] = ASKED,
+    n: int | None = None,
+    max_frequency: float | None = None,
+    point: str | None = None,
+    every_point: bool = False,
+    reduction: str = "rubin",
+    kept: int = KEPT,
+    local_harmonics: Sequence[int] = (),
+    settings: Mapping[Any, Mapping] | None = None,
+) -> TrainTask:
+    """Natural frequencies, mesh force and misalignment of many variants of a train.
+
+    Parameters
+    ----------
+    train : Path
+        Of the train file.
+    design : Design
+        Entries that vary: any number or word of the train file, or of the scene of a shaft, such as
+        ``pinion.bearing.2.position=140 mm:160 mm:5``. The change is made to the tables of the file,
+        and every rule of the file applies.
+    pinion, gear : str, optional
+        Models of the shafts of these names, as of ``system-modes``; ``harmonic`` by default.
+    models : mapping of str to str, optional
+        Models of shafts by any name.
+    mesh : str, optional
+        Whose transmission error drives the train; the first by default.
+    ask : iterable of str
+        Some of ``system-modes``, ``response`` and ``deflect``: what a row tells, all by default.
+    n : int, optional
+        Elastic modes of a row; those up to the highest frequency by default.
+    max_frequency : float, optional
+        Hz; that of the file by default.
+    point : str, optional
+        Operating point that is looked at, by its name or number; the first by default, or the one
+        that varies.
+    every_point : bool
+        A row for each operating point of the file.
+    reduction, kept, settings
+        As of :class:`solidgear.studies.train.models.Workshop`.
+    local_harmonics : sequence of int
+        Of every mesh, in place of those of the file.
+
+    Raises
+    ------
+    SolidgearError
+        A path or a value that no variant can have, and too many variants.
+
+    Examples
+    --------
+    >>> design = Design(("mesh.stiffness=2e8 N/m:3e8 N/m:3",))
+    >>> beams = {"pinion": "euler", "gear": "euler"}
+    >>> task = train_task(Path("geometry/axle_overhung.toml"), design, **beams)
+    >>> [row["status"] for row in task.rows(range(3))], task.bench.made
+    (['ok', 'ok', 'ok'], 2)
+    """
+    asked = _asked(ask)
+    given = {side: one for side, one in (("pinion", pinion), ("gear", gear)) if one is not None}
+    given |= models or {}
+    for model in given.values():
+        checked_rung(model)
+    if n is not None:
+        number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
+    variants = train_variants(
+        train, design, point=point, every_point=every_point, local_harmonics=local_harmonics
+    )
+    first, usual = variants.first_sound()
+    usual.named_mesh(mesh)
+    for side in given:
+        usual.named_shaft(side)
+    mix = {side: given.get(side, JUDGE) for side in usual.shafts}
+    how = reduction, kept, dict(settings or {}), mesh
+    return TrainTask(variants, mix, asked, n, max_frequency, *how, first)
+
+
+def _asked(ask: Iterable[str]) -> tuple[str, ...]:
+    """Kinds of numbers that rows tell, in the usual order."""
+    given = list(ask)
+    for word in given:
+        if word not in ASKED:
+            raise SolidgearError(
+                f"--ask {show(word, 40)}: a row tells what {', '.join(ASKED)} tell"
+                f"{nearest(word, ASKED)}"
+            )
+    if not given:
+        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
+    return tuple(word for word in ASKED if word in given)
+
+
 def statics_of(model: str) -> str:
     """Model that a shaft is put at rest by: a lumped one has no bearings of its own, and the body it
     comes from takes its place.
@@ -178,19 +313,9 @@ def statics_of(model: str) -> str:
     return base if kind in LUMPED else model
 
 
-def force_of(mesh: str) -> str:
-    """Column of the force of a mesh at rest."""
-    return f"mesh_force{mesh.removeprefix('mesh').replace(' ', '_')}"
-
-
 def once(stage: str) -> str:
     """Column of what the largest mesh force of a planet varies by once a turn of its carrier."""
     return f"once_a_turn_{stage.replace(' ', '_')}"
-
-
-def misaligned(name: str) -> str:
-    """Column of a number of the misalignment."""
-    return f"misalignment_{name.replace(' ', '_')}"
 
 
 def _loads(train: Train) -> Iterator[str]:

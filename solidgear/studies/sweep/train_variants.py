@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from solidgear.errors import SolidgearError, listed
 from solidgear.scene import Scene
 from solidgear.scene.file import KEYS
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.paths import Keys, Tables
+from solidgear.scene.paths import Tables, changed
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_file import train_of
@@ -33,8 +33,8 @@ KEPT = 500
 
 
 @dataclass(frozen=True)
-class TrainVariants(FileVariants):
-    """Points of a sweep of a train.
+class TrainVariants(FileVariants[Train]):
+    """Points of a sweep of a train; bearings that settle with it have no stiffness yet.
 
     Attributes
     ----------
@@ -48,17 +48,6 @@ class TrainVariants(FileVariants):
 
     point: str | None = None
     _scenes: dict[tuple, Scene] = field(default_factory=dict, repr=False, compare=False)
-
-    def train(self, index: int) -> Train:
-        """Train of one variant as it would be read from its files: bearings that settle with it have
-        no stiffness yet.
-
-        Raises
-        ------
-        SceneError
-            If files with these values would be refused.
-        """
-        return self.read(self.entries, self.values[index].tolist())
 
     def at(self, index: int, train: Train) -> OperatingPoint | None:
         """Operating point at which a variant is looked at; None of a train without any."""
@@ -82,15 +71,18 @@ class TrainVariants(FileVariants):
         order = np.argsort(ranks, kind="stable")
         return sorted(numbers, key=lambda k: (*_ranked(self.values[k, order]).tolist(), k))
 
-    def tried(self, index: int) -> None:
-        """Read a variant; SceneError if files with these values would be refused."""
-        train = self.train(index)
+    def scenes_in_turn(self) -> Iterator[tuple[str, Tables]]:
+        """Tables of the scenes that a shaft has in turn, by the names of their files."""
+        for one in self.entries:
+            if one.file == OWN and one.keys[-1] == "scene":
+                for word in one.words:
+                    yield str(word), parse(str(self.path.parent / str(word)))
+
+    def tried(self, index: int) -> Train:
+        train = self.of(index)
         self.at(index, train)
         contacts(train)
-
-    def with_entry(self, file: str, keys: Keys, value: Any) -> TrainVariants:
-        """The same with an entry of a file replaced in all of them."""
-        return replace(super().with_entry(file, keys, value), _scenes={})
+        return train
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
         def of_side(side: str, path: Path, alone: bool) -> Scene:
@@ -113,24 +105,15 @@ class TrainVariants(FileVariants):
 
 
 def train_variants(
-    path: Path, design: Design, *, point: str | None = None, every_point: bool = False
+    path: Path,
+    design: Design,
+    *,
+    point: str | None = None,
+    every_point: bool = False,
+    local_harmonics: Sequence[int] = (),
 ) -> TrainVariants:
-    """Points of a sweep of a train.
-
-    Parameters
-    ----------
-    path : Path
-        Of the train file.
-    design : Design
-    point : str, optional
-        Operating point that is looked at; the first by default, or the one that varies.
-    every_point : bool
-        Look at each of the file.
-
-    Raises
-    ------
-    SolidgearError
-        For files and texts that cannot be read, and for too many variants.
+    """Points of a sweep of a train, as :func:`solidgear.studies.sweep.train_task.train_task` has
+    them.
     """
     own = parse(str(path))
     if isinstance(own.get("mesh"), list):
@@ -148,7 +131,13 @@ def train_variants(
         example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5",
     )
     at = point or _varied_point(own, varied)
-    return TrainVariants(path, files, varied, values, kept, at)
+    if local_harmonics:
+        meshes = own.get("mesh")
+        places = [(k,) for k in range(len(meshes))] if isinstance(meshes, list) else [()]
+        for place in places:
+            keys = ("mesh", *place, "local_harmonics")
+            files[OWN] = changed(files[OWN], keys, list(local_harmonics))
+    return TrainVariants(path, files, varied, values, kept, design, at)
 
 
 def shafts_in(own: Tables) -> dict[str, Any]:

@@ -260,24 +260,19 @@ def _refuse_rigid(text: str, field: str, known: Sequence[str], what: str) -> Non
 
 
 def _read(text: str, place: tuple[int | None, bool], field: str, label: str, spec: str) -> Axis:
-    try:
-        values, spacing = _values(field, spec)
-    except SceneError as error:
-        raise SolidgearError(f"--vary {text}: {error}") from None
-    bearing, housed = place
-    return Axis(
-        label=label, values=values, spacing=spacing, bearing=bearing, housed=housed, field=field
-    )
-
-
-def _values(field: str, spec: str) -> tuple[tuple[float, ...], str]:
     of_its_own = {"position": "length", "scale": "dimensionless", "axial": "force_per_length"}
     dimension = of_its_own.get(field) or STIFFNESS_NAMES[field][2]
-    values, spacing = spread(spec, lambda text: _number(text, dimension))
+    try:
+        values, spacing = spread(spec, lambda one: quantity(plain_number(one.strip()), dimension))
+    except SceneError as error:
+        raise SolidgearError(f"--vary {text}: {error}") from None
     if field == "position":
         values = [round(v, POSITION_DECIMALS) + 0.0 for v in values]
-    # the same value twice would be the same row twice
-    return tuple(dict.fromkeys(values)), spacing
+    different = tuple(dict.fromkeys(values))  # the same value twice would be the same row twice
+    bearing, housed = place
+    return Axis(
+        label=label, values=different, spacing=spacing, bearing=bearing, housed=housed, field=field
+    )
 
 
 def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
@@ -310,11 +305,9 @@ def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
     ).tolist(), spacing
 
 
-def _number(text: str, dimension: str) -> float:
-    text = text.strip()
+def plain_number(text: str) -> str | float:
+    """A number where a text is one, else the text."""
     try:
-        return quantity(float(text), dimension)
-    except ValueError as error:
-        if isinstance(error, SceneError):
-            raise
-        return quantity(text, dimension)
+        return float(text)
+    except ValueError:
+        return text

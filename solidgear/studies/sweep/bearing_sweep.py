@@ -1,4 +1,4 @@
-"""Run a sweep: the body once, its reduction once, then small problems, row by row."""
+"""Sweeps of bearings alone: the body once, its reduction once, then small problems, row by row."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from solidgear import __version__
+from solidgear.bearings.solved import waiting
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.ladder import build as build_any
+from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
 from solidgear.studies.sweep import vary
+from solidgear.studies.sweep.bearing_task import Task, columns
+from solidgear.studies.sweep.bearing_variants import SeatedShaft, Variants
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
-from solidgear.studies.sweep.task import Task, columns
-from solidgear.studies.sweep.variants import SeatedShaft, Variants, waiting
 from solidgear.studies.sweep.workers import workers
 
 #: Most elastic shapes of a row, two columns each; a basis that holds as many is no small problem.
@@ -80,7 +81,6 @@ def sweep(
     jobs: int = 1,
     dask: str | None = None,
     overwrite: bool = False,
-    build: Callable[..., Body] = build_any,
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
     tell: Callable[[str], None] = tell_in_log,
 ) -> Summary:
@@ -91,9 +91,7 @@ def sweep(
     vary_texts : iterable of str
         See :mod:`solidgear.studies.sweep.vary`.
     out : path
-        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
-        again; they are in a database beside the file (``rows.csv.sqlite``), from which the file is
-        written in one step, see :mod:`solidgear.studies.sweep.rows`.
+        ``.csv`` or ``.parquet``, see :mod:`solidgear.studies.sweep.rows`.
     fidelity, options
         As for :func:`solidgear.ladder.build`.
     n : int, optional
@@ -103,19 +101,8 @@ def sweep(
     tolerance : float
         Relative error of frequencies against the same body solved in full. A variant whose bound
         exceeds it makes the basis larger, and where that does not do it is solved in full.
-    jobs : int
-        Processes on this machine (joblib), at most eight for each processor.
-    dask : str, optional
-        Address of a Dask scheduler, whose workers have solidgear installed.
-    overwrite : bool
-        Discard rows that are there.
-    build : callable
-        Makes the body from a :class:`solidgear.studies.sweep.variants.SeatedShaft`, a model and options.
-    progress : callable
-        Called with rows that are there, rows in all, and what is being done.
-    tell : callable
-        Called with a sentence for every damage to the files that was found and mended; by default
-        a warning of the logger.
+    jobs, dask, overwrite, progress, tell
+        As of :func:`solidgear.studies.sweep.file_task.run`.
 
     Raises
     ------
@@ -132,60 +119,44 @@ def sweep(
     variants = variants_of(scene, vary_texts, sample, seed)
     team = workers(jobs, dask)
     plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
-    repairs: list[str] = []
-
-    def mended(text: str) -> None:
-        repairs.append(text)
-        tell(text)
-
-    def body() -> tuple[Body, int]:
-        shaft = variants.shaft()
-        _check_seats(shaft, scene, fidelity, options)
-        seats = len(shaft.stations) - len(scene.ports)
-        progress(len(file.done), total, f"body with {seats} seats")
-        return build(shaft, fidelity, **options), seats
 
     total = len(variants)
-    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, mended) as file:
-        skipped = len(file.done)
+    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, tell) as file:
+        skipped, start = len(file.done), time.perf_counter()
         todo = [i for i in range(total) if i not in file.done]
         found = Summary(file.path, total, skipped, settling=_settling(variants))
         if todo:
-            found = _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress)
+            shaft = variants.shaft()
+            seats = _checked_seats(shaft, scene, fidelity, options)
+            progress(skipped, total, f"body with {seats} seats")
+            body = build(shaft, fidelity, **options)
+            progress(skipped, total, f"reducing {body.size} unknowns")
+            basis = reduce(body, n, file.basis or 0)
+            solver = _Solver(body, Task(variants, (basis,), n, tolerance))
+            if file.basis is None:
+                # Of all variants, whatever is left of them: the basis is the same after an
+                # interruption.
+                solver.settle(range(total)[:: max(1, total // PROBES)])
+                file.basis = solver.task.bases[0].level
+            ready = time.perf_counter()
+            size = max(1, min(50, len(todo) // (4 * jobs)))
+            parts = [todo[i : i + size] for i in range(0, len(todo), size)]
+            for rows in team(lambda: solver.task, parts):
+                file.append([solver.repaired(row) for row in rows])
+                progress(len(file.done), total, "solving")
+            found = replace(
+                found,
+                refused=solver.whys.total(),
+                full=solver.full,
+                unknowns=body.size,
+                seats=seats,
+                basis=solver.task.bases[-1].size,
+                seconds_once=ready - start,
+                seconds_each=(time.perf_counter() - ready) / len(todo),
+                whys=dict(solver.whys),
+            )
         file.finish()
-    return replace(found, repairs=tuple(repairs))
-
-
-def _solve(found, file, variants, body, n, tolerance, todo, team, jobs, progress) -> Summary:
-    """Solve some variants and append their rows."""
-    total, start = found.total, time.perf_counter()
-    body, seats = body()
-    progress(found.skipped, total, f"reducing {body.size} unknowns")
-    solver = _Solver(body, Task(variants, reduce(body, n, file.basis or 0), n, tolerance))
-    if file.basis is None:
-        # Of all variants, whatever is left of them: the basis is the same after an interruption.
-        solver.settle(range(total)[:: max(1, total // PROBES)])
-        file.basis = solver.task.reduced.level
-    once, start = time.perf_counter() - start, time.perf_counter()
-    full, whys = 0, Counter[str]()
-    size = max(1, min(50, len(todo) // (4 * jobs)))
-    for rows in team(lambda: solver.task, [todo[i : i + size] for i in range(0, len(todo), size)]):
-        rows = [solver.repaired(row) for row in rows]
-        file.append(rows)
-        whys.update(row["status"] for row in rows if row["status"] != "ok")
-        full += sum(row["how"] == "full" for row in rows)
-        progress(len(file.done), total, "solving")
-    return replace(
-        found,
-        refused=whys.total(),
-        full=full,
-        unknowns=body.size,
-        seats=seats,
-        basis=solver.task.largest.size,
-        seconds_once=once,
-        seconds_each=(time.perf_counter() - start) / len(todo),
-        whys=dict(whys),
-    )
+    return replace(found, repairs=tuple(file.repairs))
 
 
 def variants_of(
@@ -215,42 +186,51 @@ def _settling(variants: Variants) -> str:
 
 
 class _Solver:
-    """A body, and the task with the bases that were needed so far."""
+    """A body, the task with the bases that were needed so far, and what became of its rows."""
 
     def __init__(self, body: Body, task: Task):
         self.body, self.task = body, task
+        self.whys = Counter[str]()
+        self.full = 0
 
     def grow(self) -> bool:
         """Have a larger basis for variants that need it; False if there is none."""
         basis = self._next()
         if basis:
-            self.task = replace(self.task, larger=(*self.task.larger, basis))
+            self.task = replace(self.task, bases=(*self.task.bases, basis))
         return basis is not None
 
     def settle(self, probes: Sequence[int]) -> None:
         """Begin with a basis that does for some variants, or with the largest."""
         while any(map(self.task.weak, self.task.rows(probes))) and (basis := self._next()):
-            self.task = replace(self.task, reduced=basis)
+            self.task = replace(self.task, bases=(basis,))
 
     def repaired(self, row: dict[str, Any]) -> dict[str, Any]:
         """A row within the tolerance."""
+        if row["status"] != "ok":
+            self.whys[row["status"]] += 1
+            return row
         if self.task.weak(row):
             row = self._again(row)  # there may be a larger basis by now
         while self.task.weak(row) and self.grow():
             row = self._again(row)
-        return self.task.in_full(row, self.body) if self.task.weak(row) else row
+        if self.task.weak(row):
+            self.full += 1
+            row = self.task.in_full(row, self.body)
+        return row
 
     def _next(self) -> Reduced | None:
-        level = self.task.largest.level + 1
+        level = self.task.bases[-1].level + 1
         return reduce(self.body, self.task.n, level) if level < len(LEVELS) else None
 
     def _again(self, row: dict[str, Any]) -> dict[str, Any]:
         return self.task.rows([row["variant"]])[0]
 
 
-def _check_seats(
+def _checked_seats(
     shaft: SeatedShaft, scene: Scene, fidelity: str, options: Mapping[str, Any]
-) -> None:
+) -> int:
+    """Number of seats, which one body must carry."""
     seats, most = len(shaft.stations) - len(scene.ports), LADDER[fidelity].most_seats
     if most is not None and seats > most:
         raise SolidgearError(
@@ -264,6 +244,7 @@ def _check_seats(
             "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats cannot "
             "be rigid in a sweep of positions"
         )
+    return seats
 
 
 def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from solidgear.body import Body, as_supports
-from solidgear.errors import SolidgearError
 from solidgear.judge.settle import Settled
 from solidgear.judge.solving import answered
 from solidgear.ladder import build
+from solidgear.ladder.registry import LADDER
 from solidgear.machine.meter import Meter
-from solidgear.machine.threads import pinned
+from solidgear.models.limits import number
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
 from solidgear.scene.toml_file import parse
@@ -23,7 +23,8 @@ from solidgear.studies.one_shaft import mass_of, one_shaft
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.entries import Entry
-from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file
+from solidgear.studies.sweep.file_task import FileTask
+from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file, plain
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
@@ -32,38 +33,26 @@ MOST_MODES = 30
 
 
 @dataclass(frozen=True)
-class SceneVariants(FileVariants):
-    """Points of a sweep over entries of a scene file."""
-
-    def scene(self, index: int) -> Scene:
-        """Scene of one variant, its catalogue bearings with their stiffness.
-
-        Raises
-        ------
-        SceneError
-            If a file with these values would be refused.
-        """
-        return self.read(self.entries, self.values[index].tolist())
+class SceneVariants(FileVariants[Scene]):
+    """Points of a sweep over entries of a scene file, catalogue bearings with their stiffness."""
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Scene:
         return scene_of(self.put(OWN, varied, row), self.path)
 
 
-def scene_variants(path: Path, design: Design) -> SceneVariants:
-    """Points of a sweep over entries of a scene file.
-
-    Raises
-    ------
-    SolidgearError
-        For a file and texts that cannot be read, and too many variants.
+def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
+    """Points of a sweep over entries of a scene file; the example of something to vary is told where
+    nothing is.
     """
     files = {OWN: parse(str(path))}
-    return SceneVariants(path, files, *design.points(files, in_own_file))
+    points = design.points(files, in_own_file, example=example)
+    return SceneVariants(path, files, *points, design)
 
 
 @dataclass(frozen=True)
-class SceneTask:
-    """Everything that turns variants of a scene into rows.
+class SceneTask(FileTask):
+    """Everything that turns variants of a scene into rows: each is read, meshed and solved for
+    itself.
 
     Attributes
     ----------
@@ -75,6 +64,8 @@ class SceneTask:
         Of the builder of a model that is given.
     n : int
         Natural frequencies.
+    first : int
+        A variant that can be read.
     """
 
     variants: SceneVariants
@@ -82,16 +73,16 @@ class SceneTask:
     tolerance: float | None
     options: Mapping[str, Any]
     n: int
-    _last: dict[Any, Settled] = field(default_factory=dict, repr=False, compare=False)
-
-    def __getstate__(self) -> dict[str, Any]:
-        return vars(self) | {"_last": {}}
+    first: int = 0
 
     @cached_property
+    def _last(self) -> dict[Any, Settled]:
+        """Mesh of the last row, by its shaft."""
+        return {}
+
+    @property
     def columns(self) -> dict[str, type]:
-        """Names and types of the columns of a row, in order."""
-        out: dict[str, type] = {"variant": int, **self.variants.columns}
-        out |= {"status": str, "model": str, "unknowns": int, "mass": float}
+        out: dict[str, type] = {"model": str, "unknowns": int, "mass": float}
         for name in STATICS:
             out |= self._with_bar(str(name), float)
         for k in range(1, self.n + 1):
@@ -101,19 +92,21 @@ class SceneTask:
     def _with_bar(self, name: str, kind: type) -> dict[str, type]:
         return {name: kind} | ({f"{name} bar": float} if self.model is None else {})
 
-    @pinned
-    def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
-        """Rows of some variants; none depends on those before it."""
-        return [self._row(index) for index in indices]
+    @property
+    def plan(self) -> dict[str, Any]:
+        part = self.variants.of(self.first).body
+        return {
+            "scene": plain(self.variants.tables(self.first)[OWN]),
+            "part": part and part.model_dump(mode="json"),
+            "model": self.model,
+            "set": plain(self.options),
+            "tolerance": self.tolerance,
+            "n": self.n,
+        }
 
-    def _row(self, index: int) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
-        try:
-            scene = self.variants.scene(index)
-            found = self._settled(scene) if self.model is None else self._fixed(scene)
-        except SolidgearError as error:
-            return row | {"status": self.variants.status(error, index)}
-        return row | {"status": "ok"} | found
+    def numbers(self, index: int) -> dict[str, Any]:
+        scene = self.variants.of(index)
+        return self._settled(scene) if self.model is None else self._fixed(scene)
 
     def _settled(self, scene: Scene) -> dict[str, Any]:
         """Numbers with bars, by the cheapest mesh."""
@@ -156,3 +149,53 @@ class SceneTask:
         for k, mode in enumerate(elastic[: self.n], start=1):
             out |= {f"f{k}_hz": mode.frequency_hz, f"mode{k}": str(mode.name)}
         return out
+
+
+def scene_task(
+    scene: Path,
+    design: Design,
+    *,
+    model: str | None = None,
+    tolerance: float | None = None,
+    options: Mapping[str, Any] | None = None,
+    n: int | None = None,
+) -> SceneTask:
+    """Statics and natural frequencies of many variants of a scene, each with its bars.
+
+    Parameters
+    ----------
+    scene : Path
+        Of the scene file.
+    design : Design
+        Entries that vary: any number or word of the file, such as
+        ``segment.neck.diameter=30 mm:40 mm:5``. The change is made to the tables of the file, and
+        every rule of the file applies.
+    model : str, optional
+        None for the cheapest mesh whose bars are within the tolerance, variant by variant; of a
+        model that is given rows have no bars.
+    tolerance : float, optional
+        Relative; that of the scene by default.
+    options : mapping, optional
+        Of the builder of a model that is given.
+    n : int, optional
+        Natural frequencies of a row; as many as the scene asks for by default.
+
+    Raises
+    ------
+    SolidgearError
+        A path or a value that no variant can have, and too many variants.
+
+    Examples
+    --------
+    >>> design = Design(("segment.1.diameter=45 mm,50 mm",))
+    >>> task = scene_task(Path("geometry/shaft_stepped.toml"), design, model="timoshenko")
+    >>> thin, thick = task.rows([0, 1])
+    >>> thin["C_zz"] > thick["C_zz"]
+    True
+    """
+    given = {} if model is None else LADDER[model].checked(dict(options or {}))
+    variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
+    first, usual = variants.first_sound()
+    n = usual.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)
+    return SceneTask(variants, model, tolerance, given, n, first)

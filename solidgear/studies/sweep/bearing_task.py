@@ -1,4 +1,4 @@
-"""Solution of one variant of a sweep: statics at the lumped point and first modes, as a row."""
+"""Solution of one bearing set: statics at the lumped point and first modes, as a row."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from solidgear.machine.threads import pinned
 from solidgear.reduction.moments import Reduced
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
+from solidgear.studies.sweep.bearing_variants import Variants
 from solidgear.studies.sweep.ritz import Seats, ritz_modes
-from solidgear.studies.sweep.variants import Variants
 
 #: Entries of the stiffness and the compliance that a row holds.
 ENTRIES = {
@@ -45,15 +45,15 @@ class Task:
         Elastic shapes wanted, twins counted twice.
     tolerance : float
         Relative error of a frequency that is let pass.
-    larger : tuple of Reduced
-        Larger bases, tried one after the other on a variant whose bound exceeds the tolerance.
+    bases : tuple of Reduced
+        From small to large, tried one after the other while the bound of a variant exceeds the
+        tolerance.
     """
 
     variants: Variants
-    reduced: Reduced
+    bases: tuple[Reduced, ...]
     n: int
     tolerance: float
-    larger: tuple[Reduced, ...] = ()
 
     @pinned
     def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
@@ -65,17 +65,11 @@ class Task:
         seats: dict[tuple[int, ...], Seats] = {}
         return [self._first_that_does(i, seats) for i in indices]
 
-    @property
-    def largest(self) -> Reduced:
-        """The largest basis there is."""
-        return (self.reduced, *self.larger)[-1]
-
     def _first_that_does(self, index: int, seats: dict[tuple[int, ...], Seats]) -> dict[str, Any]:
-        row = self._row(index, self.reduced, seats)
-        for basis in self.larger:
+        for basis in self.bases:
+            row = self._row(index, basis, seats)
             if not self.weak(row):
                 break
-            row = self._row(index, basis, seats)
         return row
 
     def _row(

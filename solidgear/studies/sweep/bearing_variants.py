@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from solidgear.bearings.solved import solved, wants_equilibrium
+from solidgear.bearings.solved import solved, waiting
 from solidgear.body import Supports, as_supports
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene import (
@@ -173,39 +173,15 @@ def settled_anew(scene: Scene) -> Scene:
     them there.
 
     A bearing's tangent is that of its load, and where a seat moves, loads move with it.
-
-    Returns
-    -------
-    Scene
-        The same where no bearing waits for the load of the scene.
-
-    Raises
-    ------
-    SceneError
-        Where shaft and bearings find no equilibrium.
     """
     if not waiting(scene):
         return scene
-
     try:
         return solved(scene, shaft(scene)).scene
     except SceneError:
         raise
     except SolidgearError as error:
         raise SceneError(str(error)) from None
-
-
-def waiting(scene: Scene) -> tuple[str, ...]:
-    """Names of the bearings whose stiffness hangs on what the load of the scene brings them."""
-    if all(b.catalogue is None for b in scene.bearings):
-        return ()
-
-    if not wants_equilibrium(scene):
-        return ()
-    own = (
-        b for b in scene.bearings if b.catalogue is not None and b.catalogue.displacement is None
-    )
-    return tuple(b.name for b in own if b.catalogue is not None and b.catalogue.load is None)
 
 
 def _port_name(station: Port | Bearing | PointMass) -> str:
