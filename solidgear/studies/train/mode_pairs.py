@@ -8,11 +8,13 @@ motion that names them, in order of frequency.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.studies.beside import all_pairs
 from solidgear.studies.change import BarredMode, ModePair
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
@@ -116,30 +118,7 @@ def mode_pairs(
         pairs = [
             ModePair(first[mine[k]], other[its[j]], float(alike[k, j])) for k, j in found.items()
         ]
-    left = [
-        [
-            mode
-            for mode in own
-            if mode not in known and (not by_shape or mode.frequency_hz <= highest)
-        ]
-        for own, known in ((first, [p.a for p in pairs]), (other, [p.b for p in pairs]))
-    ]
-    pairs += _by_name(*left)
-    alone = [ModePair(m, None) for m in first if m not in [p.a for p in pairs]]
-    alone += [ModePair(None, m) for m in other if m not in [p.b for p in pairs]]
-    return sorted([*pairs, *alone], key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both
-
-
-def _by_name(first: Sequence[SeenMode], other: Sequence[SeenMode]) -> list[SeenPair]:
-    """Modes of both that are called after the same motion, in order of frequency."""
-    waiting: dict[str, list[SeenMode]] = {}
-    for mode in other:
-        waiting.setdefault(_motion(mode), []).append(mode)
-    out = []
-    for mode in first:
-        if waiting.get(_motion(mode)):
-            out.append(ModePair(mode, waiting[_motion(mode)].pop(0)))
-    return out
+    return all_pairs(pairs, first, other, _motion, highest if by_shape else math.inf)
 
 
 def _motion(mode: SeenMode) -> str:
