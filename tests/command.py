@@ -29,8 +29,8 @@ def strict(text):
     return json.loads(text, parse_constant=refuse)
 
 
-def page_of(folder, told):
-    """The page of a folder and its text: it needs no other file and says every sentence, and what is
+def page_of(folder, told, sentences):
+    """The page of a folder and its text: it needs no other file and says all sentences, and what is
     stored beside it is what was told.
     """
     stored = json.loads((folder / "results.json").read_text(encoding="utf-8"))
@@ -38,7 +38,7 @@ def page_of(folder, told):
     assert stored == told
     page = (folder / "report.html").read_text(encoding="utf-8")
     text = " ".join(re.sub(r"<[^>]+>", " ", page).split())
-    for sentence in told["sentences"]:
+    for sentence in sentences:
         assert " ".join(sentence.split()) in text
     assert not re.findall(r'(?:src|href|xlink:href)="(?!#|data:)([^"]*)"', page)
     return page, text

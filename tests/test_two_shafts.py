@@ -142,7 +142,7 @@ def test_fields_of_scenes_made_in_python_are_told_by_their_paths():
 # --------------------------------------------------------------------------- page and files
 def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(thicker):
     told, out = thicker
-    page, text = page_of(out, told)
+    page, text = page_of(out, told, told["sentences"])
     for one in told["numbers"].values():
         if one["unit"] == "Hz":
             assert f"{one['a']:.2f}" in text and f"{one['b']:.2f}" in text

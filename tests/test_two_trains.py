@@ -309,7 +309,7 @@ def test_shafts_and_meshes_that_one_train_does_not_have_are_refused(three):
 # --------------------------------------------------------------------------- page and files
 def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(stiffer):
     told, out, _ = stiffer
-    page, text = page_of(out, told)
+    page, text = page_of(out, told, told["sentences"])
     for pair in told["modes"]:
         for one in (pair["a"], pair["b"]):
             shown = f"{one['frequency_hz']:.1f}"

@@ -134,7 +134,8 @@ def mac_map(found: Any, width: float = WIDE) -> Chart:
     """MAC of every measured shape and every mode."""
     told = ~np.isnan(found.mac).any(axis=1)
     rows = [f"{hertz(p.measured.frequency)} Hz" for p, shown in zip(found.pairs, told) if shown]
-    table = MacTable(rows=rows, columns=list(found.names), values=found.mac[told].tolist())
+    columns = [mode.name for mode in found.computed.barred]
+    table = MacTable(rows=rows, columns=columns, values=found.mac[told].tolist())
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 
@@ -153,14 +154,11 @@ def peaks(found: Any, overlay: Any = None) -> Table:
         "sensor or a mass on the part are not in it. Damping: the ratio."
     )
     if overlay is not None:
-        constant = partial(_constant, overlay)
-        columns.append(Column("size", constant, "{:.2f}".format, kind=NUMBER))
+        constants = overlay.constants
+        size = Column("size", lambda k: constants.get(k + 1), "{:.2f}".format, kind=NUMBER)
+        columns.append(size)
         note += " Size: computed modal constant over the measured one, of all responses."
     return Table("Resonances of the responses", columns, range(len(fit.poles)), note, style="ruled")
-
-
-def _constant(overlay: Any, k: int) -> float | None:
-    return overlay.constants.get(k + 1)
 
 
 def alone(found: Any) -> Table:

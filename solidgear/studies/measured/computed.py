@@ -43,8 +43,6 @@ class Computed:
         Elastic ones by frequency.
     bars : tuple of float
         Relative; infinite where nothing tells it.
-    tolerance : float
-        That bars were asked to keep.
     rung : str
         Model.
     options : dict
@@ -57,7 +55,6 @@ class Computed:
     body: Body
     modes: tuple[Mode, ...]
     bars: tuple[float, ...]
-    tolerance: float
     rung: str
     options: dict[str, Any]
     limit: float
@@ -137,7 +134,7 @@ def computed_up_to(
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
         listed, bars = _barred(scene, body, limit, settled)
-    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit)
+    return Computed(scene, body, tuple(listed), tuple(bars), rung, options, limit)
 
 
 @pinned

@@ -107,8 +107,6 @@ class Correlation(Displayed):
         Model and mesh.
     mac : (n, m) ndarray or None
         Of every measured shape and every mode; None where no shapes were measured.
-    names : tuple of str
-        Of the modes.
     measured : Measured
     computed : Computed
         What was held against each other.
@@ -123,9 +121,7 @@ class Correlation(Displayed):
     pairs: tuple[Pair, ...]
     missed: tuple[tuple[BarredMode, float], ...]
     mesh: str
-    tolerance: float
     mac: np.ndarray | None
-    names: tuple[str, ...]
     measured: Measured
     computed: Computed
     of_points: tuple[str, ...] = ()
@@ -188,7 +184,7 @@ class Correlation(Displayed):
                 for pair in self.pairs
             ],
             "mac": None if self.mac is None else [_plain(row) for row in self.mac],
-            "modes": list(self.names),
+            "modes": [mode.name for mode in self.computed.barred],
             "not_measured": [
                 {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
                 for mode, share in self.missed
@@ -306,9 +302,7 @@ def _correlation(
         tuple(pairs),
         missed,
         computed.mesh,
-        computed.tolerance,
         mac,
-        tuple(mode.name for mode in barred),
         measured,
         computed,
         () if on_points is None else on_points.sentences(below),

@@ -1,6 +1,6 @@
 """Two trains beside each other: what differs in their files, and what that does to their numbers.
 
-Modes are paired by shape (:mod:`solidgear.studies.train.mode_pairs`); a peak of the mesh force
+Modes are paired by shape (:mod:`solidgear.studies.train.pairing`); a peak of the mesh force
 belongs to the peak of the partner of its mode.
 """
 
@@ -28,15 +28,17 @@ from solidgear.studies.change import Change
 from solidgear.studies.train import two_trains_told as told
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
-from solidgear.studies.train.mode_pairs import (
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.pairing import (
+    BEYOND,
     SeenMode,
     SeenPair,
     mode_pairs,
+    ports_of,
+    seen_modes,
     shared_ports,
     told_modes,
 )
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.pairing import BEYOND, ports_of, seen_modes
 from solidgear.studies.train.respond import Peak, TrainResponse, respond
 from solidgear.studies.train.shaft import JUDGE, LUMPED, told_mix
 from solidgear.studies.train.slips import slips
