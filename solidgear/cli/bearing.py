@@ -88,17 +88,8 @@ def bearing(
 
 
 def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """A scene under a load of the command line, on its port or on one of its bearings.
-
-    Parameters
-    ----------
-    load : str
-        Such as ``x=2 kN, z=-500 N``.
-
-    Raises
-    ------
-    SolidgearError
-        Of components that are none.
+    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
+    of its bearings; components that are none are refused.
     """
     try:
         return with_load(scene, _components(load), bearing)

@@ -166,23 +166,9 @@ def compare_two(
     given: dict[str, bool],
     of_trains: dict[str, bool],
 ) -> None:
-    """Two trains beside each other, or two shafts.
-
-    Parameters
-    ----------
-    files : list of Path
-        Two; more are refused.
-    mix : Pair
-        Models of the shafts of both trains.
-    mesh : str or None
-        Whose transmission error drives both; the first by default.
-    given, of_trains : dict of str to bool
-        Options of compare that speak of one shaft and of trains, and whether they were given.
-
-    Raises
-    ------
-    SolidgearError
-        For more than two files, files of different kinds, or an option that does not apply.
+    """Two trains beside each other, or two shafts: just two files of one kind. `given` and
+    `of_trains` are the options that speak of one shaft and of trains, and tell of each whether it
+    was given.
     """
     if len(files) > 2:
         raise SolidgearError(f"compare takes one file, or two of a kind; {len(files)} are given")

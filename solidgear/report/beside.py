@@ -31,26 +31,8 @@ def write_beside(
     lines: Mapping[str, Table] | None = None,
     charts: Mapping[str, Make] | None = None,
 ) -> Path:
-    """Write results.json, tables for other programs, charts and report.html.
-
-    Parameters
-    ----------
-    sections : callable
-        Gives those of the page.
-    lines : mapping of str to Table, optional
-        By the names of their files.
-    charts : mapping of str to callable, optional
-        Those that are files as well, by their names.
-
-    Returns
-    -------
-    Path
-        Of the page.
-
-    Raises
-    ------
-    SolidgearError
-        If the folder cannot be written.
+    """Write results.json, tables for other programs (`lines`), those charts that are files as well,
+    and report.html with its sections; the path is that of the page.
     """
     lines, charts = lines or {}, charts or {}
     files = ["report.html", *(f"{name}.csv" for name in lines)]

@@ -242,15 +242,8 @@ def _responses(
 def write_correlation(
     folder: Path, found: Any, overlay: Any = None, viewer: str = ""
 ) -> list[Path]:
-    """Page, data, tables and charts of a correlation.
-
-    Parameters
-    ----------
-    found : Correlation
-    overlay : Overlay, optional
-        Measured and computed responses.
-    viewer : str
-        HTML of shapes beside each other.
+    """Page, data, tables and charts of a correlation, with measured and computed responses where
+    there are any; `viewer` is HTML of shapes beside each other.
     """
     title = f"{found.scene}: measured and computed"
     lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."

@@ -21,19 +21,8 @@ if TYPE_CHECKING:
 def write_stress(
     folder: Path, found: StressAtRest, lead: str, units: Units = ENGINEERING
 ) -> list[Path]:
-    """Write the stress of shafts into a folder.
-
-    Parameters
-    ----------
-    lead : str
-        Under what they are loaded.
-    units : Units
-        Of charts and page; all else is SI.
-
-    Returns
-    -------
-    list of Path
-        ``stress.html`` first, then a CSV of section forces a shaft, the JSON, and the charts.
+    """Write the stress of shafts into a folder: ``stress.html``, then a CSV of section forces a
+    shaft, the JSON, and the charts; `lead` says under what they are loaded.
     """
     lines: dict[str, Table] = {}
     charts: dict[str, Make] = {}

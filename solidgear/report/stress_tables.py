@@ -51,14 +51,8 @@ def section_forces(
     open_: tuple[float, float] | None = None,
     open_by: str = "",
 ) -> Table:
-    """Sizes of the section forces on both sides of every place where something acts.
-
-    Parameters
-    ----------
-    open_ : (float, float), optional
-        Least and largest of the largest bending moment, N m.
-    open_by : str
-        What the data of bearings leave open, in words.
+    """Sizes of the section forces on both sides of every place where something acts; `open_` is the
+    range of the largest bending moment, N m, that `open_by` leaves open.
     """
     rows = [
         (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
@@ -163,14 +157,8 @@ def surface_stress(
     units: Units = ENGINEERING,
     open_by: str = "",
 ) -> Table:
-    """Stress on the fillets under the loads, with its bar and what bearings leave open.
-
-    Parameters
-    ----------
-    open_ : mapping of str to (float, float)
-        Least and largest amplitude by fillet, Pa.
-    open_by : str
-        What the data of bearings leave open, in words.
+    """Stress on the fillets under the loads, with its bar, and the range of amplitudes by fillet,
+    Pa, that `open_by` leaves open.
     """
     columns = [
         text("fillet", lambda row: row[0].name),

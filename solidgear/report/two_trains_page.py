@@ -250,14 +250,8 @@ class Bar(NamedTuple):
 
 
 def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE) -> Chart | None:
-    """Stacked bars of the shares of modes; None without any.
-
-    Parameters
-    ----------
-    modes : sequence of (str, sequence of Bar)
-        Name of a mode, and it in both things, or in one.
-    width : float
-        px.
+    """Stacked bars of the shares of modes, each with its name and what it is in both things, or in
+    one; None without any.
     """
     places = list(dict.fromkeys(p for _, bars in modes for bar in bars for p in bar.shares))
     if not modes:

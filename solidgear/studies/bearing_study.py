@@ -103,17 +103,8 @@ class BearingFacts:
 
 
 def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
-    """Every catalogue bearing of a scene at its load.
-
-    Parameters
-    ----------
-    body : Body, optional
-        The shaft, where the bearings wait for its load.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`solidgear.bearings.solved.solved`, or a scene without such bearings.
+    """Every catalogue bearing of a scene at its load; `body` is the shaft, where they wait for its
+    load.
 
     Examples
     --------
@@ -174,14 +165,8 @@ class OverLoad:
 def over_load(
     scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
 ) -> dict[str, OverLoad]:
-    """Stiffness of every catalogue bearing over the load.
-
-    Parameters
-    ----------
-    body : Body, optional
-        The shaft, where the bearings wait for its load.
-    factors : sequence of float
-        Times the load that the scene says.
+    """Stiffness of every catalogue bearing at so many times the load that the scene says; `body` is
+    the shaft, where they wait for its load.
     """
     names = [b.name for b in scene.bearings if b.catalogue is not None]
     loads: dict[str, list] = {name: [] for name in names}
@@ -207,20 +192,7 @@ def over_load(
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """A scene with another load, on its port or on one of its bearings.
-
-    Parameters
-    ----------
-    load : dict
-        As for :class:`solidgear.scene.BearingLoad`.
-    bearing : str or None
-        Name of the bearing that bears it; None puts it on the port.
-
-    Raises
-    ------
-    SolidgearError
-        A bearing that is not there, or has no catalogue data; components that are none.
-    """
+    """A scene with another load of such components, on its port or on the bearing of a name."""
     new = BearingLoad(**load)
     if bearing is None:
         free = tuple(

@@ -82,19 +82,8 @@ def all_pairs(
     called: Callable[[M], str],
     highest: float = math.inf,
 ) -> list[ModePair[M]]:
-    """All modes of two lists by frequency: in the pairs that are alike, by name in order of frequency,
-    or alone.
-
-    Parameters
-    ----------
-    alike : sequence of ModePair
-        Known by their shapes.
-    first, other : sequence of BarredMode
-        By ascending frequency.
-    called : callable
-        Name of a mode by which the rest are paired.
-    highest : float
-        Hz, up to which they are.
+    """All modes of two lists, both by ascending frequency: in the pairs that are alike in shape, by
+    what they are `called` up to a frequency, Hz, or alone.
     """
     waiting: dict[str, list[M]] = {}
     for mode in other:

@@ -62,14 +62,9 @@ def load(path: str | os.PathLike) -> Scene:
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
-    """Scene that tables of a file describe; errors as of :func:`load`.
-
-    Parameters
-    ----------
-    path : str or path
-        What the tables name lies relative to it.
-    alone : bool
-        Whether catalogue bearings settle at the load of the scene, and not with a train.
+    """Scene that tables of a file describe, what they name relative to its path; errors as of
+    :func:`load`. Catalogue bearings settle at the load of the scene where it is `alone`, and not
+    with a train.
     """
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
@@ -124,18 +119,8 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
 
 
 def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
-    """A scene file with all that was found out about its catalogue bearings.
-
-    Parameters
-    ----------
-    path : str or path
-    scene : Scene, optional
-        As read from it.
-
-    Raises
-    ------
-    SceneError
-        As :func:`load`.
+    """A scene file, or the scene as read from it, with all that was found out about its catalogue
+    bearings; errors as of :func:`load`.
     """
     from solidgear.bearings.solved import solved  # start-up: not every file needs it
 

@@ -77,23 +77,8 @@ def one_shaft(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> OneShaft:
-    """A shaft by the cheapest solid whose bars are within a tolerance.
-
-    Parameters
-    ----------
-    tol : float
-        Relative.
-    points : sequence of str
-        Further lumped points whose numbers are wanted.
-    before : Settled, optional
-        As of :func:`solidgear.judge.settle.settle`.
-    progress : callable
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
+    """A shaft by the cheapest solid whose bars are within a relative tolerance, with the numbers of
+    further lumped points; `before` as of :func:`solidgear.judge.settle.settle`.
     """
 
     def say(text: str) -> None:

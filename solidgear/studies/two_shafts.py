@@ -157,23 +157,8 @@ def two_shafts(
     progress: Progress = lambda _: None,
 ) -> TwoShafts:
     """Two shafts beside each other, each by the cheapest solid whose bars are within a tenth of the
-    smaller tolerance of both.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Two.
-    names : sequence of str, optional
-        What they are called; by default as the scenes are.
-    inputs : sequence of Difference, optional
-        Of their files; by default of the scenes' fields.
-    progress : callable
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
+    smaller tolerance of both; by default called as the scenes are, with the fields that differ for
+    inputs.
 
     Examples
     --------

@@ -104,17 +104,9 @@ def computed_up_to(
     progress: Progress = lambda _: None,
     before: Computed | None = None,
 ) -> Computed:
-    """All modes up to a little above a frequency, by the cheapest solid; one of revolution is refined
-    until the bar of every mode is within a tolerance.
-
-    Parameters
-    ----------
-    highest : float
-        Hz.
-    tolerance : float
-        Relative.
-    before : Computed, optional
-        Of a scene like it, on whose mesh it begins.
+    """All modes up to a little above a frequency, Hz, by the cheapest solid; one of revolution is
+    refined until the bar of every mode is within a relative tolerance. It begins on the mesh of
+    what was computed `before` of a scene like it.
     """
     limit = BEYOND * highest
     settled = None

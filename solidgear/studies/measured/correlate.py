@@ -200,24 +200,8 @@ def correlate(
     tol: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
-    """Hold measured resonances against the modes of a scene.
-
-    Parameters
-    ----------
-    tol : float, optional
-        Relative; bars of the modes are brought below it. A tenth of the tolerance of the scene by
-        default.
-    progress : callable
-        Told of every stage.
-
-    Returns
-    -------
-    Correlation
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
+    """Hold measured resonances against the modes of a scene, whose relative bars are brought below
+    `tol`, by default a tenth of the tolerance of the scene.
 
     Examples
     --------

@@ -170,18 +170,9 @@ class Measured(Model):
 
 
 def load_measured(path: str | os.PathLike) -> Measured:
-    """Read measured resonances.
-
-    Parameters
-    ----------
-    path : str or path
-        ``.toml``, ``.csv``, or a universal file ``.unv``, ``.uff`` of mode shapes, or of frequency
-        responses, in which resonances are then found.
-
-    Raises
-    ------
-    SceneError
-        The file, the entry, its value and what would be right; responses without a resonance.
+    """Measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
+    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
+    tells the file, the entry, its value and what would be right.
 
     Examples
     --------

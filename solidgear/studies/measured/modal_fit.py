@@ -90,19 +90,7 @@ class ModalFit:
 
 @pinned
 def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
-    """Find the modes of responses.
-
-    Parameters
-    ----------
-    hertz : (k,) ndarray
-        Ascending.
-    accelerance : (m, k) ndarray of complex
-        Acceleration over force, in any unit.
-
-    Raises
-    ------
-    SolidgearError
-        For fewer lines than a band needs, and where no mode stands out of the noise.
+    """Modes of accelerances (m, k), in any unit, over ascending frequencies (k,), Hz.
 
     Examples
     --------

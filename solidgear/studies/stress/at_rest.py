@@ -155,23 +155,9 @@ def stress_of_scene(
 ) -> StressAtRest:
     """Stress of a shaft under the [load] of its scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        Bearings of catalogue data need no stiffness yet.
-    model : str
-        On which shaft and bearings settle.
-    drive : mapping of str to float, optional
-        Torques about the axis that enter at bearings, masses or further points, N m; the gear at
-        the port takes them out.
-    progress : callable, optional
-        Told what is solved.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene without load, or one that nothing holds against it; a torque at what the shaft
-        has not, or at the port.
+    Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
+    the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
+    stiffness yet.
 
     Examples
     --------
@@ -225,19 +211,8 @@ def stress_of_train(
     asked: Asked = Asked(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
-    """Stress of all shafts of a train at an operating point.
-
-    Parameters
-    ----------
-    model : str
-        On which shafts and bearings settle; no lumped one, which has no places of its own.
-    progress : callable, optional
-        Told what is solved.
-
-    Raises
-    ------
-    SolidgearError
-        For a shaft that nothing holds.
+    """Stress of all shafts of a train at an operating point; shafts and bearings settle on a model,
+    no lumped one, which has no places of its own.
 
     Examples
     --------

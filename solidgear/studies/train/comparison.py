@@ -117,17 +117,8 @@ def compare_train(
     more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> TrainComparison:
-    """Judge every mix of models of a train, and tell the judge's modes.
-
-    Parameters
-    ----------
-    workshop, highest_hz, more, progress
-        As :func:`solidgear.studies.train.judge.judge_train`.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what the reduction resolves, or unknown models.
+    """Judge every mix of models of a train, and tell the judge's modes; as of
+    :func:`solidgear.studies.train.judge.judge_train`.
     """
     start = perf_counter()
     verdict = judge_train(workshop, highest_hz, more, progress)

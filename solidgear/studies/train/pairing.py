@@ -40,21 +40,9 @@ ROUNDING = 1e-9
 def seen_modes(
     workshop: Workshop, system: System, highest: float, ends: Sequence[str] | None = None
 ):
-    """Modes up to a frequency, and how they are seen at the ports.
-
-    Parameters
-    ----------
-    highest : float
-        Hz; the first elastic mode is always there.
-    ends : sequence of str, optional
-        Ports that are looked at, as ``side.port``; by default all.
-
-    Returns
-    -------
-    SystemModes
-    (m, n) ndarray
-        Motions of these ports in the n elastic ones, rotations times the length of the shaft, and
-        rotations of engine and load.
+    """Modes of a system up to a frequency, Hz, and motions (m, n) of ports in the n elastic ones,
+    one at least: rotations times the length of the shaft, and rotations of engine and load. `ends`
+    are the ports that are looked at, as ``side.port``; by default all.
     """
     count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
     found = system.modes(count)
@@ -86,20 +74,9 @@ def ports_of(workshop: Workshop) -> list[str]:
 def partners(
     hz: np.ndarray, seen: np.ndarray, other_hz: np.ndarray, other_seen: np.ndarray
 ) -> dict[int, int]:
-    """Elastic modes of one mix and their partners among those of another; of several that are alike,
-    the one at the nearest frequency.
-
-    Parameters
-    ----------
-    hz, other_hz : (n,), (k,) ndarray
-        Frequencies of elastic modes.
-    seen, other_seen : (m, n), (m, k) ndarray
-        As of :func:`seen_modes`.
-
-    Returns
-    -------
-    dict of int to int
-        From places in the first to places in the second; modes without a partner are left out.
+    """Elastic modes of one mix and their partners among those of another, by their places, from
+    frequencies (n,), (k,) and motions (m, n), (m, k) as of :func:`seen_modes`; of several that are
+    alike, the one at the nearest frequency.
 
     Examples
     --------
@@ -114,17 +91,7 @@ def partners(
 
 
 def mac(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Modal assurance criterion of every pair of columns.
-
-    Parameters
-    ----------
-    one, other : (m, n), (m, k) ndarray
-
-    Returns
-    -------
-    (n, k) ndarray
-        0 to 1.
-    """
+    """Modal assurance criterion (n, k), 0 to 1, of every pair of columns (m, n), (m, k)."""
     size = np.outer((one**2).sum(axis=0), (other**2).sum(axis=0))
     return (one.T @ other) ** 2 / np.maximum(size, np.finfo(float).tiny)
 
@@ -162,12 +129,8 @@ def shared_ports(one: Workshop, other: Workshop) -> tuple[list[str], list[str]]:
 def told_modes(
     shop: Workshop, system: System, found: SystemModes, rungs: dict[str, str]
 ) -> tuple[SeenMode, ...]:
-    """Elastic modes with their names, error bars and strain energies.
-
-    Parameters
-    ----------
-    rungs : dict of str to str
-        Model of each side.
+    """Elastic modes with their names, error bars and strain energies; the model of each side is
+    that of `rungs`.
     """
     names, moved = mode_names(shop, system, found), driven(system, found)
     shares = strain_shares(found.energy, [*shop.scenes])
@@ -196,16 +159,8 @@ def mode_pairs(
 ) -> list[SeenPair]:
     """All modes of both trains, with their partners where they have one, by frequency.
 
-    Parameters
-    ----------
-    modes : sequence of sequence of SeenMode
-        Of both trains.
-    seen : sequence of (m, n) ndarray
-        Their motions of the same ports, as of :func:`seen_modes`.
-    highest : float
-        Hz, up to which modes that have no partner by shape find one by name.
-    by_shape : bool
-        False to pair all of them by name.
+    Motions of the same ports are as of :func:`seen_modes`. Modes that have no partner by shape find
+    one by name up to a frequency, Hz, and all of them where not `by_shape`.
     """
     first, other = modes
     hz = [np.array([mode.frequency_hz for mode in own]) for own in (first, other)]

@@ -181,30 +181,11 @@ def two_trains(
     highest_hz: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> TwoTrains:
-    """Two trains beside each other, by the same model of each shaft.
+    """Two trains beside each other, by one model for all shafts or one for each, `JUDGE` by
+    default.
 
-    Parameters
-    ----------
-    workshops : sequence of Workshop
-        Of both.
-    names : sequence of str
-        Of their files.
-    inputs : sequence of Difference
-        Of their files.
-    *models : str
-        One for each shaft, or one for all; `JUDGE` by default.
-    mesh : str, optional
-        Whose transmission error drives both; the first of the first by default.
-    highest_hz : float, optional
-        The lower of those that both ask for by default.
-    progress : callable, optional
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what a reduction resolves, unknown models, shafts of other names, or
-        a mesh that one of them does not have.
+    The transmission error of one mesh drives both, by default the first of the first, up to a
+    frequency, Hz, by default the lower of those that both ask for.
 
     Examples
     --------
