@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.report.folder import clear
 from solidgear.studies.train import models
 from tests.command import command, page_of, table
 
@@ -54,14 +53,6 @@ def test_the_table_of_the_folder_is_the_judges_response(compared):
     for peak in found["peaks"]:
         near = min(size, key=lambda hz: abs(hz - peak["frequency_hz"]))
         assert size[near] == pytest.approx(peak["force"], rel=1e-6)
-
-
-def test_an_earlier_run_of_a_shaft_leaves_nothing_beside_a_train(tmp_path):
-    (tmp_path / "results.json").write_text('{"files": ["mode_euler.png", "modes_euler.vtu"]}')
-    for name in ("mode_euler.png", "modes_euler.vtu", "mine.png"):
-        (tmp_path / name).write_text("")
-    clear(tmp_path)
-    assert {p.name for p in tmp_path.iterdir()} == {"results.json", "mine.png"}
 
 
 @pytest.mark.parametrize("name", ["stiffness", "modes", "answer", "render", "chart"])

@@ -255,16 +255,6 @@ def three():
     return Workshop(train), Workshop(train.with_changes(meshes=(first, stiffer)))
 
 
-def test_a_train_of_three_shafts_beside_itself_differs_nowhere(three):
-    shop = three[0].with_train(three[0].train.with_changes(operation=()))
-    found = two_trains((shop, shop), ("one", "same"), (), "euler", highest_hz=400.0)
-    assert [*found.models] == ["input", "middle", "output"]
-    for pair in found.modes:
-        assert pair.a.name == pair.b.name and pair.change.difference == 0.0
-    assert found.peaks and all(pair.decibels == 0.0 for pair in found.peaks)
-    assert all(found.decibels(c) in (0.0, None) for c in found.columns)
-
-
 def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
     mix = ("euler", "timoshenko", "euler")
     how = {"mesh": "middle-output", "highest_hz": 700.0}

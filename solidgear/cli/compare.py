@@ -31,7 +31,6 @@ from solidgear.report.terminal import closing_lines, final_table, verdict_text
 from solidgear.report.units import units_named
 from solidgear.scene.differences import differences
 from solidgear.scene.toml_file import is_train
-from solidgear.studies.beside import same_file
 from solidgear.studies.comparison import check_models
 from solidgear.studies.comparison import compare as compared
 from solidgear.studies.loading import load as read
@@ -213,7 +212,8 @@ def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
 
 
 def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
-    sentence = same_file(a, b)
+    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
+    sentence = f"{what}: nothing differs, and nothing was solved."
     if run.as_json:
         print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
     else:

@@ -247,9 +247,9 @@ def safeties(found: ShaftStress) -> Table:
     """Safeties of all fillets that are rated, the least first."""
     columns = [
         text("fillet", lambda notch: notch.name),
-        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue), kind="number"),
-        Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2), kind="number"),
-        Column("S, yielding", lambda notch: safety(notch.rating.yielding), kind="number"),
+        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue)),
+        Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2)),
+        Column("S, yielding", lambda notch: safety(notch.rating.yielding)),
     ]
     rows = [notch for notch in found.worst if notch.rating is not None]
     note = (
@@ -266,7 +266,7 @@ def rating(notch: Notch, units: Units = ENGINEERING) -> Table:
     columns = [
         word("", lambda entry: entry.symbol),
         text("what", lambda entry: _named(entry, units)),
-        *(Column(load, partial(_value, k, units), kind="number") for k, load in enumerate(LOADS)),
+        *(Column(load, partial(_value, k, units)) for k, load in enumerate(LOADS)),
         text("source", _source),
     ]
     note = (

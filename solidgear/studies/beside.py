@@ -103,12 +103,6 @@ def decibels(one: float, other: float) -> float | None:
     return float(20 * np.log10(other / one)) if one > 0 and other > 0 else None
 
 
-def same_file(a: str, b: str) -> str:
-    """Sentence on one file that is given twice."""
-    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
-    return f"{what}: nothing differs, and nothing was solved."
-
-
 def inputs(found: Sequence[Difference]) -> str:
     """Sentence on the entries in which two inputs differ."""
     numbers = [d for d in found if not d.in_words]

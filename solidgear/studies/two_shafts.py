@@ -159,14 +159,6 @@ def two_shafts(
     """Two shafts beside each other, each by the cheapest solid whose bars are within a tenth of the
     smaller tolerance of both; by default called as the scenes are, with the fields that differ for
     inputs.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> rods = [sg.Segment.cylinder("rod", length=0.6, diameter=d) for d in (0.02, 0.022)]
-    >>> found = two_shafts([sg.Scene.from_parts([rod]) for rod in rods])
-    >>> found["bending 1"].verdict, round(found["bending 1"].relative, 2)
-    ('resolved', 0.1)
     """
     start = perf_counter()
     first, other = scenes

@@ -173,14 +173,6 @@ def load_measured(path: str | os.PathLike) -> Measured:
     """Measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
     ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
     tells the file, the entry, its value and what would be right.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "peaks.csv"
-    >>> _ = path.write_text("frequency [kHz],multiplicity\\n1.25,2\\n3.1,1\\n")
-    >>> [(one.frequency, one.multiplicity) for one in load_measured(path).modes]
-    [(1250.0, 2), (3100.0, 1)]
     """
     where = os.fspath(path)
     if where.lower().endswith(ENDINGS):

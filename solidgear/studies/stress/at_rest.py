@@ -158,15 +158,6 @@ def stress_of_scene(
     Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
     the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
     stiffness yet.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/pinion_filleted.toml").with_changes(load={"z": 1e4})
-    >>> (shaft,) = stress_of_scene(scene, "timoshenko", {"2": 300.0}).shafts
-    >>> (notch,) = shaft.found.notches
-    >>> [f"{abs(moment):.1f}" for moment in notch.forces[3:]]
-    ['431.2', '300.0', '0.0']
     """
     load, port, drive = load_of(scene), scene.port.name, drive or {}
     if port in drive:
@@ -213,14 +204,6 @@ def stress_of_train(
 ) -> StressAtRest:
     """Stress of all shafts of a train at an operating point; shafts and bearings settle on a model,
     no lumped one, which has no places of its own.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> train = sg.load_train("geometry/gearbox_train.toml")
-    >>> found = stress_of_train(train, train.operation[0], "timoshenko")
-    >>> [(one.name, round(float(abs(one.found.forces.at(0.1)[4])), 2)) for one in found.shafts]
-    [('pinion', 115.0), ('gear', 327.75)]
     """
     progress(model)
     shop = Workshop(_plain(train))

@@ -154,19 +154,6 @@ def fillet_factors(
     ------
     SolidgearError
         Where cells around the fillet fold.
-
-    Examples
-    --------
-    >>> from solidgear import Port, Scene, Segment
-    >>> from solidgear.scene import Fillet
-    >>> thin, thick = (
-    ...     Segment.cylinder("ab"[k], y0=0.1 * k, length=0.1, diameter=0.04 + 0.02 * k) for k in (0, 1)
-    ... )
-    >>> gear, fillet = Port(y=0.18, lo=0.16, hi=0.2), Fillet(name="f", y=0.1, radius="4 mm")
-    >>> scene = Scene.from_parts([thin, thick], port=gear, blends=[fillet])
-    >>> found = fillet_factors(scene, "f", tolerance=0.05).factors
-    >>> [round(found[load].value, 1) for load in ("tension", "bending", "torsion")]
-    [2.1, 1.8, 1.4]
     """
     piece = piece_around(scene, name, reach)
     section, radius = _reference(piece)
