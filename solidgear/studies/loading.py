@@ -138,14 +138,15 @@ def part_of(table: BodyTable, folder: Path) -> Recognised:
 
 @contextmanager
 def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Errors of bearings told with the file, the key and the value they come from; tables are those
-    of the file where some of them have been changed.
+    """Errors told with the file, the key and the value they come from; tables are those of the file
+    where some of them have been changed, or it is none of tables.
     """
     try:
         yield
     except SceneError as error:
         where = os.fspath(path)
-        raise error.located(tables or parse(where), where=place_of(where)) from None
+        known = parse(where) if tables is None else tables
+        raise error.located(known, where=place_of(where)) from None
     except SolidgearError as error:
         raise SceneError(str(error), where=place_of(os.fspath(path))) from None
 

@@ -27,10 +27,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.errors import SceneError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
+from solidgear.studies.loading import explained
 from solidgear.studies.measured.alignment import BANDWIDTH
 from solidgear.studies.measured.responses import ResponseFit
 from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, read_universal
@@ -178,7 +179,11 @@ def load_measured(path: str | os.PathLike) -> Measured:
     if where.lower().endswith(ENDINGS):
         return _of_universal(where)
     tables: Mapping[str, Any] | Responses
-    tables = _of_csv(Path(path)) if where.lower().endswith(".csv") else parse(where)
+    if where.lower().endswith(".csv"):
+        with explained(where, {}):
+            tables = _of_csv(Path(path))
+    else:
+        tables = parse(where)
     if isinstance(tables, Responses):
         return of_responses(tables, where)
     try:
@@ -235,10 +240,8 @@ def of_responses(responses: Responses, where: str = "responses") -> Measured:
     SceneError
         Where no resonance stands out of the noise.
     """
-    try:
+    with explained(where, {}):
         found = ResponseFit.of(responses)
-    except SolidgearError as error:
-        raise SceneError(str(error), where=where) from None
     told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
     out = _checked(where, {"mode": [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]})
     out._on_points, out._responses = found.shapes, found
@@ -246,10 +249,8 @@ def of_responses(responses: Responses, where: str = "responses") -> Measured:
 
 
 def _checked(where: str, tables: dict[str, Any]) -> Measured:
-    try:
+    with explained(where, tables):
         return Measured(title=Path(where).stem, **tables)
-    except SceneError as error:
-        raise error.located(tables, where=where) from None
 
 
 def _of_csv(path: Path) -> dict[str, Any] | Responses:
@@ -257,21 +258,20 @@ def _of_csv(path: Path) -> dict[str, Any] | Responses:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"cannot be read ({error})", where=os.fspath(path)) from None
+        raise SceneError(f"cannot be read ({error})") from None
     if len(rows) < 2:
         raise SceneError(
-            'holds no resonances; write a head such as "frequency [Hz]" and one a line',
-            where=os.fspath(path),
+            'holds no resonances; write a head such as "frequency [Hz]" and one a line'
         )
     if any(head.split("[")[0].strip() == "real" for head in rows[0]):
-        return _columns(path, rows)
-    heads = [_head(path, head) for head in rows[0]]
+        return _columns(rows)
+    heads = [_head(head) for head in rows[0]]
     if "frequency" not in [word for word, _ in heads]:
-        raise SceneError('has no column "frequency [Hz]"', where=os.fspath(path))
+        raise SceneError('has no column "frequency [Hz]"')
     return {"mode": [_entry(heads, row) for row in rows[1:]]}
 
 
-def _columns(path: Path, rows: Sequence[Sequence[str]]) -> Responses:
+def _columns(rows: Sequence[Sequence[str]]) -> Responses:
     """Responses of columns: the frequency, then real and imaginary parts in turn."""
     words = [head.split("[")[0].strip() for head in rows[0]]
     unit = _HEAD.fullmatch(rows[0][0])
@@ -279,32 +279,27 @@ def _columns(path: Path, rows: Sequence[Sequence[str]]) -> Responses:
     if not told or unit is None or not unit["unit"]:
         raise SceneError(
             'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
-            "pairs of real and imaginary as there are responses",
-            where=os.fspath(path),
+            "pairs of real and imaginary as there are responses"
         )
     try:
         numbers = np.array(rows[1:], float)
     except ValueError:
-        raise SceneError("holds a line that is not all numbers", where=os.fspath(path)) from None
+        raise SceneError("holds a line that is not all numbers") from None
     hertz = numbers[:, 0] * quantity(f"1 {unit['unit']}", "frequency")
     return Responses(hertz, (numbers[:, 1::2] + 1j * numbers[:, 2::2]).T)
 
 
-def _head(path: Path, text: str) -> tuple[str, str]:
+def _head(text: str) -> tuple[str, str]:
     """Word and unit of a head."""
     found = _HEAD.fullmatch(text)
     known = tuple(MeasuredMode.model_fields)
     if found is None or found["word"] not in known:
         raise SceneError(
             f"column {show(text)} is unknown; there are {', '.join(known)}, with a unit as in "
-            '"frequency [kHz]"',
-            where=os.fspath(path),
+            '"frequency [kHz]"'
         )
     if found["word"] in ("frequency", "uncertainty") and not found["unit"]:
-        raise SceneError(
-            f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"',
-            where=os.fspath(path),
-        )
+        raise SceneError(f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"')
     return found["word"], found["unit"] or ""
 
 
