@@ -14,12 +14,12 @@ from universal_files import nodes, response, units, written
 
 import solidgear as sg
 from solidgear.scene.file import load
-from solidgear.studies.measured.beside import turned_beside
 from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
 from solidgear.studies.measured.overlay import overlay
 from solidgear.studies.measured.shapes import SurfacePoints
 from solidgear.studies.measured.stiffer import left_out
+from solidgear.studies.measured.turned import turned_beside
 
 pytest.importorskip("pyuff")
 

@@ -137,6 +137,9 @@ def test_some_resonances_have_shapes_and_others_none(tmp_path):
     path.write_text(path.read_text().replace("shape = 2", "shape = 3"))
     with pytest.raises(SceneError, match=r"rod.unv holds 2 shapes"):
         load_measured(path)
+    (tmp_path / "rod.unv").write_text("no datasets")
+    with pytest.raises(SceneError, match=r"rod.unv: is no universal file"):
+        load_measured(path)
     path.write_text(path.read_text().replace('shapes = "rod.unv"', ""))
     with pytest.raises(SceneError, match="shapes of what file"):
         load_measured(path)

@@ -54,12 +54,8 @@ KINDS = {
 def largest(
     found: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
 ) -> list[Table]:
-    """Largest amplitudes of columns of the responses, a table for every unit.
-
-    Parameters
-    ----------
-    columns : sequence of (str, str)
-        Name with its unit, and what it is called.
+    """Largest amplitudes of columns of the responses, each by its name with the unit and what it is
+    called; a table for every unit.
     """
     out = []
     for si, title in KINDS.items():

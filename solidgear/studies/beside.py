@@ -117,12 +117,8 @@ def inputs(found: Sequence[Difference]) -> str:
 
 
 def resolved(changes: Sequence[Change], what: str) -> Iterator[str]:
-    """Sentence on how many of some changes are more than their bars; none where some have no bar.
-
-    Parameters
-    ----------
-    what : str
-        Such as ``pairs of modes``.
+    """Sentence on how many of some changes, such as ``pairs of modes``, are more than their bars;
+    none where some have no bar.
     """
     verdicts = [change.verdict for change in changes]
     count, sure = len(verdicts), verdicts.count("resolved")

@@ -212,13 +212,7 @@ def deflect_scene(
 
 
 def load_of(scene: Scene) -> np.ndarray:
-    """Load (6,) at the lumped point of a scene, N and N m.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene without load.
-    """
+    """Load (6,) at the lumped point of a scene, N and N m; a scene without load is refused."""
     if scene.load is None:
         raise SolidgearError(
             'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
@@ -237,12 +231,8 @@ class ShaftAtRest:
         self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
 
     def settled(self, choice: Choice = AS_TOLD) -> ShaftDeflection:
-        """Deflection with the bearings at a place in the ranges of their data.
-
-        Raises
-        ------
-        SolidgearError
-            If nothing holds the shaft.
+        """Deflection with the bearings at a place in the ranges of their data; a shaft that nothing
+        holds is refused.
         """
         made = {f"{SHAFT}.{name}": one for name, one in made_of(self.scene, choice).items()}
         held = OnBearings(self.system, (seats_of(SHAFT, self.scene, made),))

@@ -177,7 +177,11 @@ def load_measured(path: str | os.PathLike) -> Measured:
     """
     where = os.fspath(path)
     if where.lower().endswith(ENDINGS):
-        return _of_universal(where)
+        read = read_universal(where)
+        if isinstance(read, Responses):
+            return of_responses(read, where)
+        frequencies, shapes = read
+        return _of_modes([{"frequency": one} for one in frequencies], where, shapes)
     tables: Mapping[str, Any] | Responses
     if where.lower().endswith(".csv"):
         with explained(where, {}):
@@ -191,7 +195,8 @@ def load_measured(path: str | os.PathLike) -> Measured:
         if out.shapes or any(one.shape for one in out.mode):
             out._on_points = _joined(out, Path(where).parent)
     except SceneError as error:
-        raise error.located(tables, where=where) from None
+        # what is wrong in the file of shapes is told with that
+        raise error if error.where else error.located(tables, where=where) from None
     return out
 
 
@@ -222,35 +227,23 @@ def _joined(measured: Measured, folder: Path) -> Shapes:
     return Shapes(found.numbers, found.points, values)
 
 
-def _of_universal(where: str) -> Measured:
-    read = read_universal(where)
-    if isinstance(read, Responses):
-        return of_responses(read, where)
-    frequencies, shapes = read
-    out = _checked(where, {"mode": [{"frequency": one} for one in frequencies]})
-    out._on_points = shapes
-    return out
-
-
 def of_responses(responses: Responses, where: str = "responses") -> Measured:
-    """Resonances that are found in responses; `where` is their file.
-
-    Raises
-    ------
-    SceneError
-        Where no resonance stands out of the noise.
-    """
+    """Resonances that are found in responses of a file; refused where none stands out of the noise."""
     with explained(where, {}):
         found = ResponseFit.of(responses)
     told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
-    out = _checked(where, {"mode": [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]})
-    out._on_points, out._responses = found.shapes, found
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]
+    return _of_modes(modes, where, found.shapes, found)
+
+
+def _of_modes(
+    modes: list[dict[str, Any]], where: str, shapes: Shapes | None, fit: ResponseFit | None = None
+) -> Measured:
+    """Resonances of a file that is no table of them."""
+    with explained(where, {"mode": modes}):
+        out = Measured(title=Path(where).stem, mode=modes)
+    out._on_points, out._responses = shapes, fit
     return out
-
-
-def _checked(where: str, tables: dict[str, Any]) -> Measured:
-    with explained(where, tables):
-        return Measured(title=Path(where).stem, **tables)
 
 
 def _of_csv(path: Path) -> dict[str, Any] | Responses:

@@ -130,30 +130,11 @@ def fillet_factors(
     refinement: float = 1.0,
     reach: float = REACH,
 ) -> FilletFactors:
-    """Stress concentration factors of a fillet at the root of a step.
+    """Stress concentration factors of a fillet of a name at the root of a step.
 
-    Parameters
-    ----------
-    name : str
-        Of the fillet.
-    tolerance : float
-        Relative bar of the factors of tension, bending and torsion at which to stop.
-    orders : sequence of int
-        That are tried, ascending; one at least.
-    refinement : float
-        Multiplies the number of cells, for studies of convergence.
-    reach : float
-        How far the piece goes on beyond the fillet, in outer radii of the shaft on that side.
-
-    Returns
-    -------
-    FilletFactors
-        With larger bars than asked for where no order met the tolerance.
-
-    Raises
-    ------
-    SolidgearError
-        Where cells around the fillet fold.
+    Orders are tried until the relative bars of tension, bending and torsion are within a tolerance,
+    and bars stay larger where none is; `refinement` multiplies the number of cells, and `reach` is
+    as of :func:`piece_around`. Cells that fold around the fillet are refused.
     """
     piece = piece_around(scene, name, reach)
     section, radius = _reference(piece)

@@ -121,19 +121,6 @@ def moved(six: np.ndarray, y: float, to: float) -> np.ndarray:
 def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
     """Section forces of a free shaft of a length, m, under loads; those that do not balance are
     refused, with the component and what is left of it.
-
-    Examples
-    --------
-    A beam of 0.4 m on two supports with 1 kN in the middle: the moment there is F l / 4 = 100 N m,
-    with the side of tension below.
-
-    >>> down, up = np.array([0, 0, -1000.0, 0, 0, 0]), np.array([0, 0, 500.0, 0, 0, 0])
-    >>> beam = [Load("A", 0.0, up), Load("gear", 0.2, down), Load("B", 0.4, up)]
-    >>> found = section_forces(beam, 0.4)
-    >>> [float(round(v, 9)) + 0.0 for v in found.at(0.1)]
-    [0.0, 0.0, -500.0, 50.0, 0.0, 0.0]
-    >>> round(found.largest_moment, 9)
-    100.0
     """
     loads = sorted(loads, key=lambda load: load.y)
     least = _balanced(loads, length)

@@ -25,13 +25,7 @@ LOUDEST = 3
 
 
 def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
-    """Conclusions: what the change does, what of it is resolved, and by which models.
-
-    Parameters
-    ----------
-    units : Units, optional
-        Of forces.
-    """
+    """Conclusions: what the change does, what of it is resolved, and by which models."""
     return [
         beside.inputs(found.inputs),
         _models(found),
