@@ -17,7 +17,6 @@ from solidgear.scene import file
 from solidgear.scene.toml_file import parse, place_of
 
 if TYPE_CHECKING:
-    from solidgear.bearings.solved import Solved
     from solidgear.body import Body
     from solidgear.scene import Scene
     from solidgear.scene.body_file import BodyTable
@@ -116,17 +115,6 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
 
     with explained(path):
         return at_point(train if point is None else train.with_changes(operation=(point,)))
-
-
-def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
-    """A scene file, or the scene as read from it, with all that was found out about its catalogue
-    bearings; errors as of :func:`load`.
-    """
-    from solidgear.bearings.solved import solved  # start-up: not every file needs it
-
-    scene = file.load(path, part_of) if scene is None else scene
-    with explained(path):
-        return solved(scene, shaft(scene))
 
 
 def part_of(table: BodyTable, folder: Path) -> Recognised:
