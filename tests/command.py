@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 from typer.testing import CliRunner
 
@@ -38,3 +39,18 @@ def strict(text):
         raise AssertionError(f"{word} is not JSON")
 
     return json.loads(text, parse_constant=refuse)
+
+
+def page_of(folder, told, sentences):
+    """The page of a folder and its text: it needs no other file and says all sentences, and what is
+    stored beside it is what was told.
+    """
+    stored = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert set(stored.pop("files")) | {"results.json"} == {p.name for p in folder.iterdir()}
+    assert stored == told
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    text = " ".join(re.sub(r"<[^>]+>", " ", page).split())
+    for sentence in sentences:
+        assert " ".join(sentence.split()) in text
+    assert not re.findall(r'(?:src|href|xlink:href)="(?!#|data:)([^"]*)"', page)
+    return page, text

@@ -8,11 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from command import command
 
 import solidgear as sg
 from solidgear.body import as_supports
-from solidgear.cli.app import app
 from solidgear.judge.bounded import mode_bars
 from solidgear.scene.paths import changed, keys_of
 from solidgear.scene.toml_file import parse
@@ -20,9 +19,8 @@ from solidgear.scene.uncertain import stated
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, Seen, align
-from solidgear.studies.measured.common import Common
 from solidgear.studies.measured.computed import Computed, computed_up_to
-from solidgear.studies.measured.correlate import SURE, correlate
+from solidgear.studies.measured.correlate import SURE, Common, correlate
 from solidgear.studies.measured.data import Measured, load_measured
 from solidgear.studies.measured.fit import Fit
 from solidgear.studies.measured.identify import identify
@@ -124,7 +122,7 @@ def test_modes_scatter_as_far_as_the_scene_says_of_its_bearings():
 
     def widths(said):
         told = stated(scene, {f"bearing.{b.name}.stiffness": said for b in scene.bearings if said})
-        return Computed(told, body, modes, (0.0,) * len(modes), 0.0, "", {}, 0.0).widths(0.2)
+        return Computed(told, body, modes, (0.0,) * len(modes), "", {}, 0.0).widths(0.2)
 
     usual = widths("")
     assert usual.max() > 1e-3
@@ -495,16 +493,13 @@ def test_what_cannot_be_varied_ends_in_a_sentence(rod, vary, said):
 def test_commands_tell_and_write_what_they_found(rod, tmp_path):
     peaks = tmp_path / "peaks.csv"
     peaks.write_text("frequency [Hz]\n254.4\n699.1\n1363.7\n")
-    run = CliRunner().invoke
     out = tmp_path / "out"
-    told = run(app, ["correlate", str(rod), str(peaks), "-o", str(out)])
+    told = command("correlate", rod, peaks, "-o", out)
     assert told.exit_code == 0 and "3 of 3 measured resonances have a mode" in told.output
     data = json.loads((out / "correlation.json").read_text())
     assert [pair["mode"] for pair in data["pairs"]] == ["bending 1", "bending 2", "bending 3"]
     assert (out / "off.png").stat().st_size > 1000 and (out / "correlation.html").exists()
-    told = run(
-        app, ["identify", str(rod), str(peaks), "--vary", "material.E", "--predict", "2", "--json"]
-    )
+    told = command("identify", rod, peaks, "--vary", "material.E", "--predict", "2", "--json")
     data = json.loads(told.output)
     assert data["entries"][0]["value"] == pytest.approx(209.9e9, rel=0.002)
     # (254.4 Hz over bending 1 of 200 GPa) squared is 1.0495; bending 4 of a rod this slender, and torsion 1 or axial 1 are above

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
-from typer.testing import CliRunner
+from command import command
+from universal_files import nodes, response, units, written
 
 import solidgear as sg
-from solidgear.cli.app import app
 from solidgear.scene.file import load
-from solidgear.studies.measured.beside import turned_beside
 from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
 from solidgear.studies.measured.overlay import overlay
 from solidgear.studies.measured.shapes import SurfacePoints
 from solidgear.studies.measured.stiffer import left_out
+from solidgear.studies.measured.turned import turned_beside
 
-pyuff = pytest.importorskip("pyuff")
+pytest.importorskip("pyuff")
 
 #: a free slender rod of steel, m, kg, m/s
 LENGTH, RADIUS, E, DENSITY = 0.6, 0.004, 200e9, 7850.0
@@ -65,21 +65,9 @@ def responses(noise=1e-3):
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     folder = tmp_path_factory.mktemp("rod")
-    n = len(ALONG)
-    flat = {"def_cs": [0] * n, "disp_cs": [0] * n, "color": [1] * n}
-    places = {"x": RADIUS * np.ones(n), "y": ALONG, "z": np.zeros(n)}
-    si = {"units_code": 1, "units_description": "SI", "temp_mode": 1, "temp": 1.0}
-    si |= {"length": 1.0, "force": 1.0, "temp_offset": 0.0}
-    sets = [
-        {"type": 164, **si},
-        {"type": 2411, "node_nums": list(range(1, n + 1)), **places, **flat},
-    ]
-    kinds = {"ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13}
-    ends = {"rsp_dir": 1, "ref_node": 1, "ref_dir": 1, "abscissa_spec_data_type": 18}
-    for k, row in enumerate(responses(), start=1):
-        one = {"type": 58, "binary": 1, "func_type": 4, "rsp_node": k, "x": HERTZ, "data": row}
-        sets.append({**one, **ends, **kinds})
-    pyuff.UFF(str(folder / "rod.unv")).write_sets(sets, "overwrite")
+    places = np.column_stack([np.full_like(ALONG, RADIUS), ALONG, np.zeros_like(ALONG)])
+    sets = [response(k, HERTZ, row) for k, row in enumerate(responses(), start=1)]
+    written(folder / "rod.unv", units(1, 1.0, 1.0), nodes(places), *sets)
     (folder / "rod.toml").write_text(ROD)
     return folder
 
@@ -123,9 +111,7 @@ def test_measured_points_move_as_the_surface_beside_them(found):
 
 def test_the_page_shows_what_was_found(files, tmp_path):
     out = tmp_path / "out"
-    told = CliRunner().invoke(
-        app, ["correlate", str(files / "rod.toml"), str(files / "rod.unv"), "-o", str(out)]
-    )
+    told = command("correlate", files / "rod.toml", files / "rod.unv", "-o", out)
     assert told.exit_code == 0, told.output
     assert "Resonances of the responses" in told.output
     page = (out / "correlation.html").read_text()

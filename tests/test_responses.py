@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from universal_files import nodes, response, units, written
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.studies.measured.data import load_measured, of_responses
@@ -84,42 +85,22 @@ def test_residues_are_those_of_the_modes_whatever_the_noise_of_each_response():
 
 
 # ------------------------------------------------------------------------------------------- files
-def written(path, code=5, kind=12, values=None, places=True, directions=(1,)):
+def measured(path, code=5, kind=12, values=None, places=True, directions=(1,)):
     """A universal file of responses, SI values told in the units of a code."""
-    pyuff = pytest.importorskip("pyuff")
     length, force = UNITS.get(code, (1e-3, 1e-2))
     values = accelerances(1) if values is None else values
-    factors = {"length": 1 / length, "force": 1 / force, "temp": 1.0, "temp_offset": 0.0}
-    sets = [{"type": 164, "units_code": code, "units_description": "", "temp_mode": 1, **factors}]
-    n = len(values)
-    flat = {"def_cs": [0] * n, "disp_cs": [0] * n, "color": [1] * n}
-    x, y, z = np.arange(3 * n).reshape(3, n) / length
-    if places:
-        numbers = list(range(1, n + 1))
-        sets.append({"type": 2411, "node_nums": numbers, "x": x, "y": y, "z": z, **flat})
+    points = np.arange(3 * len(values)).reshape(3, -1).T / length
+    sets = [units(code, 1 / length, 1 / force)] + [nodes(points)] * places
     for k, row in enumerate(values, start=1):
-        told = {"rsp_node": k, "rsp_dir": directions[k % len(directions)], "ref_node": 1}
-        kinds = {"ordinate_spec_data_type": kind, "orddenom_spec_data_type": 13}
-        sets.append(
-            {
-                "type": 58,
-                "binary": 1,
-                "func_type": 4,
-                "ref_dir": 1,
-                "x": HERTZ[: len(row)],
-                **told,
-                **kinds,
-            }
-            | {"data": row * force / length, "abscissa_spec_data_type": 18}
-        )
-    pyuff.UFF(str(path)).write_sets(sets, "overwrite")
-    return path
+        way = directions[k % len(directions)]
+        sets.append(response(k, HERTZ[: len(row)], row * force / length, way, kind))
+    return written(path, *sets)
 
 
 @pytest.mark.parametrize("code", range(1, 10))
 def test_responses_in_every_unit_are_the_same(tmp_path, code):
     values = accelerances(1, hertz=HERTZ[:40])[:2]
-    found = read_universal(written(tmp_path / "a.unv", code, values=values))
+    found = read_universal(measured(tmp_path / "a.unv", code, values=values))
     # factors of units are written with ten digits
     assert found.values == pytest.approx(values, rel=1e-6)
     assert found.places[2] == pytest.approx((1.0, 3.0, 5.0), rel=1e-6)
@@ -128,7 +109,7 @@ def test_responses_in_every_unit_are_the_same(tmp_path, code):
 
 def test_a_file_of_responses_is_read_as_its_resonances_with_shapes(tmp_path):
     values = accelerances(1, points=4, noise=1e-4)
-    found = load_measured(written(tmp_path / "a.uff", values=values, directions=(-3, 1)))
+    found = load_measured(measured(tmp_path / "a.uff", values=values, directions=(-3, 1)))
     assert [one.frequency for one in found.modes] == pytest.approx([f for f, _ in MODES], abs=0.05)
     assert all(0 < one.width_hz < 0.05 for one in found.modes)
     # point 1 moved along x, point 2 was measured backwards along z
@@ -136,7 +117,7 @@ def test_a_file_of_responses_is_read_as_its_resonances_with_shapes(tmp_path):
     assert shapes.values[:, 0, 0] == pytest.approx(fit.residues[:, 0])
     assert shapes.values[:, 1, 2] == pytest.approx(-fit.residues[:, 1])
     assert not shapes.values[:, 0, 1:].any()
-    bare = load_measured(written(tmp_path / "b.uff", values=values, places=False))
+    bare = load_measured(measured(tmp_path / "b.uff", values=values, places=False))
     assert bare.on_points is None and bare.mode == found.mode
 
 
@@ -153,9 +134,9 @@ def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
 
 def test_receptances_have_the_modes_of_accelerances(tmp_path):
     values = accelerances(1, points=4, noise=1e-4)
-    one = load_measured(written(tmp_path / "a.uff", values=values))
+    one = load_measured(measured(tmp_path / "a.uff", values=values))
     receptance = values / (2j * np.pi * HERTZ) ** 2
-    other = load_measured(written(tmp_path / "b.uff", kind=8, values=receptance))
+    other = load_measured(measured(tmp_path / "b.uff", kind=8, values=receptance))
     # rounding of two factors that cancel
     assert other.responses.fit.poles == pytest.approx(one.responses.fit.poles, rel=1e-9)
 

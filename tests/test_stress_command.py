@@ -26,26 +26,20 @@ QUICK = ("-f", "timoshenko", "--tol", "0.05")
 
 SHAFT = """
 title = "Output shaft"
+segment = [
+  { kind = "cylinder", name = "left", length = "90 mm", diameter = "40 mm" },
+  { kind = "cylinder", name = "wheel", length = "150 mm", diameter = "60 mm" },
+]
+feature = [{ kind = "fillet", name = "root", at = "left.end", radius = "4 mm" }]
+port = { name = "gear", position = "180 mm", span = ["170 mm", "190 mm"] }
+load = { x = "6 kN", y = "1.5 kN" }
+
 [material]
 E = "207 GPa"
 nu = 0.3
 density = "7850 kg/m^3"
 strength = { yield_point = "700 MPa", ultimate = "1000 MPa" }
-[[segment]]
-kind = "cylinder"
-name = "left"
-length = "90 mm"
-diameter = "40 mm"
-[[segment]]
-kind = "cylinder"
-name = "wheel"
-length = "150 mm"
-diameter = "60 mm"
-[[feature]]
-kind = "fillet"
-name = "root"
-at = "left.end"
-radius = "4 mm"
+
 [[bearing]]
 name = "A"
 position = "20 mm"
@@ -56,20 +50,12 @@ designation = "7208 B"
 arrangement = "back_to_back"
 preload = "500 N"
 load_rating = "34.5 kN"
+
 [[bearing]]
 name = "B"
 position = "220 mm"
 seat_width = "20 mm"
-[bearing.catalogue]
-designation = "NU 212"
-load_rating = "110 kN"
-[port]
-name = "gear"
-position = "180 mm"
-span = ["170 mm", "190 mm"]
-[load]
-x = "6 kN"
-y = "1.5 kN"
+catalogue = { designation = "NU 212", load_rating = "110 kN" }
 """
 
 

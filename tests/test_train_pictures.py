@@ -1,5 +1,7 @@
 """Both shafts of a train in one picture: placed where the teeth meet, moved as the modes say."""
 
+import json
+
 import numpy as np
 import pytest
 from test_train_models import COARSE, OVERHUNG
@@ -136,9 +138,10 @@ def test_wrong_modes_are_told(more, words, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_pictures_of_an_earlier_run_are_cleared(tmp_path):
-    (tmp_path / "results.json").write_text('{"files": ["system_mode_04.png", "orders.csv"]}')
-    for name in ("system_mode_04.png", "orders.csv", "mine.png"):
+def test_files_of_an_earlier_run_of_a_train_or_a_shaft_are_cleared(tmp_path):
+    listed = ["system_mode_04.png", "orders.csv", "mode_euler.png", "modes_euler.vtu"]
+    (tmp_path / "results.json").write_text(json.dumps({"files": listed}))
+    for name in (*listed, "mine.png"):
         (tmp_path / name).write_text("")
     clear(tmp_path)
     assert {p.name for p in tmp_path.iterdir()} == {"results.json", "mine.png"}

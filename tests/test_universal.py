@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from universal_files import mode, nodes, response, units, written
 
 import solidgear as sg
 from solidgear.errors import SceneError, SolidgearError
@@ -13,7 +14,7 @@ from solidgear.studies.measured.data import load_measured
 from solidgear.studies.measured.shapes import OnPoints
 from solidgear.studies.measured.universal import Shapes, read_universal
 
-pyuff = pytest.importorskip("pyuff")
+pytest.importorskip("pyuff")
 
 #: places of points on the rod of 0.6 m by 20 mm, x, y, z, mm
 PLACES = np.array(
@@ -21,44 +22,14 @@ PLACES = np.array(
 )
 
 
-def units(code=5):
-    factors = {"length": 1e3, "force": 1e3, "temp": 1.0, "temp_offset": 273.15}
-    return {"type": 164, "units_code": code, "units_description": "mm", "temp_mode": 1, **factors}
-
-
-def nodes(places=PLACES):
-    n = len(places)
-    x, y, z = places.T
-    flat = {"def_cs": [0] * n, "disp_cs": [0] * n, "color": [1] * n}
-    return {"type": 2411, "node_nums": list(range(1, n + 1)), "x": x, "y": y, "z": z, **flat}
-
-
-def mode(k, hertz, shape):
-    r1, r2, r3 = shape.T
-    kind = {"analysis_type": 2, "data_ch": 2, "spec_data_type": 8, "load_case": 1}
-    return {
-        "type": 55, "mode_n": k, "freq": hertz, "node_nums": list(range(1, len(shape) + 1)),
-        "r1": r1, "r2": r2, "r3": r3, **kind,
-    }  # fmt: skip
-
-
-def response(node, hertz, values):
-    return {
-        "type": 58, "binary": 1, "func_type": 4, "rsp_node": node, "rsp_dir": 1, "ref_node": 1,
-        "ref_dir": 1, "x": hertz, "data": values, "abscissa_spec_data_type": 18,
-        "ordinate_spec_data_type": 12, "orddenom_spec_data_type": 13,
-    }  # fmt: skip
-
-
-def written(path, *sets):
-    pyuff.UFF(str(path)).write_sets(list(sets), "overwrite")
-    return path
-
-
 def test_shapes_come_back_as_written_in_si_by_ascending_frequency(tmp_path):
     shapes = np.random.default_rng(1).standard_normal((2, len(PLACES), 3))
     path = written(
-        tmp_path / "a.unv", units(), nodes(), mode(1, 700.0, shapes[0]), mode(2, 250.0, shapes[1])
+        tmp_path / "a.unv",
+        units(),
+        nodes(PLACES),
+        mode(1, 700.0, shapes[0]),
+        mode(2, 250.0, shapes[1]),
     )
     found = load_measured(path)
     assert [one.frequency for one in found.modes] == [250.0, 700.0]
@@ -80,15 +51,15 @@ def test_responses_come_back_in_si_over_one_axis(tmp_path):
 def test_bad_files_end_in_one_sentence(tmp_path):
     shape = np.ones((len(PLACES), 3))
     cases = {
-        "does not tell its units": (nodes(), mode(1, 250.0, shape)),
+        "does not tell its units": (nodes(PLACES), mode(1, 250.0, shape)),
         "gives no places": (units(), mode(1, 250.0, shape)),
         "gives no place of point 18": (units(), nodes(PLACES[:-1]), mode(1, 250.0, shape)),
-        "holds no mode shapes": (units(), nodes()),
+        "holds no mode shapes": (units(), nodes(PLACES)),
     }
     for told, sets in cases.items():
         with pytest.raises(SceneError, match=told):
             load_measured(written(tmp_path / "bad.unv", *sets))
-    whole = written(tmp_path / "cut.unv", units(), nodes(), mode(1, 250.0, shape))
+    whole = written(tmp_path / "cut.unv", units(), nodes(PLACES), mode(1, 250.0, shape))
     whole.write_bytes(whole.read_bytes()[:-200])
     with pytest.raises(SceneError, match="is cut short"):
         load_measured(whole)
@@ -165,6 +136,9 @@ def test_some_resonances_have_shapes_and_others_none(tmp_path):
     assert [str(pair.computed.name) for pair in found.pairs[3:]] == last
     path.write_text(path.read_text().replace("shape = 2", "shape = 3"))
     with pytest.raises(SceneError, match=r"rod.unv holds 2 shapes"):
+        load_measured(path)
+    (tmp_path / "rod.unv").write_text("no datasets")
+    with pytest.raises(SceneError, match=r"rod.unv: is no universal file"):
         load_measured(path)
     path.write_text(path.read_text().replace('shapes = "rod.unv"', ""))
     with pytest.raises(SceneError, match="shapes of what file"):

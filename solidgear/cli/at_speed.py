@@ -63,16 +63,11 @@ class Speed(Group):
 
     def asked(self, train: Train) -> Asked:
         """The same of a train, checked."""
-        return Asked(train, self.speed, self.of, self.measured, self.fit_speed, self.within)
+        return Asked(train, self)
 
 
 class Asked:
     """Options of one speed, checked before anything is solved.
-
-    Parameters
-    ----------
-    speed, of, measured, fit, within
-        As given.
 
     Raises
     ------
@@ -80,38 +75,31 @@ class Asked:
         For a speed that is none, a spectrum that cannot be used, or options that need others.
     """
 
-    def __init__(
-        self,
-        train: Train,
-        speed: str | None,
-        of: str | None,
-        measured: Path | None,
-        fit: float | None,
-        within: float | None,
-    ):
-        self.train, self.fit, self.within = train, fit, NEAR if within is None else within
+    def __init__(self, train: Train, given: Speed):
+        self.train, self.fit = train, given.fit_speed
+        self.within = NEAR if given.within is None else given.within
         self.turns, self.told = 0.0, ""
-        if speed is not None:
-            of = of or train.reference
-            self.turns, self.told = _turns(train, speed, of), f"{speed} of the {of}"
+        if given.speed is not None:
+            of = given.of or train.reference
+            self.turns, self.told = _turns(train, given.speed, of), f"{given.speed} of the {of}"
             if of != train.reference:
                 self.told += f", {60 * self.turns:.6g} rpm of the {train.reference}"
         elif train.point is not None and train.point.speed:
             own = train.point.speed_of(train.reference, train.turns) or 0.0
             self.turns, self.told = own / (2 * pi), train.point.label
         else:
-            for option, given in (
-                ("--measured", measured),
-                ("--within", within),
-                ("--of", of),
+            for option, value in (
+                ("--measured", given.measured),
+                ("--within", given.within),
+                ("--of", given.of),
             ):
-                if given is not None:
+                if value is not None:
                     raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
-        refuse_share("--within", within)
-        refuse_share("--fit-speed", fit)
-        if fit is not None and measured is None:
+        refuse_share("--within", given.within)
+        refuse_share("--fit-speed", given.fit_speed)
+        if given.fit_speed is not None and given.measured is None:
             raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
-        self.spectrum = read_spectrum(measured) if measured is not None else None
+        self.spectrum = None if given.measured is None else read_spectrum(given.measured)
 
     def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
         """Orders at the speed; nothing without one."""

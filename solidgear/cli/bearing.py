@@ -88,17 +88,8 @@ def bearing(
 
 
 def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """A scene under a load of the command line, on its port or on one of its bearings.
-
-    Parameters
-    ----------
-    load : str
-        Such as ``x=2 kN, z=-500 N``.
-
-    Raises
-    ------
-    SolidgearError
-        Of components that are none.
+    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
+    of its bearings; components that are none are refused.
     """
     try:
         return with_load(scene, _components(load), bearing)
@@ -126,7 +117,7 @@ def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
     curves = over_load(scene, body)
     panels = [
         BearingPanel(
-            f"bearing {fact.name}, {fact.designation or fact.kind.replace('_', ' ')}",
+            f"bearing {fact.name}, {fact.called}",
             curves[fact.name].factors,
             curves[fact.name].middle[:, :3],
             curves[fact.name].low[:, :3],
@@ -139,11 +130,11 @@ def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
 
 
 def _print(fact: BearingFacts) -> None:
-    what = fact.designation or fact.kind.replace("_", " ")
-    ignored = boundary(fact.designation).ignored if fact.designation else ""
+    what = fact.called
+    ignored = boundary(fact.data.designation).ignored if fact.data.designation else ""
     unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
-    support = f", {fact.support}" if fact.support else ""
-    say(f"Bearing {fact.name!r}: {what}{unused}{support}, {fact.status}")
+    support = f", {fact.bearing.support}" if fact.bearing.support else ""
+    say(f"Bearing {fact.name!r}: {what}{unused}{support}, {fact.bearing.status}")
     i = fact.inside
     size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
     if "element_length" in i:
@@ -151,10 +142,10 @@ def _print(fact: BearingFacts) -> None:
     inside = f"{size} mm a row on {1e3 * i['pitch_diameter']:.5g} mm"
     if i["contact_angle"]:
         inside += f", contact angle {np.degrees(i['contact_angle']):.4g} deg"
-    room = f"; radial clearance at work {1e6 * fact.clearance:.3g} um"
-    say(inside + room * (fact.kind != "thrust_ball"))
-    if fact.estimated:
-        words = ", ".join(fact.estimated).replace("_", " ")
+    room = f"; radial clearance at work {1e6 * fact.made.clearance:.3g} um"
+    say(inside + room * (fact.data.kind != "thrust_ball"))
+    if fact.made.estimated:
+        words = ", ".join(fact.made.estimated).replace("_", " ")
         say(f"Estimated from boundary dimensions and ratings: {words}.")
     # contacts that balance each other leave the rounding of their sum
     at_work = max(np.abs(fact.load).max(), sum(row.load.sum() for row in fact.rows))
@@ -205,13 +196,13 @@ def _plain(fact: BearingFacts) -> dict[str, Any]:
 
     return {
         "name": fact.name,
-        "kind": fact.kind,
-        "designation": fact.designation,
-        "status": fact.status,
-        "support": fact.support or None,
+        "kind": fact.data.kind,
+        "designation": fact.data.designation,
+        "status": fact.bearing.status,
+        "support": fact.bearing.support or None,
         "inside": fact.inside,
-        "estimated": fact.estimated,
-        "clearance": fact.clearance,
+        "estimated": fact.made.estimated,
+        "clearance": fact.made.clearance,
         "load": fact.load.tolist(),
         "displacement": fact.motion.tolist(),
         "stiffness": fact.stiffness.tolist(),

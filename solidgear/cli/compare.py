@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -25,23 +25,18 @@ from solidgear.cli.train_options import Pair, Reduced, refuse_given
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed
 from solidgear.ladder.registry import LADDER
-from solidgear.report import beside_tables, two_trains_tables
+from solidgear.report import two_shafts_page, two_trains_page
 from solidgear.report.folder import held
 from solidgear.report.terminal import closing_lines, final_table, verdict_text
-from solidgear.report.two_shafts_page import numbers, write_two_shafts
-from solidgear.report.two_trains_page import write_two_trains
-from solidgear.report.units import in_ascii, units_named
+from solidgear.report.units import units_named
 from solidgear.scene.differences import differences
 from solidgear.scene.toml_file import is_train
-from solidgear.studies import two_shafts_told
-from solidgear.studies.beside import same_file
 from solidgear.studies.comparison import check_models
 from solidgear.studies.comparison import compare as compared
 from solidgear.studies.loading import load as read
-from solidgear.studies.train import two_trains_told
 from solidgear.studies.train.shaft import checked_rung
-from solidgear.studies.train.two_trains import two_trains
-from solidgear.studies.two_shafts import two_shafts
+from solidgear.studies.train.two_trains import TwoTrains, two_trains
+from solidgear.studies.two_shafts import TwoShafts, two_shafts
 
 
 @command
@@ -170,23 +165,9 @@ def compare_two(
     given: dict[str, bool],
     of_trains: dict[str, bool],
 ) -> None:
-    """Two trains beside each other, or two shafts.
-
-    Parameters
-    ----------
-    files : list of Path
-        Two; more are refused.
-    mix : Pair
-        Models of the shafts of both trains.
-    mesh : str or None
-        Whose transmission error drives both; the first by default.
-    given, of_trains : dict of str to bool
-        Options of compare that speak of one shaft and of trains, and whether they were given.
-
-    Raises
-    ------
-    SolidgearError
-        For more than two files, files of different kinds, or an option that does not apply.
+    """Two trains beside each other, or two shafts: just two files of one kind. `given` and
+    `of_trains` are the options that speak of one shaft and of trains, and tell of each whether it
+    was given.
     """
     if len(files) > 2:
         raise SolidgearError(f"compare takes one file, or two of a kind; {len(files)} are given")
@@ -203,40 +184,23 @@ def compare_two(
         _refuse_of_two_shafts(given | of_trains)
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
-    elif trains[0]:
-        _two_trains(a, b, mix, mesh).show(out, run)
-    else:
-        _two_shafts(a, b).show(out, run)
-
-
-@dataclass(frozen=True)
-class _Beside:
-    """Two files of a kind: how they are solved, and what of them is told, written and shown."""
-
-    solve: Callable[[Callable[[str], None]], Any]
-    told: Any
-    write: Callable
-    title: Callable[[Any], str]
-    lines: Callable[..., tuple]
-
-    def show(self, out: Path, run: Shown) -> None:
-        """Solve both, write the folder, and print it."""
-        shown = units_named(run.units)
-        with held(out), run.progress() as progress:
-            found = self.solve(progress)
-            told, words = self.told.results(found), self.told.sentences(found, shown)
-            progress("report")
-            self.write(found, told, words, out, shown)
-        if run.as_json:
-            print(json.dumps(told, allow_nan=False))
-            return
-        say(
-            *(f"{one.label}, {self.title(one)}" for one in found.both),
-            *self.lines(found, told, map(in_ascii, words), shown),
-            *map(caution, found.cautions),
-            f"Report: {out / 'report.html'}",
-            soft_wrap=False,
-        )
+        return
+    solve = _two_trains(a, b, mix, mesh) if trains[0] else _two_shafts(a, b)
+    with held(out), run.progress() as progress:
+        found = solve(progress=progress)
+        progress("report")
+        found.write_report(out, units=run.units)
+    if run.as_json:
+        print(json.dumps(found.results, allow_nan=False))
+        return
+    printed = two_trains_page.printed if trains[0] else two_shafts_page.printed
+    say(
+        *(f"{one.label}, {one.title}" for one in found.both),
+        *printed(found, units_named(run.units)),
+        *map(caution, found.cautions),
+        f"Report: {out / 'report.html'}",
+        soft_wrap=False,
+    )
 
 
 def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
@@ -248,49 +212,27 @@ def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
 
 
 def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
-    sentence = same_file(a, b)
+    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
+    sentence = f"{what}: nothing differs, and nothing was solved."
     if run.as_json:
         print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
     else:
         say(sentence)
 
 
-def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> _Beside:
+def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., TwoTrains]:
+    """Comparison of two train files, to be run."""
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
         checked_rung(model)
-    return _Beside(
-        lambda progress: two_trains(
-            shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh, progress=progress
-        ),
-        two_trains_told,
-        write_two_trains,
-        lambda one: one.workshop.train.called,
-        lambda found, told, words, shown: (
-            beside_tables.inputs(found, beside_tables.SHORT),
-            beside_tables.modes(found),
-            two_trains_tables.peaks(found, shown),
-            *words,
-            *told["unpublished_lines"],
-        ),
-    )
+    return partial(two_trains, shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh)
 
 
-def _two_shafts(a: str, b: str) -> _Beside:
+def _two_shafts(a: str, b: str) -> Callable[..., TwoShafts]:
+    """Comparison of two scene files, to be run."""
     scenes = [load(Path(path)) for path in (a, b)]
-    return _Beside(
-        lambda progress: two_shafts(scenes, _names(a, b), differences(a, b), progress),
-        two_shafts_told,
-        write_two_shafts,
-        lambda one: one.scene.title or one.scene.name,
-        lambda found, told, words, shown: (
-            *words,
-            beside_tables.inputs(found, beside_tables.SHORT),
-            numbers(found, shown),
-            beside_tables.modes(found),
-        ),
-    )
+    return partial(two_shafts, scenes, _names(a, b), differences(a, b))
 
 
 def _names(a: str, b: str) -> tuple[str, str]:

@@ -24,11 +24,11 @@ from solidgear.report.correlation_tables import (
 )
 from solidgear.report.folder import held
 from solidgear.report.viewer import viewer_fragment
-from solidgear.studies.measured.beside import turned_beside
 from solidgear.studies.measured.correlate import correlate as correlated
 from solidgear.studies.measured.data import load_measured
 from solidgear.studies.measured.identify import identify as identified
 from solidgear.studies.measured.overlay import overlay
+from solidgear.studies.measured.turned import turned_beside
 
 SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML).")]
 MeasuredFile = Annotated[

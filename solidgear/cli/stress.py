@@ -55,13 +55,7 @@ class Rated(Group):
     ] = False
 
     def conditions(self) -> Conditions:
-        """The same as read.
-
-        Raises
-        ------
-        SolidgearError
-            For a value that is none, with its option.
-        """
+        """The same as read; a value that is none is refused with its option."""
         given = {f.name: getattr(self, f.name) for f in fields(self)}
         try:
             return Conditions(**{name: v for name, v in given.items() if v is not None})

@@ -73,7 +73,7 @@ def _judged(
         if out:
             progress("report")
             draw = found.pictures if renders else None
-            viewer = viewer_fragment(found.turned(), first=found.loudest_name)
+            viewer = viewer_fragment(found.turned(), first=next(iter(found.loud), ""))
             shown = found.drawn, found.marks, found.orders
             write_train(results, *shown, out, draw, run.units, viewer)
     if run.as_json:

@@ -16,7 +16,7 @@ from solidgear.report.plot import WIDE, Chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import NUMBER, Column, Table, text
 from solidgear.report.train_sheet import Section
-from solidgear.report.words import DASH, hertz, percent
+from solidgear.report.words import hertz, percent
 
 #: looks of pairs by their verdict
 BOTH = {"measured": Series(INK), "computed": Series("#00805e")}
@@ -27,18 +27,16 @@ def pairs(found: Any) -> Table:
     """Every measured resonance and the mode it is."""
     columns = [
         Column("", lambda p: p.number, kind=NUMBER),
-        Column("measured\nHz", lambda p: p.measured.frequency, hertz, kind=NUMBER),
+        Column("measured\nHz", lambda p: p.measured.frequency, hertz),
         text("mode", lambda p: p.computed and p.computed.name),
-        Column(
-            "computed\nHz", lambda p: p.computed and p.computed.frequency_hz, hertz, kind=NUMBER
-        ),
-        Column("off", lambda p: p.relative, percent, kind=NUMBER),
-        Column("band", lambda p: p.band, _unsigned, kind=NUMBER),
-        Column("sure", lambda p: p.probability, "{:.0%}".format, kind=NUMBER),
+        Column("computed\nHz", lambda p: p.computed and p.computed.frequency_hz, hertz),
+        Column("off", lambda p: p.relative, percent),
+        Column("band", lambda p: p.band, _unsigned),
+        Column("sure", lambda p: p.probability, "{:.0%}".format),
         text("", lambda p: p.verdict),
     ]
     if found.mac is not None:
-        columns.insert(-1, Column("MAC", lambda p: p.mac, _mac, kind=NUMBER))
+        columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format))
     note = (
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
         "frequency and the bar of the computed one. Sure: probability of the pair."
@@ -52,11 +50,11 @@ def entries(found: Any) -> Table:
     """Entries that were identified."""
     columns = [
         text("entry", lambda e: e.path),
-        Column("in the file", lambda e: e.before, "{:.6g}".format, kind=NUMBER),
-        Column("identified, SI", lambda e: e.value, "{:.6g}".format, kind=NUMBER),
-        Column("deviation", lambda e: e.deviation, _unsigned, kind=NUMBER),
-        Column("95 %\nfrom", lambda e: e.low, "{:.6g}".format, kind=NUMBER),
-        Column("to", lambda e: e.high, "{:.6g}".format, kind=NUMBER),
+        Column("in the file", lambda e: e.before, "{:.6g}".format),
+        Column("identified, SI", lambda e: e.value, "{:.6g}".format),
+        Column("deviation", lambda e: e.deviation, _unsigned),
+        Column("95 %\nfrom", lambda e: e.low, "{:.6g}".format),
+        Column("to", lambda e: e.high, "{:.6g}".format),
     ]
     note = (
         "Deviation: one standard deviation, of the scatter of the data and the bars of the model."
@@ -68,15 +66,10 @@ def fitted(found: Any) -> Table:
     """Resonances that were fitted."""
     columns = [
         text("mode", lambda f: f.name),
-        Column("measured\nHz", lambda f: f.measured, hertz, kind=NUMBER),
-        Column("computed\nHz", lambda f: f.computed, hertz, kind=NUMBER),
-        Column("off", lambda f: f.computed / f.measured - 1, percent, kind=NUMBER),
-        Column(
-            "left out",
-            lambda f: f.left_out and f.left_out / f.measured - 1,
-            percent,
-            kind=NUMBER,
-        ),
+        Column("measured\nHz", lambda f: f.measured, hertz),
+        Column("computed\nHz", lambda f: f.computed, hertz),
+        Column("off", lambda f: f.computed / f.measured - 1, percent),
+        Column("left out", lambda f: f.left_out and f.left_out / f.measured - 1, percent),
     ]
     note = "Left out: the same where this resonance is predicted from all others."
     return Table("Fitted", columns, found.fitted, note, style="ruled")
@@ -86,16 +79,12 @@ def predicted(found: Any) -> Table:
     """Modes beyond the measured ones."""
     columns = [
         text("mode", lambda p: p.name),
-        Column("shapes", lambda p: p.multiplicity, kind=NUMBER),
-        Column("predicted\nHz", lambda p: p.frequency_hz, hertz, kind=NUMBER),
-        Column("deviation\nHz", lambda p: p.deviation_hz, "{:.2g}".format, kind=NUMBER),
+        Column("shapes", lambda p: p.multiplicity),
+        Column("predicted\nHz", lambda p: p.frequency_hz, hertz),
+        Column("deviation\nHz", lambda p: p.deviation_hz, "{:.2g}".format),
     ]
     note = "Deviation: one standard deviation, of the entries, the scatter of the fit and the mesh."
     return Table("Predicted, not measured", columns, found.predicted, note, style="ruled")
-
-
-def _mac(value: float | None) -> str:
-    return DASH if value is None else f"{value:.2f}"
 
 
 def _unsigned(value: float) -> str:
@@ -134,7 +123,8 @@ def mac_map(found: Any, width: float = WIDE) -> Chart:
     """MAC of every measured shape and every mode."""
     told = ~np.isnan(found.mac).any(axis=1)
     rows = [f"{hertz(p.measured.frequency)} Hz" for p, shown in zip(found.pairs, told) if shown]
-    table = MacTable(rows=rows, columns=list(found.names), values=found.mac[told].tolist())
+    columns = [mode.name for mode in found.computed.barred]
+    table = MacTable(rows=rows, columns=columns, values=found.mac[told].tolist())
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 
@@ -143,24 +133,21 @@ def peaks(found: Any, overlay: Any = None) -> Table:
     fit = found.measured.responses.fit
     columns = [
         Column("", lambda k: k + 1, kind=NUMBER),
-        Column("frequency\nHz", lambda k: fit.frequencies[k], hertz, kind=NUMBER),
-        Column("deviation\nHz", lambda k: fit.deviations[0][k], "{:.2g}".format, kind=NUMBER),
-        Column("damping", lambda k: fit.damping[k], _unsigned, kind=NUMBER),
-        Column("deviation", lambda k: 100 * fit.deviations[1][k], "{:.2g} %".format, kind=NUMBER),
+        Column("frequency\nHz", lambda k: fit.frequencies[k], hertz),
+        Column("deviation\nHz", lambda k: fit.deviations[0][k], "{:.2g}".format),
+        Column("damping", lambda k: fit.damping[k], _unsigned),
+        Column("deviation", lambda k: 100 * fit.deviations[1][k], "{:.2g} %".format),
     ]
     note = (
         "Deviation: one standard deviation, of the noise of these responses; another hanging, another "
         "sensor or a mass on the part are not in it. Damping: the ratio."
     )
     if overlay is not None:
-        constant = partial(_constant, overlay)
-        columns.append(Column("size", constant, "{:.2f}".format, kind=NUMBER))
+        constants = overlay.constants
+        size = Column("size", lambda k: constants.get(k + 1), "{:.2f}".format)
+        columns.append(size)
         note += " Size: computed modal constant over the measured one, of all responses."
     return Table("Resonances of the responses", columns, range(len(fit.poles)), note, style="ruled")
-
-
-def _constant(overlay: Any, k: int) -> float | None:
-    return overlay.constants.get(k + 1)
 
 
 def alone(found: Any) -> Table:
@@ -171,8 +158,8 @@ def alone(found: Any) -> Table:
     columns = [
         text("only", lambda row: row[0]),
         text("mode", lambda row: row[1]),
-        Column("Hz", lambda row: row[2], hertz, kind=NUMBER),
-        Column("sure", lambda row: row[3], "{:.0%}".format, kind=NUMBER),
+        Column("Hz", lambda row: row[2], hertz),
+        Column("sure", lambda row: row[3], "{:.0%}".format),
     ]
     note = "Sure: probability that it has no partner."
     return Table("Without a partner", columns, rows, note, style="ruled")
@@ -244,15 +231,8 @@ def _responses(
 def write_correlation(
     folder: Path, found: Any, overlay: Any = None, viewer: str = ""
 ) -> list[Path]:
-    """Page, data, tables and charts of a correlation.
-
-    Parameters
-    ----------
-    found : Correlation
-    overlay : Overlay, optional
-        Measured and computed responses.
-    viewer : str
-        HTML of shapes beside each other.
+    """Page, data, tables and charts of a correlation, with measured and computed responses where
+    there are any; `viewer` is HTML of shapes beside each other.
     """
     title = f"{found.scene}: measured and computed"
     lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."

@@ -21,19 +21,8 @@ if TYPE_CHECKING:
 def write_stress(
     folder: Path, found: StressAtRest, lead: str, units: Units = ENGINEERING
 ) -> list[Path]:
-    """Write the stress of shafts into a folder.
-
-    Parameters
-    ----------
-    lead : str
-        Under what they are loaded.
-    units : Units
-        Of charts and page; all else is SI.
-
-    Returns
-    -------
-    list of Path
-        ``stress.html`` first, then a CSV of section forces a shaft, the JSON, and the charts.
+    """Write the stress of shafts into a folder: ``stress.html``, then a CSV of section forces a
+    shaft, the JSON, and the charts; `lead` says under what they are loaded.
     """
     lines: dict[str, Table] = {}
     charts: dict[str, Make] = {}
@@ -62,17 +51,20 @@ def shaft_tables(
     """Tables of one shaft, those without a row left out; the rating of every fillet or that of the
     worst alone.
     """
-    own, of = shaft.found, shaft.name if len(found.shafts) > 1 else ""
+    own = shaft.found
     rated = [notch for notch in own.worst if notch.rating is not None]
     out = [
-        tables.section_forces(own.forces, units, of, shaft.open_moment, found.open_by),
-        tables.nominal_stress(own, units, of),
-        tables.fillets(own, units, of),
-        tables.surface_stress(own, shaft.open, units, of, found.open_by),
-        tables.form_factors(own, of),
-        tables.safeties(own, of),
-        *(tables.rating(notch, units, of) for notch in rated[: None if every else 1]),
+        tables.section_forces(own.forces, units, shaft.open_moment, found.open_by),
+        tables.nominal_stress(own, units),
+        tables.fillets(own, units),
+        tables.surface_stress(own, shaft.open, units, found.open_by),
+        tables.form_factors(own),
+        tables.safeties(own),
+        *(tables.rating(notch, units) for notch in rated[: None if every else 1]),
     ]
+    if len(found.shafts) > 1:
+        for table in out:
+            table.title = f"{table.title}, {shaft.name}"
     return [table for table in out if table]
 
 

@@ -48,20 +48,11 @@ LEAST = 1.2
 def section_forces(
     forces: SectionForces,
     units: Units = ENGINEERING,
-    of: str = "",
     open_: tuple[float, float] | None = None,
     open_by: str = "",
 ) -> Table:
-    """Sizes of the section forces on both sides of every place where something acts.
-
-    Parameters
-    ----------
-    of : str
-        Name of the shaft, where there are several.
-    open_ : (float, float), optional
-        Least and largest of the largest bending moment, N m.
-    open_by : str
-        What the data of bearings leave open, in words.
+    """Sizes of the section forces on both sides of every place where something acts; `open_` is the
+    range of the largest bending moment, N m, that `open_by` leaves open.
     """
     rows = [
         (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
@@ -84,7 +75,7 @@ def section_forces(
     if open_ is not None and open_[1] > (1 + LITTLE) * open_[0]:
         low, high = (units.number(value, "N m", 4) for value in open_)
         note += f" Largest M {low} to {high} {units.unit('N m')} by {open_by} of the bearings."
-    return Table(_titled("Section forces", of), columns, rows, note)
+    return Table("Section forces", columns, rows, note)
 
 
 def _of_weight(values: Iterable[float]) -> Callable[[float], float]:
@@ -118,7 +109,7 @@ def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str
     return out
 
 
-def nominal_stress(found: ShaftStress, units: Units = ENGINEERING, of: str = "") -> Table:
+def nominal_stress(found: ShaftStress, units: Units = ENGINEERING) -> Table:
     """Nominal stress on both sides of every load and joint."""
     rows = [row for row in found.nominal if row.forces.any()]
     kinds = {"sigma_N": "tension", "sigma_b": "bending", "tau_t": "torsion", "tau_q": "shear"}
@@ -138,7 +129,7 @@ def nominal_stress(found: ShaftStress, units: Units = ENGINEERING, of: str = "")
         "Plain sections: N/A, M a/I, T a/(2 I). The shaft turns under loads at rest: bending is an "
         "amplitude of every point of the surface, the rest a mean. tau_q is that at the neutral axis."
     )
-    return Table(_titled(f"Nominal stress, {units.unit(STRESS)}", of), columns, rows, note)
+    return Table(f"Nominal stress, {units.unit(STRESS)}", columns, rows, note)
 
 
 def _stress(head: str, units: Units, of: Callable[[Any], float], digits: int = 4) -> Column:
@@ -146,7 +137,7 @@ def _stress(head: str, units: Units, of: Callable[[Any], float], digits: int = 4
     return Column(head, of, partial(units.number, si=STRESS, digits=digits))
 
 
-def fillets(found: ShaftStress, units: Units = ENGINEERING, of: str = "") -> Table:
+def fillets(found: ShaftStress, units: Units = ENGINEERING) -> Table:
     """Places and sizes of the fillets, and what a user must know of each."""
     columns = [
         text("fillet", lambda notch: notch.name),
@@ -157,26 +148,17 @@ def fillets(found: ShaftStress, units: Units = ENGINEERING, of: str = "") -> Tab
         text("to be known", lambda notch: notch.remark or None),
     ]
     note = "y: where the fillet meets its cylinder, whose section forces and nominal stress it has."
-    return Table(_titled("Fillets", of), columns, found.notches, note)
+    return Table("Fillets", columns, found.notches, note)
 
 
 def surface_stress(
     found: ShaftStress,
     open_: Mapping[str, tuple[float, float]],
     units: Units = ENGINEERING,
-    of: str = "",
     open_by: str = "",
 ) -> Table:
-    """Stress on the fillets under the loads, with its bar and what bearings leave open.
-
-    Parameters
-    ----------
-    open_ : mapping of str to (float, float)
-        Least and largest amplitude by fillet, Pa.
-    of : str
-        Name of the shaft, where there are several.
-    open_by : str
-        What the data of bearings leave open, in words.
+    """Stress on the fillets under the loads, with its bar, and the range of amplitudes by fillet,
+    Pa, that `open_by` leaves open.
     """
     columns = [
         text("fillet", lambda row: row[0].name),
@@ -195,7 +177,7 @@ def surface_stress(
         columns.append(Column("left open", partial(_open, open_, units)))
         note += f" Left open: by {open_by} of the bearings."
     title = f"Stress on the fillets, {units.unit(STRESS)}"
-    return Table(_titled(title, of), columns, _by_load(found.notches), note)
+    return Table(title, columns, _by_load(found.notches), note)
 
 
 def _open(
@@ -207,7 +189,7 @@ def _open(
     return f"{low} to {high}"
 
 
-def form_factors(found: ShaftStress, of: str = "") -> Table:
+def form_factors(found: ShaftStress) -> Table:
     """Form factors and fatigue notch factors of the fillets beside published ones."""
 
     def published(source: str) -> Column:
@@ -245,7 +227,7 @@ def form_factors(found: ShaftStress, of: str = "") -> Table:
             "Kf = Kt/n, the support number n by DIN 743-2 and the stress gradient of the solid; "
             "norm: that of its own factor and gradient."
         )
-    return Table(_titled("Form factors", of), columns, _by_load(found.notches), note.strip())
+    return Table("Form factors", columns, _by_load(found.notches), note.strip())
 
 
 def _by_load(notches: Sequence[Notch]) -> list[tuple[Notch, str]]:
@@ -261,38 +243,30 @@ def _bar(notch: Notch, load: str) -> str:
     return percent(factor.bar / factor.value, signed=False)
 
 
-def safeties(found: ShaftStress, of: str = "") -> Table:
+def safeties(found: ShaftStress) -> Table:
     """Safeties of all fillets that are rated, the least first."""
     columns = [
         text("fillet", lambda notch: notch.name),
-        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue), kind="number"),
-        Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2), kind="number"),
-        Column("S, yielding", lambda notch: safety(notch.rating.yielding), kind="number"),
+        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue)),
+        Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2)),
+        Column("S, yielding", lambda notch: safety(notch.rating.yielding)),
     ]
     rows = [notch for notch in found.worst if notch.rating is not None]
     note = (
         f"The norm asks for {LEAST:g} where loads and strength are sure. Less by the bar: what S "
         "loses where Kt lies at the upper end of its bar."
     )
-    return Table(_titled("Safety by DIN 743", of), columns, rows, note)
+    return Table("Safety by DIN 743", columns, rows, note)
 
 
-def rating(notch: Notch, units: Units = ENGINEERING, of: str = "") -> Table:
-    """Rating of one fillet by DIN 743, every factor with its source.
-
-    Parameters
-    ----------
-    notch : Notch
-        With a rating.
-    of : str
-        Name of the shaft, where there are several.
-    """
+def rating(notch: Notch, units: Units = ENGINEERING) -> Table:
+    """Rating of one fillet that has one by DIN 743, every factor with its source."""
     assert notch.rating is not None
     found: Rating = notch.rating
     columns = [
         word("", lambda entry: entry.symbol),
         text("what", lambda entry: _named(entry, units)),
-        *(Column(load, partial(_value, k, units), kind="number") for k, load in enumerate(LOADS)),
+        *(Column(load, partial(_value, k, units)) for k, load in enumerate(LOADS)),
         text("source", _source),
     ]
     note = (
@@ -301,11 +275,7 @@ def rating(notch: Notch, units: Units = ENGINEERING, of: str = "") -> Table:
     )
     if found.assumed:
         note += f" Assumed, for nobody gave it: {', '.join(found.assumed)}."
-    return Table(_titled(f"DIN 743 at {notch.name}", of), columns, list(found.entries), note)
-
-
-def _titled(title: str, of: str) -> str:
-    return f"{title}, {of}" if of else title
+    return Table(f"DIN 743 at {notch.name}", columns, list(found.entries), note)
 
 
 def _named(entry: Entry, units: Units) -> str:

@@ -1,29 +1,25 @@
-"""Everything that two shafts beside each other leave in a folder: numbers and one self-contained
-page.
-"""
+"""Page of two shafts beside each other: their sections, numbers and modes."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from solidgear.report import beside_tables
-from solidgear.report.folder import begun
+from solidgear.report import beside
 from solidgear.report.panel import GREY, Axis, Panel, Series, readout
 from solidgear.report.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.report.run_tables import pairs_of
-from solidgear.report.sheet_files import write_json
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.train_chart import PAIR
-from solidgear.report.train_sheet import Section, write_sheet
-from solidgear.report.units import ENGINEERING, Units
-from solidgear.report.words import hertz, is_number, percent, seconds
+from solidgear.report.train_sheet import Section
+from solidgear.report.units import ENGINEERING, Units, in_ascii
+from solidgear.report.words import hertz, is_number, percent
 
 SECTIONS = "Each drawn as wide as the page, and not to one scale."
 
@@ -54,7 +50,7 @@ def _exact_and_alike(one: Any) -> bool:
 
 
 def _apart(one: Any) -> str | Cell | None:
-    return percent(0.0) if _exact_and_alike(one) else beside_tables.apart(one.change, one.scale)
+    return percent(0.0) if _exact_and_alike(one) else beside.apart(one.change, one.scale)
 
 
 def _verdict(one: Any) -> str | None:
@@ -72,66 +68,38 @@ def _bar(one: Any, width: float | None, scale: float) -> str | None:
     return percent(width / scale, signed=False)
 
 
-def write_two_shafts(
-    found: Any,
-    results: Mapping[str, Any],
-    sentences: Sequence[str],
-    out: str | os.PathLike,
-    units: Units = ENGINEERING,
-) -> Path:
-    """Write results.json and report.html.
-
-    Parameters
-    ----------
-    results : mapping
-        The same as plain data, as of ``two_shafts_told.results``.
-    sentences : sequence of str
-        Its conclusions.
-
-    Returns
-    -------
-    Path
-        Of the page.
-
-    Raises
-    ------
-    SolidgearError
-        If the folder cannot be written.
-    """
-    with begun(out) as folder:
-        # Numbers first: whatever happens to drawings, they are there.
-        write_json(folder / "results.json", {**results, "files": ["report.html"]})
-        return write_sheet(
-            folder / "report.html",
-            beside_tables.title(results["shafts"]),
-            f"solidgear report on two shafts: {beside_tables.who(found)}.",
-            verdict=sentences,
-            cautions=found.cautions,
-            sections=_sections(found, results, units),
-            notes=[f"Whole run: {seconds(found.seconds)} s."],
-        )
+def write_two_shafts(found: Any, out: str | os.PathLike, units: Units) -> Path:
+    """Write results.json and report.html; the path is that of the page."""
+    return beside.write_beside(found, partial(_sections, found, units), out, units)
 
 
-def _sections(found: Any, results: Mapping[str, Any], units: Units) -> list[Section]:
+def _sections(found: Any, units: Units) -> list[Section]:
+    shafts = zip(found.both, found.results["shafts"].items())
     drawings = {
         f"{one.label}, section through the axis.": sketch_svg(f"shaft_{key}", shaft["scene"])
-        for one, (key, shaft) in zip(found.both, results["shafts"].items())
+        for one, (key, shaft) in shafts
     }
     solved = [pairs_of(_facts(one), f"Solution of {one.label}") for one in found.both]
+    machine = pairs_of(found.results["environment"], "Environment of the run")
     shapes = partial(shapes_chart, found, units)
-    same = "" if found.inputs else beside_tables.SAME
+    same = "" if found.inputs else beside.SAME
     return [
-        Section("input", "Input", same, tables=[beside_tables.inputs(found)]),
+        Section("input", "Input", same, tables=[beside.inputs(found)]),
         Section("shafts", "Both shafts", SECTIONS, drawings=drawings),
-        Section("numbers", "Numbers", "", tables=[numbers(found, units)]),
-        Section("modes", "Modes", "", {"shapes": shapes}, [beside_tables.modes(found)]),
-        Section(
-            "run",
-            "Run",
-            "",
-            tables=[*solved, pairs_of(results["environment"], "Environment of the run")],
-        ),
+        Section("numbers", "Numbers", tables=[numbers(found, units)]),
+        Section("modes", "Modes", "", {"shapes": shapes}, [beside.modes(found)]),
+        Section("run", "Run", tables=[*solved, machine]),
     ]
+
+
+def printed(found: Any, units: Units) -> tuple[Any, ...]:
+    """Sentences and tables for a terminal."""
+    return (
+        *map(in_ascii, found.told(units)),
+        beside.inputs(found, beside.SHORT),
+        numbers(found, units),
+        beside.modes(found),
+    )
 
 
 def _facts(one: Any) -> dict[str, Any]:
@@ -173,7 +141,7 @@ def shapes_chart(found: Any, units: Units = ENGINEERING, width: float = WIDE) ->
             Axis(f"y in {units.unit('m')}", (0.0, float(last))),
             Axis("", (-1.1, 1.1)),
             130.0,
-            pair.a.name + (f" (B: {pair.b.name})" if pair.a.name != pair.b.name else ""),
+            beside.names(pair),
             series=looks,
             legend=legend if k == 0 else None,
         )

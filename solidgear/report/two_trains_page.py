@@ -1,6 +1,4 @@
-"""Everything that two trains beside each other leave in a folder: numbers, curves, charts, and one
-self-contained page.
-"""
+"""Page of two trains beside each other: their sections and charts."""
 
 from __future__ import annotations
 
@@ -12,19 +10,17 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.report import beside_tables, train_tables
+from solidgear.report import beside, train_tables
 from solidgear.report import two_trains_tables as tables
-from solidgear.report.folder import begun
 from solidgear.report.panel import INK, PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.report.plot import NARROW, WIDE, Chart, Make
 from solidgear.report.run_tables import pairs_of
-from solidgear.report.sheet_files import write_charts, write_json
 from solidgear.report.table import Table
 from solidgear.report.train_chart import columns_chart, response_chart
 from solidgear.report.train_files import over_frequency
-from solidgear.report.train_sheet import Section, write_sheet
-from solidgear.report.units import ENGINEERING, Units, units_named
-from solidgear.report.words import hertz, seconds
+from solidgear.report.train_sheet import Section
+from solidgear.report.units import Units, in_ascii
+from solidgear.report.words import hertz
 
 #: a reaction is drawn if it has this share of the largest of its unit in either train
 LARGE = 0.2
@@ -41,54 +37,33 @@ REACTIONS = (
 MOTIONS = "In the axes of each shaft's own file: y along the shaft, x and z across it."
 
 
-def write_two_trains(
-    found: Any,
-    results: Mapping[str, Any],
-    sentences: Sequence[str],
-    out: str | os.PathLike,
-    units: str | Units = ENGINEERING,
-) -> Path:
-    """Write results.json, the responses as tables, the charts and report.html.
-
-    Parameters
-    ----------
-    results : mapping
-        The same as plain data, as of ``two_trains_told.results``.
-    sentences : sequence of str
-        Its conclusions.
-    units : str or Units
-        Of tables and charts; all else is SI.
-
-    Returns
-    -------
-    Path
-        Of the page.
-
-    Raises
-    ------
-    SolidgearError
-        If the folder cannot be written.
+def write_two_trains(found: Any, out: str | os.PathLike, units: Units) -> Path:
+    """Write results.json, the responses as tables, the charts and report.html; the path is that of
+    the page.
     """
-    shown = units_named(units)
-    charts = charts_of(found, shown)
-    files = ["report.html", *(f"response_{key}.csv" for key in "ab")]
-    files += [f"{name}.{kind}" for name in FILED for kind in ("png", "svg")]
-    with begun(out) as folder:
-        # Numbers first: whatever happens to charts, they are there.
-        write_json(folder / "results.json", {**results, "files": files})
-        for key, one in zip("ab", found.both):
-            over_frequency(one.response, _teeth(found, one)).write(folder / f"response_{key}.csv")
-        for name in FILED:
-            write_charts(folder / name, charts[name])
-        return write_sheet(
-            folder / "report.html",
-            beside_tables.title(results["trains"]),
-            f"solidgear report on two trains: {beside_tables.who(found)}.",
-            verdict=sentences,
-            cautions=found.cautions,
-            sections=_sections(found, results, charts, shown),
-            notes=[f"Whole run: {seconds(found.seconds)} s."],
-        )
+    charts = charts_of(found, units)
+    return beside.write_beside(
+        found,
+        partial(_sections, found, charts, units),
+        out,
+        units,
+        lines={
+            f"response_{key}": over_frequency(one.response, _teeth(found, one))
+            for key, one in zip("ab", found.both)
+        },
+        charts={name: charts[name] for name in FILED},
+    )
+
+
+def printed(found: Any, units: Units) -> tuple[Any, ...]:
+    """Tables and sentences for a terminal."""
+    return (
+        beside.inputs(found, beside.SHORT),
+        beside.modes(found),
+        tables.peaks(found, units),
+        *map(in_ascii, found.told(units)),
+        *found.results["unpublished_lines"],
+    )
 
 
 def charts_of(found: Any, units: Units) -> dict[str, Make]:
@@ -181,12 +156,8 @@ def _bars(found: Any) -> list[tuple[str, Sequence[Bar]]]:
     return out
 
 
-def _sections(
-    found: Any,
-    results: Mapping[str, Any],
-    charts: Mapping[str, Make],
-    units: Units,
-) -> list[Section]:
+def _sections(found: Any, charts: Mapping[str, Make], units: Units) -> list[Section]:
+    results = found.results
     loaded = [one for one in found.both if found.misalignment()]
     points = []
     for one in loaded:
@@ -210,8 +181,8 @@ def _sections(
         section(
             "input",
             "Input",
-            "" if found.inputs else beside_tables.SAME,
-            beside_tables.inputs(found),
+            "" if found.inputs else beside.SAME,
+            beside.inputs(found),
         ),
         section(
             "response",
@@ -220,7 +191,7 @@ def _sections(
             tables.peaks(found, units),
             *tables.largest(found, others(found), units),
         ),
-        section("modes", "Modes", "", beside_tables.modes(found)),
+        section("modes", "Modes", "", beside.modes(found)),
         section(
             "reactions",
             "Bearing reactions",
@@ -279,14 +250,8 @@ class Bar(NamedTuple):
 
 
 def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE) -> Chart | None:
-    """Stacked bars of the shares of modes; None without any.
-
-    Parameters
-    ----------
-    modes : sequence of (str, sequence of Bar)
-        Name of a mode, and it in both things, or in one.
-    width : float
-        px.
+    """Stacked bars of the shares of modes, each with its name and what it is in both things, or in
+    one; None without any.
     """
     places = list(dict.fromkeys(p for _, bars in modes for bar in bars for p in bar.shares))
     if not modes:

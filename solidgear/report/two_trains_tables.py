@@ -7,7 +7,7 @@ from functools import partial
 from math import degrees
 from typing import Any
 
-from solidgear.report.beside_tables import band, its
+from solidgear.report.beside import band, its, names
 from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, percent
@@ -19,7 +19,7 @@ LEAST_SHARE = 0.0005
 def peaks(found: Any, units: Units = ENGINEERING) -> Table:
     """Peaks of the mesh force side by side."""
     columns = [
-        text("mode that makes it", _of_peaks),
+        text("mode that makes it", lambda p: names(p, "mode")),
         Column("A, Hz", lambda p: its(p.a, "frequency_hz"), hertz),
         Column("B, Hz", lambda p: its(p.b, "frequency_hz"), hertz),
         Column("difference", _shift),
@@ -29,11 +29,6 @@ def peaks(found: Any, units: Units = ENGINEERING) -> Table:
     ]
     note = "Peaks of one mode stand in one row. A dash: no peak there in the other train."
     return Table("Peaks of the mesh force", columns, found.peaks, note, style="ruled")
-
-
-def _of_peaks(pair: Any) -> str:
-    names = [one.mode for one in (pair.a, pair.b) if one is not None]
-    return names[0] if len(set(names)) == 1 else f"{names[0]} (B: {names[1]})"
 
 
 def _shift(pair: Any) -> str | None:
@@ -59,12 +54,8 @@ KINDS = {
 def largest(
     found: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
 ) -> list[Table]:
-    """Largest amplitudes of columns of the responses, a table for every unit.
-
-    Parameters
-    ----------
-    columns : sequence of (str, str)
-        Name with its unit, and what it is called.
+    """Largest amplitudes of columns of the responses, each by its name with the unit and what it is
+    called; a table for every unit.
     """
     out = []
     for si, title in KINDS.items():

@@ -40,17 +40,8 @@ class BearingLife:
     ends: tuple[Life, ...]
 
     def range(self, kind: str) -> tuple[float, float]:
-        """Least and largest life, revolutions.
-
-        Parameters
-        ----------
-        kind : {'basic', 'reference', 'modified'}
-            Of the modified one, also over the cleanliness that a word means.
-
-        Returns
-        -------
-        float, float
-            Equal where everything is known.
+        """Least and largest life, revolutions, ``basic``, ``reference`` or ``modified`` (that also
+        over the cleanliness that a word means); equal where everything is known.
         """
         found = [end for one in (self.life, *self.ends) for end in _lives(one, kind)]
         return min(found), max(found)
@@ -65,19 +56,9 @@ def _lives(one: Life, kind: str) -> tuple[float, ...]:
 def bearing_lives(
     scene: Scene, body: Body | None = None, speed: float | None = None
 ) -> list[BearingLife]:
-    """Life of every catalogue bearing of a scene at its load.
-
-    Parameters
-    ----------
-    body : Body, optional
-        The shaft, where the bearings wait for its load.
-    speed : float, optional
-        Of the shaft, rad/s, in place of that of its bearings or of its lubrication.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`solidgear.bearings.solved.solved`.
+    """Life of every catalogue bearing of a scene at its load; `body` is the shaft, where they wait
+    for its load, and `speed` its own, rad/s, in place of that of the bearings or of the
+    lubrication.
 
     Examples
     --------
@@ -101,18 +82,8 @@ def _place(found: Solved, bearing: Bearing) -> Place:
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
-    """Choices that data leave open of the bearings of scenes that share their loads.
-
-    Parameters
-    ----------
-    scenes : iterable of Scene
-
-    Returns
-    -------
-    str
-        In words; empty where all is known.
-    list of Choice
-        Its corners.
+    """Words on what data leave open of the bearings of scenes that share their loads, empty where
+    all is known, and the corners of that.
 
     Examples
     --------
@@ -139,19 +110,9 @@ def life_of(
     speed: float | None,
     places: Sequence[Place],
 ) -> BearingLife:
-    """Life of a bearing from how it lies.
-
-    Parameters
-    ----------
-    bearing : Bearing
-        With catalogue data.
-    told : str
-        What the places differ in.
-    speed : float or None
-        Of the shaft, rad/s, in place of that of the bearing or of its lubrication.
-    places : sequence of (Catalogued, (6,) ndarray)
-        The bearing and the motion of its inner ring, as told and at the corners of what is not
-        known.
+    """Life of a bearing with catalogue data from how it lies: the bearing and the motion of its
+    inner ring, as told and at the corners of what is not known. A speed of the shaft, rad/s, is in
+    place of that of the bearing or of its lubrication.
     """
     data = bearing.catalogue
     assert data is not None

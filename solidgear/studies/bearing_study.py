@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import Choice, Solved, solved
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
-from solidgear.scene import BearingLoad, Scene
+from solidgear.scene import Bearing, BearingLoad, Scene
+from solidgear.scene.catalogue import Catalogue
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
@@ -25,58 +27,91 @@ class BearingFacts:
 
     Attributes
     ----------
-    inside : dict
-        Inner geometry it was solved with, SI.
-    support : str
-        Its word for y; empty for none.
-    estimated : tuple of str
-        What of it was not given.
-    clearance : float
-        Radial, at work, m.
-    load, motion : (6,) ndarray
-        What the shaft puts on it, and the motion of its inner ring.
-    stiffness : (6, 6) ndarray
+    bearing : Bearing
+        With its stiffness there.
+    made : Catalogued
+        Its rows, by its data.
+    motion : (6,) ndarray
+        Of its inner ring.
     spread : (ndarray, ndarray) or None
         Diagonal of the stiffness: least and largest of an estimated inside and its two ends.
-    notes : tuple of str
-        What is to be said of it, one sentence each.
     """
 
-    name: str
-    kind: str
-    designation: str
-    status: str
-    support: str
-    inside: dict[str, float]
-    estimated: tuple[str, ...]
-    clearance: float
-    load: np.ndarray
+    bearing: Bearing
+    made: Catalogued
     motion: np.ndarray
-    stiffness: np.ndarray
     spread: tuple[np.ndarray, np.ndarray] | None
-    rows: tuple[Contacts, ...]
-    notes: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """Of the bearing."""
+        return self.bearing.name
+
+    @property
+    def data(self) -> Catalogue:
+        """Of the catalogue."""
+        assert self.bearing.catalogue is not None
+        return self.bearing.catalogue
+
+    @property
+    def called(self) -> str:
+        """Designation, or else its kind in words."""
+        return self.data.designation or self.data.kind.replace("_", " ")
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """Tangent (6, 6) there."""
+        return np.array(self.bearing.matrix)
+
+    @property
+    def load(self) -> np.ndarray:
+        """Load (6,) that the shaft puts on it, N and N m."""
+        return self.made.bearing.load(self.motion)
+
+    @property
+    def rows(self) -> tuple[Contacts, ...]:
+        """Contacts of its rolling elements, row by row."""
+        return self.made.bearing.contacts(self.motion)
+
+    @property
+    def inside(self) -> dict[str, float]:
+        """Inner geometry it was solved with, SI."""
+        own = self.made.inside
+        out = {
+            "elements": own.elements,
+            "element_diameter": own.diameter,
+            "pitch_diameter": own.pitch,
+            "contact_angle": own.angle,
+        }
+        if self.data.grooved:
+            out |= dict(zip(("conformity_inner", "conformity_outer"), own.conformity))
+        if not self.data.balls:
+            out["element_length"] = own.length
+        return out
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on rows that carry nothing."""
+        bare = [k for k, row in enumerate(self.rows) if not row.load.any()]
+        if len(bare) == len(self.rows):
+            return ("it carries nothing: it has lost its load, and has no stiffness",)
+        why = "under this thrust" if self.data.own_rows > 1 else LOST
+        return tuple(
+            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {why}"
+            for k in bare
+        )
 
 
 def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
-    """Every catalogue bearing of a scene at its load.
-
-    Parameters
-    ----------
-    body : Body, optional
-        The shaft, where the bearings wait for its load.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`solidgear.bearings.solved.solved`, or a scene without such bearings.
+    """Every catalogue bearing of a scene at its load; `body` is the shaft, where they wait for its
+    load.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
     >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
-    >>> [(fact.name, fact.kind, len(fact.rows)) for fact in facts]
+    >>> [(fact.name, fact.data.kind, len(fact.rows)) for fact in facts]
     [('A', 'cylindrical', 1), ('B', 'angular_contact', 2)]
     """
     known = [b for b in scene.bearings if b.catalogue is not None]
@@ -93,57 +128,17 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
 
 
 def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
-    bearing = _named(found, name)
-    made, motion = found.made[name], found.motion[name]
-    data = bearing.catalogue
-    assert data is not None
-    rows = made.bearing.contacts(motion)
-    spread = None
+    bearing, made, spread = _named(found, name), found.made[name], None
     if made.estimated:
         # an even number of elements under the load is another bearing than an odd one: the middle
         # need not lie between
         all_three = [np.diag(np.array(_named(s, name).matrix)) for s in (found, *ends.values())]
         spread = (np.min(all_three, axis=0), np.max(all_three, axis=0))
-    inside = {
-        "elements": made.inside.elements,
-        "element_diameter": made.inside.diameter,
-        "pitch_diameter": made.inside.pitch,
-        "contact_angle": made.inside.angle,
-    }
-    if data.grooved:
-        inside |= dict(zip(("conformity_inner", "conformity_outer"), made.inside.conformity))
-    if not data.balls:
-        inside["element_length"] = made.inside.length
-    return BearingFacts(
-        name,
-        data.kind,
-        data.designation,
-        bearing.status,
-        bearing.support or "",
-        inside,
-        made.estimated,
-        made.clearance,
-        made.bearing.load(motion),
-        motion,
-        np.array(bearing.matrix),
-        spread,
-        rows,
-        tuple(_notes(rows, "under this thrust" if data.own_rows > 1 else LOST)),
-    )
+    return BearingFacts(bearing, made, found.motion[name], spread)
 
 
-def _named(found: Solved, name: str):
+def _named(found: Solved, name: str) -> Bearing:
     return next(b for b in found.scene.bearings if b.name == name)
-
-
-def _notes(rows: Sequence[Contacts], why: str):
-    if not any(row.load.any() for row in rows):
-        yield "it carries nothing: it has lost its load, and has no stiffness"
-        return
-    for k, row in enumerate(rows):
-        if not row.load.any():
-            place = "lower" if k == 0 else "upper"
-            yield f"the row at the {place} end of y carries nothing {why}"
 
 
 @dataclass(frozen=True)
@@ -170,14 +165,8 @@ class OverLoad:
 def over_load(
     scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
 ) -> dict[str, OverLoad]:
-    """Stiffness of every catalogue bearing over the load.
-
-    Parameters
-    ----------
-    body : Body, optional
-        The shaft, where the bearings wait for its load.
-    factors : sequence of float
-        Times the load that the scene says.
+    """Stiffness of every catalogue bearing at so many times the load that the scene says; `body` is
+    the shaft, where they wait for its load.
     """
     names = [b.name for b in scene.bearings if b.catalogue is not None]
     loads: dict[str, list] = {name: [] for name in names}
@@ -203,20 +192,7 @@ def over_load(
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """A scene with another load, on its port or on one of its bearings.
-
-    Parameters
-    ----------
-    load : dict
-        As for :class:`solidgear.scene.BearingLoad`.
-    bearing : str or None
-        Name of the bearing that bears it; None puts it on the port.
-
-    Raises
-    ------
-    SolidgearError
-        A bearing that is not there, or has no catalogue data; components that are none.
-    """
+    """A scene with another load of such components, on its port or on the bearing of a name."""
     new = BearingLoad(**load)
     if bearing is None:
         free = tuple(
@@ -226,17 +202,12 @@ def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -
             for b in scene.bearings
         )
         return scene.with_changes(load=new, bearings=free)
-    known = [b.name for b in scene.bearings if b.catalogue is not None]
+    known = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
     if bearing not in known:
         raise SolidgearError(
             f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
             f"{', '.join(known) or 'none'}"
         )
-    changed = tuple(replace_load(b, new) if b.name == bearing else b for b in scene.bearings)
-    return scene.with_changes(bearings=changed)
-
-
-def replace_load(bearing, load):
-    """A bearing whose stiffness is taken at a load of its own."""
-    data = bearing.catalogue.with_changes(load=load, displacement=None)
-    return bearing.with_changes(catalogue=data)
+    data = known[bearing].with_changes(load=new, displacement=None)
+    changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
+    return scene.with_changes(bearings=tuple(changed))

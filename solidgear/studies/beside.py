@@ -1,23 +1,106 @@
-"""Sentences and plain data that two trains and two shafts beside each other share."""
+"""Two trains or two shafts beside each other: numbers, sentences and plain data that both share."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict
-from typing import Any
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
 
 from solidgear.report.words import hertz, percent
 from solidgear.scene.differences import Difference
-from solidgear.studies.change import Change, ModePair
+from solidgear.studies.change import BarredMode, Change, ModePair
 
 #: entries of the input that are named in a sentence
 NAMED = 3
 
 
-def same_file(a: str, b: str) -> str:
-    """Sentence on one file that is given twice."""
-    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
-    return f"{what}: nothing differs, and nothing was solved."
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One of the two.
+
+    Attributes
+    ----------
+    letter, name : str
+        ``A`` or ``B``, and what it is called.
+    """
+
+    letter: str
+    name: str
+    cautions: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """Letter and name, as in legends."""
+        return f"{self.letter}: {self.name}"
+
+
+S = TypeVar("S", bound=Side)
+M = TypeVar("M", bound=BarredMode)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Beside(Generic[S, M]):
+    """Two of a kind beside each other.
+
+    Attributes
+    ----------
+    inputs : tuple of Difference
+        Of their files, or fields.
+    modes : tuple of ModePair
+        By frequency.
+    pairing : str
+        How modes belong together, in words.
+    """
+
+    a: S
+    b: S
+    inputs: tuple[Difference, ...]
+    modes: tuple[ModePair[M], ...]
+    pairing: str
+    seconds: float
+
+    @property
+    def both(self) -> tuple[S, S]:
+        """Both of them."""
+        return self.a, self.b
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of both, each with whose it is unless it is of both."""
+        alike = [text for text in self.a.cautions if text in self.b.cautions]
+        own = [f"{one.letter}: {t}" for one in self.both for t in one.cautions if t not in alike]
+        return [*alike, *own]
+
+
+def all_pairs(
+    alike: Sequence[ModePair[M]],
+    first: Sequence[M],
+    other: Sequence[M],
+    called: Callable[[M], str],
+    highest: float = math.inf,
+) -> list[ModePair[M]]:
+    """All modes of two lists, both by ascending frequency: in the pairs that are alike in shape, by
+    what they are `called` up to a frequency, Hz, or alone.
+    """
+    waiting: dict[str, list[M]] = {}
+    for mode in other:
+        if mode.frequency_hz <= highest and mode not in [p.b for p in alike]:
+            waiting.setdefault(called(mode), []).append(mode)
+    out = [*alike]
+    for mode in first:
+        if mode not in [p.a for p in alike]:
+            named = waiting.get(called(mode)) if mode.frequency_hz <= highest else None
+            out.append(ModePair(mode, named.pop(0) if named else None))
+    out += [ModePair(None, mode) for mode in other if mode not in [p.b for p in out]]
+    return sorted(out, key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both
+
+
+def decibels(one: float, other: float) -> float | None:
+    """Of an amplitude over another; None where either is zero."""
+    return float(20 * np.log10(other / one)) if one > 0 and other > 0 else None
 
 
 def inputs(found: Sequence[Difference]) -> str:
@@ -34,12 +117,8 @@ def inputs(found: Sequence[Difference]) -> str:
 
 
 def resolved(changes: Sequence[Change], what: str) -> Iterator[str]:
-    """Sentence on how many of some changes are more than their bars; none where some have no bar.
-
-    Parameters
-    ----------
-    what : str
-        Such as ``pairs of modes``.
+    """Sentence on how many of some changes, such as ``pairs of modes``, are more than their bars;
+    none where some have no bar.
     """
     verdicts = [change.verdict for change in changes]
     count, sure = len(verdicts), verdicts.count("resolved")

@@ -194,21 +194,8 @@ def deflect_scene(
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
 ) -> SceneDeflection:
-    """Deflection of a shaft under the [load] of its scene, by several models.
-
-    Parameters
-    ----------
-    scene : Scene
-        Bearings of catalogue data need no stiffness yet.
-    models : sequence of str
-        The finest last.
-    progress : callable, optional
-        Told each model.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene without load, or one that nothing holds against it.
+    """Deflection of a shaft under the [load] of its scene, by several models, the finest last;
+    bearings of catalogue data need no stiffness yet.
 
     Examples
     --------
@@ -225,13 +212,7 @@ def deflect_scene(
 
 
 def load_of(scene: Scene) -> np.ndarray:
-    """Load (6,) at the lumped point of a scene, N and N m.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene without load.
-    """
+    """Load (6,) at the lumped point of a scene, N and N m; a scene without load is refused."""
     if scene.load is None:
         raise SolidgearError(
             'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
@@ -250,12 +231,8 @@ class ShaftAtRest:
         self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
 
     def settled(self, choice: Choice = AS_TOLD) -> ShaftDeflection:
-        """Deflection with the bearings at a place in the ranges of their data.
-
-        Raises
-        ------
-        SolidgearError
-            If nothing holds the shaft.
+        """Deflection with the bearings at a place in the ranges of their data; a shaft that nothing
+        holds is refused.
         """
         made = {f"{SHAFT}.{name}": one for name, one in made_of(self.scene, choice).items()}
         held = OnBearings(self.system, (seats_of(SHAFT, self.scene, made),))
@@ -264,14 +241,8 @@ class ShaftAtRest:
 
 
 def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
-    """Bearings of a shaft as a system rests on them; free stations left out.
-
-    Parameters
-    ----------
-    part : str
-        Name of the shaft in the system.
-    made : mapping of str to Catalogued
-        Bearings of catalogue data, by ``part.name``.
+    """Bearings of a shaft as a system rests on them, free stations left out; those of catalogue
+    data by ``part.name``.
     """
     own = {b.name: made[f"{part}.{b.name}"] for b in scene.bearings if b.catalogue is not None}
     firm = scene.with_changes(bearings=tuple(map(_firm, scene.bearings)))
@@ -306,20 +277,8 @@ def shaft_deflection(
 ) -> ShaftDeflection:
     """Deflection of one part of a system at rest.
 
-    Parameters
-    ----------
-    part : str
-        Its name in the system.
-    scene : Scene
-        Of that shaft.
-    system : System
-        Without its bearings.
-    body : Body or None
-        That the part was reduced from; None of a rigid one, whose line has its two ends.
-    made : mapping of str to Catalogued
-        Bearings of catalogue data, by ``part.name``.
-    against : (6,) ndarray, optional
-        Motion of what it stands in, at the start of the shaft, that its line is told against.
+    Its `body` is None of a rigid one, whose line has its two ends; `against` (6,) is the motion of
+    what it stands in, at the start of the shaft, that its line is told against.
     """
     ports = {
         station.name: system.motion(f"{part}.{station.name}") @ found.coordinates

@@ -17,7 +17,6 @@ from solidgear.scene import file
 from solidgear.scene.toml_file import parse, place_of
 
 if TYPE_CHECKING:
-    from solidgear.bearings.solved import Solved
     from solidgear.body import Body
     from solidgear.scene import Scene
     from solidgear.scene.body_file import BodyTable
@@ -62,14 +61,9 @@ def load(path: str | os.PathLike) -> Scene:
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
-    """Scene that tables of a file describe; errors as of :func:`load`.
-
-    Parameters
-    ----------
-    path : str or path
-        What the tables name lies relative to it.
-    alone : bool
-        Whether catalogue bearings settle at the load of the scene, and not with a train.
+    """Scene that tables of a file describe, what they name relative to its path; errors as of
+    :func:`load`. Catalogue bearings settle at the load of the scene where it is `alone`, and not
+    with a train.
     """
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
@@ -123,27 +117,6 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
         return at_point(train if point is None else train.with_changes(operation=(point,)))
 
 
-def read(path: str | os.PathLike, scene: Scene | None = None) -> Solved:
-    """A scene file with all that was found out about its catalogue bearings.
-
-    Parameters
-    ----------
-    path : str or path
-    scene : Scene, optional
-        As read from it.
-
-    Raises
-    ------
-    SceneError
-        As :func:`load`.
-    """
-    from solidgear.bearings.solved import solved  # start-up: not every file needs it
-
-    scene = file.load(path, part_of) if scene is None else scene
-    with explained(path):
-        return solved(scene, shaft(scene))
-
-
 def part_of(table: BodyTable, folder: Path) -> Recognised:
     """The part that a scene file names; read apart from scenes that have none."""
     from solidgear.meshing.part import recognise  # start-up: not every file needs it
@@ -153,14 +126,15 @@ def part_of(table: BodyTable, folder: Path) -> Recognised:
 
 @contextmanager
 def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Errors of bearings told with the file, the key and the value they come from; tables are those
-    of the file where some of them have been changed.
+    """Errors told with the file, the key and the value they come from; tables are those of the file
+    where some of them have been changed, or it is none of tables.
     """
     try:
         yield
     except SceneError as error:
         where = os.fspath(path)
-        raise error.located(tables or parse(where), where=place_of(where)) from None
+        known = parse(where) if tables is None else tables
+        raise error.located(known, where=place_of(where)) from None
     except SolidgearError as error:
         raise SceneError(str(error), where=place_of(os.fspath(path))) from None
 

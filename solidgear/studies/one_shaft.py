@@ -16,6 +16,7 @@ from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.differences import ROUNDING
 from solidgear.solve.modes import Mode, ModeSet
+from solidgear.studies.beside import Side
 from solidgear.studies.change import BarredMode
 from solidgear.studies.check import cautions
 
@@ -26,13 +27,11 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
-class OneShaft:
+class OneShaft(Side):
     """A shaft, solved with bars.
 
     Attributes
     ----------
-    letter, name : str
-        ``A`` or ``B`` of one of two, and what it is called.
     values : dict of Quantity to float
         SI.
     modes : ModeSet
@@ -45,8 +44,6 @@ class OneShaft:
         Relative; that of rounding where it has a closed form, None elsewhere.
     """
 
-    letter: str
-    name: str
     scene: Scene
     settled: Settled
     values: Values
@@ -54,12 +51,11 @@ class OneShaft:
     bars: dict[str, float]
     mass: float
     mass_bar: float | None
-    cautions: tuple[str, ...]
 
     @property
-    def label(self) -> str:
-        """Letter and name."""
-        return f"{self.letter}: {self.name}"
+    def title(self) -> str:
+        """Title of its scene."""
+        return self.scene.title or self.scene.name
 
     def bar(self, name: Quantity) -> float | None:
         """Bar of a quantity in its own unit; None where nothing is known."""
@@ -81,23 +77,8 @@ def one_shaft(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> OneShaft:
-    """A shaft by the cheapest solid whose bars are within a tolerance.
-
-    Parameters
-    ----------
-    tol : float
-        Relative.
-    points : sequence of str
-        Further lumped points whose numbers are wanted.
-    before : Settled, optional
-        As of :func:`solidgear.judge.settle.settle`.
-    progress : callable
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
+    """A shaft by the cheapest solid whose bars are within a relative tolerance, with the numbers of
+    further lumped points; `before` as of :func:`solidgear.judge.settle.settle`.
     """
 
     def say(text: str) -> None:
@@ -127,7 +108,7 @@ def one_shaft(
     mass, exact = mass_of(scene, body)
     said = tuple(cautions(scene, body))
     numbers = found.quantities, found.modes, bars
-    return OneShaft(letter, name, scene, settled, *numbers, mass, exact, said)
+    return OneShaft(letter, name, said, scene, settled, *numbers, mass, exact)
 
 
 def all_modes(found: ModeSet) -> ModeSet:

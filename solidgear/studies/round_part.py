@@ -103,16 +103,8 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
 def against_the_part(
     scene: Scene, solutions: dict[str, Solution], probe: Probe
 ) -> Iterator[Notice]:
-    """The light harmonic solid of the round part against the solids of the part itself.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a part from a file.
-    solutions : dict of str to Solution
-        Solved with the part.
-    probe : Probe
-        Of the round part.
+    """The light harmonic solid of the round part, of which the probe is, against the solids of the
+    part itself.
     """
     if scene.body is None or scene.body.round:
         return

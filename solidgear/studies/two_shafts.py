@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,10 +24,11 @@ from solidgear.judge.quantities import in_order, size
 from solidgear.machine.threads import pinned
 from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.report.two_shafts_page import write_two_shafts
-from solidgear.report.units import units_named
+from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.scene.differences import Difference, scene_differences
-from solidgear.solve.modes import Mode, ModeSet
+from solidgear.solve.modes import ModeSet
 from solidgear.studies import two_shafts_told as told
+from solidgear.studies.beside import Beside, all_pairs
 from solidgear.studies.change import BarredMode, Change, ModePair
 from solidgear.studies.one_shaft import OneShaft, Progress, all_modes, one_shaft
 
@@ -80,58 +82,46 @@ class NumberChange:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class TwoShafts(Displayed):
+class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
     """Two shafts beside each other.
 
     Attributes
     ----------
-    tolerance : float
-        Relative, that every bar was brought to.
+    a, b : OneShaft
+        ``both``, with their ``cautions``.
     inputs : tuple of Difference
         Of their files, or fields.
-    changes : tuple of NumberChange
-        Mass, entries of C and K at the lumped points, first frequencies.
     modes : tuple of ModePair
         By frequency.
     pairing : str
         How modes belong together, in words.
+    tolerance : float
+        Relative, that every bar was brought to.
+    changes : tuple of NumberChange
+        Mass, entries of C and K at the lumped points, first frequencies.
     alone : dict of str to tuple of str
         Numbers that one has and the other does not, by letter.
     """
 
     shown: ClassVar[str] = "two_shafts"
 
-    a: OneShaft
-    b: OneShaft
     tolerance: float
-    inputs: tuple[Difference, ...]
     changes: tuple[NumberChange, ...]
-    modes: tuple[ModePair[BarredMode], ...]
-    pairing: str
     alone: dict[str, tuple[str, ...]]
-    seconds: float
 
     def __getitem__(self, name: str) -> NumberChange:
         return next(one for one in self.changes if one.name == name)
 
     @property
-    def both(self) -> tuple[OneShaft, OneShaft]:
-        """Both shafts."""
-        return self.a, self.b
-
-    @property
-    def cautions(self) -> list[str]:
-        """Cautions of both, each with whose it is unless it is of both."""
-        alike = [text for text in self.a.cautions if text in self.b.cautions]
-        own = [f"{one.letter}: {t}" for one in self.both for t in one.cautions if t not in alike]
-        return [*alike, *own]
-
-    @property
     def sentences(self) -> list[str]:
         """Conclusions."""
-        return told.sentences(self)
+        return self.told()
 
-    @property
+    def told(self, units: Units = ENGINEERING) -> list[str]:
+        """Conclusions, with their numbers in some units."""
+        return told.sentences(self, units)
+
+    @cached_property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, SI."""
         return told.results(self)
@@ -156,9 +146,7 @@ class TwoShafts(Displayed):
         SolidgearError
             If the folder cannot be written, or units are unknown.
         """
-        shown = units_named(units)
-        sentences = told.sentences(self, shown)
-        return write_two_shafts(self, self.results, sentences, out, shown)
+        return write_two_shafts(self, out, units_named(units))
 
 
 @pinned
@@ -169,31 +157,8 @@ def two_shafts(
     progress: Progress = lambda _: None,
 ) -> TwoShafts:
     """Two shafts beside each other, each by the cheapest solid whose bars are within a tenth of the
-    smaller tolerance of both.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Two.
-    names : sequence of str, optional
-        What they are called; by default as the scenes are.
-    inputs : sequence of Difference, optional
-        Of their files; by default of the scenes' fields.
-    progress : callable
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> rods = [sg.Segment.cylinder("rod", length=0.6, diameter=d) for d in (0.02, 0.022)]
-    >>> found = two_shafts([sg.Scene.from_parts([rod]) for rod in rods])
-    >>> found["bending 1"].verdict, round(found["bending 1"].relative, 2)
-    ('resolved', 0.1)
+    smaller tolerance of both; by default called as the scenes are, with the fields that differ for
+    inputs.
     """
     start = perf_counter()
     first, other = scenes
@@ -212,7 +177,7 @@ def two_shafts(
         for one, second in ((a, b), (b, a))
     }
     spent = perf_counter() - start
-    return TwoShafts(a, b, tol, differ, changes, tuple(pairs), pairing, alone, spent)
+    return TwoShafts(a, b, differ, tuple(pairs), pairing, spent, tol, changes, alone)
 
 
 def _settled(
@@ -261,32 +226,26 @@ def _frequencies(
 
 def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     """Modes of both lists with their partners, and in words how they were found."""
-    mine, its = ([m for m in all_modes(one.modes).modes if m.frequency_hz > 0] for one in (a, b))
-    found: list[tuple[Mode | None, Mode | None, float | None]] = []
-    shared = _same_stations(a.modes, b.modes)
-    if shared:
+    mine, its = (
+        [one.seen(m) for m in all_modes(one.modes).modes if m.frequency_hz > 0] for one in (a, b)
+    )
+    alike: list[ModePair[BarredMode]] = []
+    words = "by name, for both shafts are not told at the same places along the axis"
+    if _same_stations(a.modes, b.modes):
+        words = "by the motions of sections along the axis, and by name where no shape is certain"
         for p in pair_modes(b.modes, a.modes):
             partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
-            found += [(p.reference, m, p.mac or None) for m in partners]
-    left = {str(m.name): m for m in its if all(m is not other for _, other, _ in found)}
-    for mode in mine:
-        if all(mode is not own for own, _, _ in found):
-            found.append((mode, left.pop(str(mode.name), None), None))
-    found += [(None, m, None) for m in left.values()]
+            alike += [ModePair(a.seen(p.reference), b.seen(m), p.mac or None) for m in partners]
+    listed = [{str(m.name) for m in one.modes.modes} for one in (a, b)]
     # a partner above the end of the other list is none that is missing
-    tops = [max((m.frequency_hz for m in own), default=0.0) for own in (mine, its)]
-    listed = {id(m) for one in (a, b) for m in one.modes.modes}
+    end = min(max((m.frequency_hz for m in own), default=0.0) for own in (mine, its))
     pairs = [
-        ModePair(None if m is None else a.seen(m), None if n is None else b.seen(n), mac)
-        for m, n, mac in found
-        if (id(m) in listed or id(n) in listed)
-        and (n is not None or m is None or m.frequency_hz <= tops[1])
-        and (m is not None or n is None or n.frequency_hz <= tops[0])
+        pair
+        for pair in all_pairs(alike, mine, its, lambda mode: mode.name)
+        if any(m is not None and m.name in names for m, names in zip((pair.a, pair.b), listed))
+        and (pair.change is not None or pair.within(end))
     ]
-    words = "by name, for both shafts are not told at the same places along the axis"
-    if shared:
-        words = "by the motions of sections along the axis, and by name where no shape is certain"
-    return sorted(pairs, key=lambda p: (p.a or p.b).frequency_hz), words  # type: ignore[union-attr]  # never both
+    return pairs, words
 
 
 def _same_stations(one: ModeSet, other: ModeSet) -> bool:

@@ -22,13 +22,7 @@ NAMED = 4
 
 
 def sentences(found: TwoShafts, units: Units = ENGINEERING) -> list[str]:
-    """Conclusions: what differs, what that does, what of it is resolved, and how it was solved.
-
-    Parameters
-    ----------
-    units : Units, optional
-        Of the numbers in them.
-    """
+    """Conclusions: what differs, what that does, what of it is resolved, and how it was solved."""
     return [
         beside.inputs(found.inputs),
         *_numbers(found, units),

@@ -43,8 +43,6 @@ class Computed:
         Elastic ones by frequency.
     bars : tuple of float
         Relative; infinite where nothing tells it.
-    tolerance : float
-        That bars were asked to keep.
     rung : str
         Model.
     options : dict
@@ -57,7 +55,6 @@ class Computed:
     body: Body
     modes: tuple[Mode, ...]
     bars: tuple[float, ...]
-    tolerance: float
     rung: str
     options: dict[str, Any]
     limit: float
@@ -107,17 +104,9 @@ def computed_up_to(
     progress: Progress = lambda _: None,
     before: Computed | None = None,
 ) -> Computed:
-    """All modes up to a little above a frequency, by the cheapest solid; one of revolution is refined
-    until the bar of every mode is within a tolerance.
-
-    Parameters
-    ----------
-    highest : float
-        Hz.
-    tolerance : float
-        Relative.
-    before : Computed, optional
-        Of a scene like it, on whose mesh it begins.
+    """All modes up to a little above a frequency, Hz, by the cheapest solid; one of revolution is
+    refined until the bar of every mode is within a relative tolerance. It begins on the mesh of
+    what was computed `before` of a scene like it.
     """
     limit = BEYOND * highest
     settled = None
@@ -137,7 +126,7 @@ def computed_up_to(
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
         listed, bars = _barred(scene, body, limit, settled)
-    return Computed(scene, body, tuple(listed), tuple(bars), tolerance, rung, options, limit)
+    return Computed(scene, body, tuple(listed), tuple(bars), rung, options, limit)
 
 
 @pinned

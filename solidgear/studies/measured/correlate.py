@@ -5,11 +5,12 @@ they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.special import chdtri, stdtrit
 
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
@@ -17,7 +18,6 @@ from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.studies.change import BarredMode
 from solidgear.studies.measured.alignment import Alignment, Peak, align
-from solidgear.studies.measured.common import Common
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
 from solidgear.studies.measured.shapes import OnPoints
@@ -31,6 +31,8 @@ UNTOLD = 1e-4
 #: of a bearing's stiffness of which [uncertain] of the scene says nothing: what a catalogue leaves open of
 #: the inside is +- 9 to 11 % of it, a class of clearance as much, and rigid rings and seats the rest
 SPRINGS = 0.2
+#: pairs from which on a shift and a scatter of all are told
+FEWEST = 3
 
 
 @dataclass(frozen=True)
@@ -91,6 +93,52 @@ class Pair:
         return ("agrees" if abs(self.relative) <= self.band else "differs") + doubt
 
 
+@dataclass(frozen=True)
+class Common:
+    """Differences of pairs as a shift that is common to all and a scatter beside it, relative.
+
+    Attributes
+    ----------
+    off, reach : float
+        Shift, computed over measured, and how far it may be off, of 95 % (Student).
+    scatter, low, high : float
+        Standard deviation, and the ends of its interval of 95 % (chi-square).
+    """
+
+    count: int
+    off: float
+    reach: float
+    scatter: float
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, relative: Sequence[float]) -> Common | None:
+        """Estimates from differences of independent pairs; None from too few."""
+        count, free = len(relative), len(relative) - 1
+        if count < FEWEST:
+            return None
+        scatter = float(np.std(relative, ddof=1))
+        reach = float(stdtrit(free, 0.975)) * scatter / math.sqrt(count)
+        low, high = (scatter * math.sqrt(free / float(chdtri(free, p))) for p in (0.025, 0.975))
+        return cls(count, float(np.mean(relative)), reach, scatter, low, high)
+
+    @property
+    def sentence(self) -> str:
+        """Conclusion."""
+        told = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
+        left = (
+            f"{100 * self.scatter:.2g} % is left beside it ({self.count} sure pairs; with 95 %, "
+            f"{100 * self.low:.2g} to {100 * self.high:.2g} %)"
+        )
+        if abs(self.off) <= self.reach:
+            return f"No shift is common to all ({told}); {left}."
+        return (
+            f"Common to all is {told}, as a modulus, a density or a length that is not right makes it; "
+            f"{left}."
+        )
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Correlation(Displayed):
     """Measured resonances beside computed modes.
@@ -107,8 +155,6 @@ class Correlation(Displayed):
         Model and mesh.
     mac : (n, m) ndarray or None
         Of every measured shape and every mode; None where no shapes were measured.
-    names : tuple of str
-        Of the modes.
     measured : Measured
     computed : Computed
         What was held against each other.
@@ -123,9 +169,7 @@ class Correlation(Displayed):
     pairs: tuple[Pair, ...]
     missed: tuple[tuple[BarredMode, float], ...]
     mesh: str
-    tolerance: float
     mac: np.ndarray | None
-    names: tuple[str, ...]
     measured: Measured
     computed: Computed
     of_points: tuple[str, ...] = ()
@@ -188,7 +232,7 @@ class Correlation(Displayed):
                 for pair in self.pairs
             ],
             "mac": None if self.mac is None else [_plain(row) for row in self.mac],
-            "modes": list(self.names),
+            "modes": [mode.name for mode in self.computed.barred],
             "not_measured": [
                 {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
                 for mode, share in self.missed
@@ -204,33 +248,8 @@ def correlate(
     tol: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
-    """Hold measured resonances against the modes of a scene.
-
-    Parameters
-    ----------
-    tol : float, optional
-        Relative; bars of the modes are brought below it. A tenth of the tolerance of the scene by
-        default.
-    progress : callable
-        Told of every stage.
-
-    Returns
-    -------
-    Correlation
-
-    Raises
-    ------
-    SolidgearError
-        For a scene that no model can answer.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
-    >>> peaks = Measured(mode=[{"frequency": f} for f in (254.0, 696.0, 1356.0)])
-    >>> found = correlate(rod, peaks)
-    >>> [pair.computed.name for pair in found.pairs], found.rms < 0.02
-    (['bending 1', 'bending 2', 'bending 3'], True)
+    """Hold measured resonances against the modes of a scene, whose relative bars are brought below
+    `tol`, by default a tenth of the tolerance of the scene.
     """
     tol = scene.ask.tolerance / 10 if tol is None else tol
     computed = computed_up_to(scene, measured.modes[-1].frequency, tol, progress)
@@ -306,9 +325,7 @@ def _correlation(
         tuple(pairs),
         missed,
         computed.mesh,
-        computed.tolerance,
         mac,
-        tuple(mode.name for mode in barred),
         measured,
         computed,
         () if on_points is None else on_points.sentences(below),

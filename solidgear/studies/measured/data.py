@@ -27,10 +27,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.errors import SceneError, SolidgearError, show
+from solidgear.errors import SceneError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
+from solidgear.studies.loading import explained
 from solidgear.studies.measured.alignment import BANDWIDTH
 from solidgear.studies.measured.responses import ResponseFit
 from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, read_universal
@@ -170,32 +171,23 @@ class Measured(Model):
 
 
 def load_measured(path: str | os.PathLike) -> Measured:
-    """Read measured resonances.
-
-    Parameters
-    ----------
-    path : str or path
-        ``.toml``, ``.csv``, or a universal file ``.unv``, ``.uff`` of mode shapes, or of frequency
-        responses, in which resonances are then found.
-
-    Raises
-    ------
-    SceneError
-        The file, the entry, its value and what would be right; responses without a resonance.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> path = Path(tempfile.mkdtemp()) / "peaks.csv"
-    >>> _ = path.write_text("frequency [kHz],multiplicity\\n1.25,2\\n3.1,1\\n")
-    >>> [(one.frequency, one.multiplicity) for one in load_measured(path).modes]
-    [(1250.0, 2), (3100.0, 1)]
+    """Measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
+    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
+    tells the file, the entry, its value and what would be right.
     """
     where = os.fspath(path)
     if where.lower().endswith(ENDINGS):
-        return _of_universal(where)
+        read = read_universal(where)
+        if isinstance(read, Responses):
+            return of_responses(read, where)
+        frequencies, shapes = read
+        return _of_modes([{"frequency": one} for one in frequencies], where, shapes)
     tables: Mapping[str, Any] | Responses
-    tables = _of_csv(Path(path)) if where.lower().endswith(".csv") else parse(where)
+    if where.lower().endswith(".csv"):
+        with explained(where, {}):
+            tables = _of_csv(Path(path))
+    else:
+        tables = parse(where)
     if isinstance(tables, Responses):
         return of_responses(tables, where)
     try:
@@ -203,7 +195,8 @@ def load_measured(path: str | os.PathLike) -> Measured:
         if out.shapes or any(one.shape for one in out.mode):
             out._on_points = _joined(out, Path(where).parent)
     except SceneError as error:
-        raise error.located(tables, where=where) from None
+        # what is wrong in the file of shapes is told with that
+        raise error if error.where else error.located(tables, where=where) from None
     return out
 
 
@@ -234,39 +227,23 @@ def _joined(measured: Measured, folder: Path) -> Shapes:
     return Shapes(found.numbers, found.points, values)
 
 
-def _of_universal(where: str) -> Measured:
-    read = read_universal(where)
-    if isinstance(read, Responses):
-        return of_responses(read, where)
-    frequencies, shapes = read
-    out = _checked(where, {"mode": [{"frequency": one} for one in frequencies]})
-    out._on_points = shapes
-    return out
-
-
 def of_responses(responses: Responses, where: str = "responses") -> Measured:
-    """Resonances that are found in responses; `where` is their file.
-
-    Raises
-    ------
-    SceneError
-        Where no resonance stands out of the noise.
-    """
-    try:
+    """Resonances that are found in responses of a file; refused where none stands out of the noise."""
+    with explained(where, {}):
         found = ResponseFit.of(responses)
-    except SolidgearError as error:
-        raise SceneError(str(error), where=where) from None
     told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
-    out = _checked(where, {"mode": [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]})
-    out._on_points, out._responses = found.shapes, found
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]
+    return _of_modes(modes, where, found.shapes, found)
+
+
+def _of_modes(
+    modes: list[dict[str, Any]], where: str, shapes: Shapes | None, fit: ResponseFit | None = None
+) -> Measured:
+    """Resonances of a file that is no table of them."""
+    with explained(where, {"mode": modes}):
+        out = Measured(title=Path(where).stem, mode=modes)
+    out._on_points, out._responses = shapes, fit
     return out
-
-
-def _checked(where: str, tables: dict[str, Any]) -> Measured:
-    try:
-        return Measured(title=Path(where).stem, **tables)
-    except SceneError as error:
-        raise error.located(tables, where=where) from None
 
 
 def _of_csv(path: Path) -> dict[str, Any] | Responses:
@@ -274,21 +251,20 @@ def _of_csv(path: Path) -> dict[str, Any] | Responses:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"cannot be read ({error})", where=os.fspath(path)) from None
+        raise SceneError(f"cannot be read ({error})") from None
     if len(rows) < 2:
         raise SceneError(
-            'holds no resonances; write a head such as "frequency [Hz]" and one a line',
-            where=os.fspath(path),
+            'holds no resonances; write a head such as "frequency [Hz]" and one a line'
         )
     if any(head.split("[")[0].strip() == "real" for head in rows[0]):
-        return _columns(path, rows)
-    heads = [_head(path, head) for head in rows[0]]
+        return _columns(rows)
+    heads = [_head(head) for head in rows[0]]
     if "frequency" not in [word for word, _ in heads]:
-        raise SceneError('has no column "frequency [Hz]"', where=os.fspath(path))
+        raise SceneError('has no column "frequency [Hz]"')
     return {"mode": [_entry(heads, row) for row in rows[1:]]}
 
 
-def _columns(path: Path, rows: Sequence[Sequence[str]]) -> Responses:
+def _columns(rows: Sequence[Sequence[str]]) -> Responses:
     """Responses of columns: the frequency, then real and imaginary parts in turn."""
     words = [head.split("[")[0].strip() for head in rows[0]]
     unit = _HEAD.fullmatch(rows[0][0])
@@ -296,32 +272,27 @@ def _columns(path: Path, rows: Sequence[Sequence[str]]) -> Responses:
     if not told or unit is None or not unit["unit"]:
         raise SceneError(
             'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
-            "pairs of real and imaginary as there are responses",
-            where=os.fspath(path),
+            "pairs of real and imaginary as there are responses"
         )
     try:
         numbers = np.array(rows[1:], float)
     except ValueError:
-        raise SceneError("holds a line that is not all numbers", where=os.fspath(path)) from None
+        raise SceneError("holds a line that is not all numbers") from None
     hertz = numbers[:, 0] * quantity(f"1 {unit['unit']}", "frequency")
     return Responses(hertz, (numbers[:, 1::2] + 1j * numbers[:, 2::2]).T)
 
 
-def _head(path: Path, text: str) -> tuple[str, str]:
+def _head(text: str) -> tuple[str, str]:
     """Word and unit of a head."""
     found = _HEAD.fullmatch(text)
     known = tuple(MeasuredMode.model_fields)
     if found is None or found["word"] not in known:
         raise SceneError(
             f"column {show(text)} is unknown; there are {', '.join(known)}, with a unit as in "
-            '"frequency [kHz]"',
-            where=os.fspath(path),
+            '"frequency [kHz]"'
         )
     if found["word"] in ("frequency", "uncertainty") and not found["unit"]:
-        raise SceneError(
-            f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"',
-            where=os.fspath(path),
-        )
+        raise SceneError(f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"')
     return found["word"], found["unit"] or ""
 
 

@@ -86,18 +86,6 @@ def identify(
     SolidgearError
         For a path that names no positive number, entries that the data do not determine, with the
         direction, and fewer resonances than entries.
-
-    Examples
-    --------
-    >>> import tempfile, pathlib
-    >>> file = pathlib.Path(tempfile.mkdtemp()) / "rod.toml"
-    >>> _ = file.write_text('material = { E = "200 GPa", nu = 0.3, density = "7850 kg/m^3" }\\n'
-    ...     'segment = [{ kind = "cylinder", name = "rod", length = "0.6 m", diameter = "20 mm" }]\\n'
-    ...     'port = { at = "rod.middle", attach_to = "rod" }\\n')
-    >>> peaks = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in (254.4, 699.1, 1363.7)])
-    >>> found = identify(file, peaks, ["material.E"])
-    >>> round(found["material.E"].value / 1e9), found.rms < 2e-3
-    (210, True)
     """
     study = _Study(os.fspath(scene), measured, tuple(vary), tol, progress, priors)
     return study.found(predict)
@@ -122,7 +110,6 @@ class _Study:
         self.tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)
         self.keys = [one.keys for one in self.varied]
-        self.labels = [one.label for one in self.varied]
         self.before = np.array([one.before for one in self.varied])
         self.low = np.array([one.low for one in self.varied])
         self.high = np.array([one.high for one in self.varied])

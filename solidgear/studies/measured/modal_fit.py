@@ -90,29 +90,7 @@ class ModalFit:
 
 @pinned
 def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
-    """Find the modes of responses.
-
-    Parameters
-    ----------
-    hertz : (k,) ndarray
-        Ascending.
-    accelerance : (m, k) ndarray of complex
-        Acceleration over force, in any unit.
-
-    Raises
-    ------
-    SolidgearError
-        For fewer lines than a band needs, and where no mode stands out of the noise.
-
-    Examples
-    --------
-    >>> hertz = np.linspace(1.0, 400.0, 800)
-    >>> s, pole = 2j * np.pi * hertz, 2 * np.pi * (-2 + 150j)
-    >>> noise = 1e-4 * np.random.default_rng(1).standard_normal((2, 800, 2)) @ [1, 1j]
-    >>> found = fit_modes(hertz, s**2 / ((s - pole) * (s - pole.conjugate())) + noise)
-    >>> found.frequencies.round(1), found.damping.round(4)
-    (array([150.]), array([0.0133]))
-    """
+    """Modes of accelerances (m, k), in any unit, over ascending frequencies (k,), Hz."""
     ahead = hertz > 0
     omega, data = 2 * np.pi * hertz[ahead], accelerance[:, ahead]
     if len(omega) < FEWEST:

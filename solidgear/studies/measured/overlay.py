@@ -95,11 +95,6 @@ class Overlay:
 def overlay(found: Correlation) -> Overlay | None:
     """Responses of the scene beside the measured ones; None where no responses were measured, or
     nothing tells at which points, or of what kind they are.
-
-    Raises
-    ------
-    SolidgearError
-        For a point that is off the surface.
     """
     fitted, computed = found.measured.responses, found.computed
     if fitted is None:

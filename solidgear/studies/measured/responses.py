@@ -30,13 +30,7 @@ class ResponseFit:
 
     @classmethod
     def of(cls, responses: Responses) -> ResponseFit:
-        """Find the modes of responses.
-
-        Raises
-        ------
-        SolidgearError
-            For an axis that does not ascend, and as of :func:`fit_modes`.
-        """
+        """Find the modes of responses over an axis that ascends."""
         hertz = responses.frequencies
         if not np.all(np.isfinite(hertz)) or not np.all(np.diff(hertz) > 0):
             raise SolidgearError("has frequencies of responses that do not ascend")

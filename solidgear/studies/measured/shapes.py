@@ -34,19 +34,8 @@ TRIED = 300
 
 
 class SurfacePoints:
-    """Motions of a body's surface at measuring points.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Of the points.
-    points : (p, 3) ndarray
-        m.
-
-    Raises
-    ------
-    SolidgearError
-        For a point that is off the surface.
+    """Motions of a body's surface at measuring points (p, 3), m, by their numbers; a point that is
+    off the surface is refused.
     """
 
     def __init__(self, body: Body, numbers: Sequence[int], points: np.ndarray):

@@ -35,13 +35,8 @@ class Stiffer(NamedTuple):
 def left_out(
     scene: Scene, places: SurfacePoints, ends: Sequence[tuple[int, int]], modes: Iterable[Mode]
 ) -> Stiffer | None:
-    """Static compliance at some points that a list of modes has not; None of a body whose surface
-    tells no forces.
-
-    Parameters
-    ----------
-    ends : sequence of (int, int)
-        Places of points among those of `places`, and directions -3 to 3 along x, y, z.
+    """Static compliance that a list of modes has not; None of a body whose surface tells no forces.
+    The ends are places of points among those of `places`, and directions -3 to 3 along x, y, z.
     """
     body = places.body
     if not hasattr(body.geometry, "rows"):

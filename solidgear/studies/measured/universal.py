@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
+from solidgear.studies.loading import explained
 
 #: endings of their names
 ENDINGS = (".unv", ".uff")
@@ -93,62 +94,65 @@ def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes] | Resp
         For a file cut short, without units, with neither, with modes without points, and with
         responses over more than one axis.
     """
-    sets = _datasets(path)
-    modes = [
-        one for one in sets if one["type"] == 55 and one["analysis_type"] in (NORMAL, *COMPLEX)
-    ]
-    if modes:
-        return _shapes(path, sets, modes)
-    found = [one for one in sets if one["type"] == 58 and one["func_type"] == RESPONSE]
-    if not found:
-        raise _error(
-            path,
+    try:
+        from pyuff import UFF
+    except ImportError:
+        raise SolidgearError(
+            "universal files are read by pyuff: pip install 'solidgear[testdata]'"
+        ) from None
+    with explained(path, {}):
+        sets = _datasets(Path(path), UFF)
+        kinds = NORMAL, *COMPLEX
+        modes = [one for one in sets if one["type"] == 55 and one["analysis_type"] in kinds]
+        if modes:
+            return _shapes(sets, modes)
+        found = [one for one in sets if one["type"] == 58 and one["func_type"] == RESPONSE]
+        if found:
+            return _responses(sets, found)
+        raise SceneError(
             "holds no mode shapes (dataset 55 of normal or complex modes) and no frequency responses "
-            "(dataset 58, function 4)",
+            "(dataset 58, function 4)"
         )
-    return _responses(path, sets, found)
 
 
 def _shapes(
-    path: str | os.PathLike, sets: Sequence[Mapping[str, Any]], modes: Sequence[Mapping[str, Any]]
+    sets: Sequence[Mapping[str, Any]], modes: Sequence[Mapping[str, Any]]
 ) -> tuple[list[float], Shapes]:
-    places = _points(path, sets)
+    places = _points(sets)
     numbers = modes[0]["node_nums"]
     for one in modes:
         count = len(one["node_nums"])
         if any(len(one[r]) != count for r in ("r1", "r2", "r3")):
-            raise _error(path, f"is cut short in mode {one['mode_n']}")
+            raise SceneError(f"is cut short in mode {one['mode_n']}")
         if not np.array_equal(one["node_nums"], numbers):
-            raise _error(path, f"has other points in mode {one['mode_n']} than in the first")
+            raise SceneError(f"has other points in mode {one['mode_n']} than in the first")
     missing = [int(k) for k in numbers if int(k) not in places]
     if missing:
-        raise _error(path, f"gives no place of point {missing[0]} (dataset 15 or 2411)")
+        raise SceneError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
     hertz = [_hertz(one) for one in modes]
     order = np.argsort(hertz, kind="stable")
     values = np.array(
         [np.column_stack([modes[k]["r1"], modes[k]["r2"], modes[k]["r3"]]) for k in order]
     )
     if not np.all(np.isfinite(values)) or not np.all(np.any(values, axis=(1, 2))):
-        raise _error(path, "has a mode shape that is zero or no number")
+        raise SceneError("has a mode shape that is zero or no number")
     points = np.array([places[int(k)] for k in numbers])
     return [hertz[k] for k in order], Shapes(np.asarray(numbers, int), points, values)
 
 
-def _responses(
-    path: str | os.PathLike, sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Any]]
-) -> Responses:
-    length, force = _units(path, sets)
+def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Any]]) -> Responses:
+    length, force = _units(sets)
     axis = found[0]["x"]
     kinds = found[0]["ordinate_spec_data_type"], found[0]["orddenom_spec_data_type"]
     for k, one in enumerate(found, start=1):
         if len(one["data"]) != one["num_pts"]:
-            raise _error(
-                path, f"is cut short in response {k}: {len(one['data'])} of {one['num_pts']} lines"
+            raise SceneError(
+                f"is cut short in response {k}: {len(one['data'])} of {one['num_pts']} lines"
             )
         if not np.array_equal(one["x"], axis):
-            raise _error(path, f"has other frequencies in response {k} than in the first")
+            raise SceneError(f"has other frequencies in response {k} than in the first")
         if (one["ordinate_spec_data_type"], one["orddenom_spec_data_type"]) != kinds:
-            raise _error(path, f"has another kind of data in response {k} than in the first")
+            raise SceneError(f"has another kind of data in response {k} than in the first")
 
     def unit(kind: int) -> float:
         if kind in LENGTHS:
@@ -161,58 +165,51 @@ def _responses(
         np.array([one["data"] for one in found], complex) * (unit(kinds[0]) / unit(kinds[1])),
         tuple((one["rsp_node"], one["rsp_dir"]) for one in found),
         tuple((one["ref_node"], one["ref_dir"]) for one in found),
-        _points(path, sets) if any(one["type"] in (15, 2411) for one in sets) else {},
+        _points(sets) if any(one["type"] in (15, 2411) for one in sets) else {},
         LENGTHS.index(kinds[0]) if told else None,
     )
 
 
-def _datasets(path: str | os.PathLike) -> list[dict[str, Any]]:
+def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
+    """All datasets of a file that is whole."""
     try:
-        import pyuff
-    except ImportError:
-        raise SolidgearError(
-            "universal files are read by pyuff: pip install 'solidgear[testdata]'"
-        ) from None
-    try:
-        text = Path(path).read_bytes()
+        text = path.read_bytes()
     except OSError as error:
-        raise _error(path, f"cannot be read ({error})") from None
+        raise SceneError(f"cannot be read ({error})") from None
     if not _MARK.search(text):
-        raise _error(path, "is no universal file: no line holds the mark -1 of a dataset")
+        raise SceneError("is no universal file: no line holds the mark -1 of a dataset")
     # binary data may run into the mark that ends them
     if not text.rstrip().endswith(b"    -1"):
-        raise _error(path, "is cut short: its last dataset has no end")
+        raise SceneError("is cut short: its last dataset has no end")
     try:
-        found = pyuff.UFF(os.fspath(path)).read_sets()
+        found = reader(os.fspath(path)).read_sets()
     except Exception as error:  # pyuff raises nothing narrower
-        raise _error(path, f"cannot be read ({error})") from None
+        raise SceneError(f"cannot be read ({error})") from None
     return found if isinstance(found, list) else [found]
 
 
-def _units(path: str | os.PathLike, sets: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
+def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
     """Units of length and force, m and N."""
     found = [one for one in sets if one["type"] == 164]
     if not found:
-        raise _error(path, "does not tell its units (dataset 164)")
+        raise SceneError("does not tell its units (dataset 164)")
     one = found[0]
     if one["units_code"] == 9 and one["length"] > 0 and one["force"] > 0:
         return 1 / one["length"], 1 / one["force"]
     if one["units_code"] not in UNITS:
-        raise _error(path, f"has units of code {one['units_code']}; dataset 164 knows 1 to 9")
+        raise SceneError(f"has units of code {one['units_code']}; dataset 164 knows 1 to 9")
     return UNITS[one["units_code"]]
 
 
-def _points(
-    path: str | os.PathLike, sets: Sequence[Mapping[str, Any]]
-) -> dict[int, tuple[float, float, float]]:
+def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, float]]:
     """Number of a point -> x, y, z, m."""
     nodes = [one for one in sets if one["type"] in (15, 2411)]
     if not nodes:
-        raise _error(path, "gives no places of its points (dataset 15 or 2411)")
-    length, _ = _units(path, sets)
+        raise SceneError("gives no places of its points (dataset 15 or 2411)")
+    length, _ = _units(sets)
     systems = {int(s) for one in nodes for s in (*one["def_cs"], *one["disp_cs"])}
     if len(systems) > 1:
-        raise _error(path, "has points in more than one coordinate system; write x, y, z of all")
+        raise SceneError("has points in more than one coordinate system; write x, y, z of all")
     return {
         int(k): (length * x, length * y, length * z)
         for one in nodes
@@ -223,7 +220,3 @@ def _points(
 def _hertz(one: Mapping[str, Any]) -> float:
     """Frequency of a mode; of a complex one from its eigenvalue."""
     return float(one["freq"] if one["analysis_type"] == NORMAL else abs(one["eig"]) / (2 * np.pi))
-
-
-def _error(path: str | os.PathLike, text: str) -> SceneError:
-    return SceneError(text, where=os.fspath(path))

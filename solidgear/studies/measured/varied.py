@@ -54,17 +54,7 @@ def varied_of(
     texts: Iterable[str], tables: Tables, ranges: Sequence[Uncertain] | None = None
 ) -> tuple[Varied, ...]:
     """Entries of ``PATH``, ``PATH=180 GPa : 220 GPa`` (bounds) and ``PATH=206 GPa ± 3 %`` (a value
-    that is known to one standard deviation).
-
-    Parameters
-    ----------
-    ranges : sequence of Uncertain, optional
-        Of the scene; those of the same entries hold where a text gives none.
-
-    Raises
-    ------
-    SolidgearError
-        For a path that names no positive number, a range that is none, and an entry given twice.
+    that is known to one standard deviation); ranges of the scene hold where a text gives none.
     """
     found = [_varied(text, tables, ranges or ()) for text in texts]
     if not found:

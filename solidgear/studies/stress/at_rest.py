@@ -155,32 +155,9 @@ def stress_of_scene(
 ) -> StressAtRest:
     """Stress of a shaft under the [load] of its scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        Bearings of catalogue data need no stiffness yet.
-    model : str
-        On which shaft and bearings settle.
-    drive : mapping of str to float, optional
-        Torques about the axis that enter at bearings, masses or further points, N m; the gear at
-        the port takes them out.
-    progress : callable, optional
-        Told what is solved.
-
-    Raises
-    ------
-    SolidgearError
-        For a scene without load, or one that nothing holds against it; a torque at what the shaft
-        has not, or at the port.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/pinion_filleted.toml").with_changes(load={"z": 1e4})
-    >>> (shaft,) = stress_of_scene(scene, "timoshenko", {"2": 300.0}).shafts
-    >>> (notch,) = shaft.found.notches
-    >>> [f"{abs(moment):.1f}" for moment in notch.forces[3:]]
-    ['431.2', '300.0', '0.0']
+    Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
+    the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
+    stiffness yet.
     """
     load, port, drive = load_of(scene), scene.port.name, drive or {}
     if port in drive:
@@ -225,27 +202,8 @@ def stress_of_train(
     asked: Asked = Asked(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
-    """Stress of all shafts of a train at an operating point.
-
-    Parameters
-    ----------
-    model : str
-        On which shafts and bearings settle; no lumped one, which has no places of its own.
-    progress : callable, optional
-        Told what is solved.
-
-    Raises
-    ------
-    SolidgearError
-        For a shaft that nothing holds.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> train = sg.load_train("geometry/gearbox_train.toml")
-    >>> found = stress_of_train(train, train.operation[0], "timoshenko")
-    >>> [(one.name, round(float(abs(one.found.forces.at(0.1)[4])), 2)) for one in found.shafts]
-    [('pinion', 115.0), ('gear', 327.75)]
+    """Stress of all shafts of a train at an operating point; shafts and bearings settle on a model,
+    no lumped one, which has no places of its own.
     """
     progress(model)
     shop = Workshop(_plain(train))

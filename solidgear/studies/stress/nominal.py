@@ -137,12 +137,7 @@ def nominal_stress(
 
 def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
     """Cross-sections on both sides of every place where a load acts, weights left out, or a segment
-    ends.
-
-    Returns
-    -------
-    tuple of NominalRow
-        In the order of their places, the side before each first.
+    ends, in the order of their places, the side before each first.
     """
     ends = [segment.y1 for segment in segments[:-1]]
     names = {y: name for y, name in zip(forces.y.tolist(), forces.told) if name}

@@ -130,43 +130,11 @@ def fillet_factors(
     refinement: float = 1.0,
     reach: float = REACH,
 ) -> FilletFactors:
-    """Stress concentration factors of a fillet at the root of a step.
+    """Stress concentration factors of a fillet of a name at the root of a step.
 
-    Parameters
-    ----------
-    name : str
-        Of the fillet.
-    tolerance : float
-        Relative bar of the factors of tension, bending and torsion at which to stop.
-    orders : sequence of int
-        That are tried, ascending; one at least.
-    refinement : float
-        Multiplies the number of cells, for studies of convergence.
-    reach : float
-        How far the piece goes on beyond the fillet, in outer radii of the shaft on that side.
-
-    Returns
-    -------
-    FilletFactors
-        With larger bars than asked for where no order met the tolerance.
-
-    Raises
-    ------
-    SolidgearError
-        Where cells around the fillet fold.
-
-    Examples
-    --------
-    >>> from solidgear import Port, Scene, Segment
-    >>> from solidgear.scene import Fillet
-    >>> thin, thick = (
-    ...     Segment.cylinder("ab"[k], y0=0.1 * k, length=0.1, diameter=0.04 + 0.02 * k) for k in (0, 1)
-    ... )
-    >>> gear, fillet = Port(y=0.18, lo=0.16, hi=0.2), Fillet(name="f", y=0.1, radius="4 mm")
-    >>> scene = Scene.from_parts([thin, thick], port=gear, blends=[fillet])
-    >>> found = fillet_factors(scene, "f", tolerance=0.05).factors
-    >>> [round(found[load].value, 1) for load in ("tension", "bending", "torsion")]
-    [2.1, 1.8, 1.4]
+    Orders are tried until the relative bars of tension, bending and torsion are within a tolerance,
+    and bars stay larger where none is; `refinement` multiplies the number of cells, and `reach` is
+    as of :func:`piece_around`. Cells that fold around the fillet are refused.
     """
     piece = piece_around(scene, name, reach)
     section, radius = _reference(piece)

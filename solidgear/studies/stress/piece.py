@@ -56,16 +56,8 @@ class Piece:
 
 
 def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
-    """The piece of a shaft around one of its fillets.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its features are left out.
-    name : str
-        Of the fillet.
-    reach : float
-        How far it goes on, in outer radii of the shaft on that side.
+    """The piece of a shaft, its features left out, around a fillet of a name; it goes on for
+    `reach` outer radii of the shaft on either side.
 
     Examples
     --------

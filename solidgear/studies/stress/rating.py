@@ -179,16 +179,8 @@ class Rating:
 def fatigue_factors(
     found: FilletFactors, yield_point: float, large: float, bars: float = 0.0
 ) -> dict[Load, FatigueFactor]:
-    """Fatigue notch factors of a fillet.
-
-    Parameters
-    ----------
-    yield_point : float
-        Of the part at its size, Pa.
-    large : float
-        Larger diameter of the shoulder, m.
-    bars : float
-        How many bars the form factors are raised by.
+    """Fatigue notch factors of a fillet, by the yield point of the part at its size, Pa, and the
+    larger diameter of the shoulder, m; form factors are raised by so many bars.
     """
     small, radius = 2 * found.corner.r, found.corner.radial
     out: dict[Load, FatigueFactor] = {}
@@ -211,14 +203,8 @@ def rated(
     conditions: Conditions,
     large: float,
 ) -> Rating:
-    """Rate a fillet.
-
-    Parameters
-    ----------
-    nominal : NominalStress
-        Where the fillet meets its cylinder.
-    large : float
-        Larger diameter of the shoulder, m.
+    """Rate a fillet by the nominal stress where it meets its cylinder and the larger diameter of
+    the shoulder, m.
     """
     sheet = _Sheet()
     fatigue, yielding = _safeties(sheet, found, nominal, strength, conditions, large)

@@ -91,17 +91,7 @@ class SectionForces:
     right: np.ndarray
 
     def at(self, y: float) -> np.ndarray:
-        """Section forces at one place; where a load acts, just beyond it.
-
-        Parameters
-        ----------
-        y : float
-            m.
-
-        Returns
-        -------
-        (6,) ndarray
-        """
+        """Section forces (6,) at one place, m; where a load acts, just beyond it."""
         k = int(np.searchsorted(self.y, y, side="right")) - 1
         if k < 0 or y > self.y[-1]:
             return np.zeros(6)
@@ -129,31 +119,8 @@ def moved(six: np.ndarray, y: float, to: float) -> np.ndarray:
 
 
 def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
-    """Section forces of a free shaft under loads that balance.
-
-    Parameters
-    ----------
-    loads : iterable of Load
-    length : float
-        Of the shaft, m.
-
-    Raises
-    ------
-    SolidgearError
-        For loads that do not balance, with the component and what is left of it.
-
-    Examples
-    --------
-    A beam of 0.4 m on two supports with 1 kN in the middle: the moment there is F l / 4 = 100 N m,
-    with the side of tension below.
-
-    >>> down, up = np.array([0, 0, -1000.0, 0, 0, 0]), np.array([0, 0, 500.0, 0, 0, 0])
-    >>> beam = [Load("A", 0.0, up), Load("gear", 0.2, down), Load("B", 0.4, up)]
-    >>> found = section_forces(beam, 0.4)
-    >>> [float(round(v, 9)) + 0.0 for v in found.at(0.1)]
-    [0.0, 0.0, -500.0, 50.0, 0.0, 0.0]
-    >>> round(found.largest_moment, 9)
-    100.0
+    """Section forces of a free shaft of a length, m, under loads; those that do not balance are
+    refused, with the component and what is left of it.
     """
     loads = sorted(loads, key=lambda load: load.y)
     least = _balanced(loads, length)
@@ -174,29 +141,14 @@ def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
 def forces_of(
     scene: Scene, loads: Mapping[str, ArrayLike], gravity: ArrayLike | None = None
 ) -> SectionForces:
-    """Section forces of a shaft under loads on its ports, and its weight where there is gravity.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`on_ports` and :func:`section_forces`.
-    """
+    """Section forces of a shaft under loads on its ports, and its weight where there is gravity."""
     falling = [] if gravity is None else weight(scene, gravity)
     return section_forces([*on_ports(scene, loads), *falling], scene.length)
 
 
 def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
-    """Loads on the shaft by the names of the ports that they act on.
-
-    Parameters
-    ----------
-    loads : mapping of str to (6,) array_like
-        N and N m, about the place of the port, bearing or mass of that name.
-
-    Raises
-    ------
-    SolidgearError
-        For a name that the scene has not, or a load that is not six finite numbers.
+    """Loads (6,) on the shaft, N and N m, about the places of the ports, bearings and masses of
+    these names.
     """
     stations = {station.name: station for station in scene.stations}
     found = []
@@ -219,15 +171,11 @@ def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
 
 
 def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
-    """Weight of a shaft and of the masses on it: one load a segment, at its centre of mass.
+    """Weight of a shaft and of the masses on it: one load a segment, at its centre of mass; gravity
+    (3,) in m/s^2.
 
-    Section forces are exact at both ends of every segment, where fillets are; between them they step
-    where those of a spread weight run smoothly. What features take away weighs here.
-
-    Parameters
-    ----------
-    gravity : (3,) array_like
-        m/s^2.
+    Section forces are exact at both ends of every segment, where fillets are; between them they
+    step where those of a spread weight run smoothly. What features take away weighs here.
     """
     g = np.asarray(gravity, float)
     loads = []

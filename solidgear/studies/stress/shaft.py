@@ -230,12 +230,7 @@ def shaft_stress(
 
 
 def check_tolerance(tolerance: float) -> None:
-    """Refuse a relative bar that no mesh leads to.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Refuse a relative bar that no mesh leads to."""
     if not FINEST <= tolerance < 1:
         raise SolidgearError(
             f"tolerance = {tolerance}: relative bars of form factors go from {FINEST:g} to 1"

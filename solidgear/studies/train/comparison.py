@@ -66,12 +66,17 @@ class TrainComparison:
         return {m.label: m.force_to_hz for m in mixes if m.force_to_hz is not None}
 
     @property
-    def loudest(self) -> list[int]:
-        """Numbers, from 1, of the modes that make the largest peaks of the judge's mesh force."""
-        names = [mode.name for mode in self.modes.modes]
+    def loud(self) -> list[str]:
+        """Names of the modes that make peaks of the judge's mesh force, that of the largest first."""
+        names = {mode.name for mode in self.modes.modes}
         peaks = sorted(self.verdict.responses[0].peaks, key=lambda peak: -peak.force)
-        loud = dict.fromkeys(peak.mode for peak in peaks if peak.mode in names)
-        return sorted(names.index(name) + 1 for name in list(loud)[:PICTURES])
+        return [*dict.fromkeys(peak.mode for peak in peaks if peak.mode in names)]
+
+    @property
+    def loudest(self) -> list[int]:
+        """Numbers, from 1, of the modes that are drawn, which make the largest peaks."""
+        names = [mode.name for mode in self.modes.modes]
+        return sorted(names.index(name) + 1 for name in self.loud[:PICTURES])
 
     def pictures(self, folder: Path) -> dict[str, Any]:
         """Draw the loudest modes into a folder: files by what they show, and what was left out."""
@@ -88,13 +93,6 @@ class TrainComparison:
         """The judge's modes and those of all shafts as the best beams, to be turned side by side."""
         both = (JUDGE,), (MIXED[-2],)
         return turned_beside(self.workshop, *both, self.verdict.highest_hz)
-
-    @property
-    def loudest_name(self) -> str:
-        """Name of the mode that makes the largest peak of the judge's mesh force; empty if none."""
-        names = {mode.name for mode in self.modes.modes}
-        peaks = [peak for peak in self.verdict.responses[0].peaks if peak.mode in names]
-        return max(peaks, key=lambda peak: peak.force).mode if peaks else ""
 
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold: all numbers of the page."""
@@ -117,17 +115,8 @@ def compare_train(
     more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> TrainComparison:
-    """Judge every mix of models of a train, and tell the judge's modes.
-
-    Parameters
-    ----------
-    workshop, highest_hz, more, progress
-        As :func:`solidgear.studies.train.judge.judge_train`.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what the reduction resolves, or unknown models.
+    """Judge every mix of models of a train, and tell the judge's modes; as of
+    :func:`solidgear.studies.train.judge.judge_train`.
     """
     start = perf_counter()
     verdict = judge_train(workshop, highest_hz, more, progress)

@@ -1,15 +1,30 @@
-"""Pairs of modes of two mixes of models of a train, by motions of all ports and not by number."""
+"""Pairs of modes of two mixes of models of a train, or of two trains, by motions of ports and not by
+number.
+
+Of two trains these are the ports that both have: the lumped points of both shafts, engine and load
+always, bearings and further ports where they are called alike.  Modes that find no partner so, and
+all of them where hands or apexes differ and shapes are mirrored, belong together by the motion that
+names them, in order of frequency.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from solidgear.judge.correlation import best_assignment
 from solidgear.scene.train_housing import HOUSING
+from solidgear.studies.beside import all_pairs
+from solidgear.studies.change import BarredMode, ModePair
 from solidgear.studies.train.housing import BOX
+from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.naming import driven, mode_names
+from solidgear.studies.train.strain import strain_shares
+from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
 #: two modes whose motions of the ports are less alike than this are different ones
@@ -18,26 +33,16 @@ ALIKE = 0.3
 APART, MOST = 0.05, 4.0
 #: modes of a mix are looked for up to this times the highest frequency of the other's
 BEYOND = 1.7
+#: relative; no error bar of a frequency is smaller: rounding of bodies and their reduction
+ROUNDING = 1e-9
 
 
 def seen_modes(
     workshop: Workshop, system: System, highest: float, ends: Sequence[str] | None = None
 ):
-    """Modes up to a frequency, and how they are seen at the ports.
-
-    Parameters
-    ----------
-    highest : float
-        Hz; the first elastic mode is always there.
-    ends : sequence of str, optional
-        Ports that are looked at, as ``side.port``; by default all.
-
-    Returns
-    -------
-    SystemModes
-    (m, n) ndarray
-        Motions of these ports in the n elastic ones, rotations times the length of the shaft, and
-        rotations of engine and load.
+    """Modes of a system up to a frequency, Hz, and motions (m, n) of ports in the n elastic ones,
+    one at least: rotations times the length of the shaft, and rotations of engine and load. `ends`
+    are the ports that are looked at, as ``side.port``; by default all.
     """
     count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
     found = system.modes(count)
@@ -69,20 +74,9 @@ def ports_of(workshop: Workshop) -> list[str]:
 def partners(
     hz: np.ndarray, seen: np.ndarray, other_hz: np.ndarray, other_seen: np.ndarray
 ) -> dict[int, int]:
-    """Elastic modes of one mix and their partners among those of another; of several that are alike,
-    the one at the nearest frequency.
-
-    Parameters
-    ----------
-    hz, other_hz : (n,), (k,) ndarray
-        Frequencies of elastic modes.
-    seen, other_seen : (m, n), (m, k) ndarray
-        As of :func:`seen_modes`.
-
-    Returns
-    -------
-    dict of int to int
-        From places in the first to places in the second; modes without a partner are left out.
+    """Elastic modes of one mix and their partners among those of another, by their places, from
+    frequencies (n,), (k,) and motions (m, n), (m, k) as of :func:`seen_modes`; of several that are
+    alike, the one at the nearest frequency.
 
     Examples
     --------
@@ -97,16 +91,92 @@ def partners(
 
 
 def mac(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Modal assurance criterion of every pair of columns.
-
-    Parameters
-    ----------
-    one, other : (m, n), (m, k) ndarray
-
-    Returns
-    -------
-    (n, k) ndarray
-        0 to 1.
-    """
+    """Modal assurance criterion (n, k), 0 to 1, of every pair of columns (m, n), (m, k)."""
     size = np.outer((one**2).sum(axis=0), (other**2).sum(axis=0))
     return (one.T @ other) ** 2 / np.maximum(size, np.finfo(float).tiny)
+
+
+@dataclass(frozen=True)
+class SeenMode(BarredMode):
+    """An elastic mode of one of the trains; it has no bar without a harmonic shaft.
+
+    Attributes
+    ----------
+    driven : bool
+        Whether it moves a port at all.
+    shares : dict of str to float
+        Of its strain energy, as of :func:`solidgear.studies.train.strain.strain_shares`.
+    """
+
+    driven: bool
+    shares: dict[str, float]
+
+
+#: a pair of modes of two trains, told by the motions of shared ports
+SeenPair = ModePair[SeenMode]
+
+
+def shared_ports(one: Workshop, other: Workshop) -> tuple[list[str], list[str]]:
+    """Ports of both trains that stand for each other, in the same order: the lumped points, and
+    those that are called alike.
+    """
+    mains = [[f"{s}.{shop.scenes[s].port.name}" for s in shop.scenes] for shop in (one, other)]
+    its = ports_of(other)
+    alike = [end for end in ports_of(one) if end in its and end not in (*mains[0], *mains[1])]
+    return [*mains[0], *alike], [*mains[1], *alike]
+
+
+def told_modes(
+    shop: Workshop, system: System, found: SystemModes, rungs: dict[str, str]
+) -> tuple[SeenMode, ...]:
+    """Elastic modes with their names, error bars and strain energies; the model of each side is
+    that of `rungs`.
+    """
+    names, moved = mode_names(shop, system, found), driven(system, found)
+    shares = strain_shares(found.energy, [*shop.scenes])
+    elastic = range(found.rigid, len(found.frequency_hz))
+    bars = mesh_bars(shop, system, rungs, len(elastic))
+    return tuple(
+        SeenMode(
+            names[k],
+            float(found.frequency_hz[k]),
+            None
+            if bars is None
+            else max(float(bars[k - found.rigid] + found.error_bound[k]), ROUNDING),
+            bool(moved[k]),
+            {name: float(share[k]) for name, share in shares.items()},
+        )
+        for k in elastic
+    )
+
+
+def mode_pairs(
+    modes: Sequence[Sequence[SeenMode]],
+    seen: Sequence[np.ndarray],
+    highest: float,
+    *,
+    by_shape: bool,
+) -> list[SeenPair]:
+    """All modes of both trains, with their partners where they have one, by frequency.
+
+    Motions of the same ports are as of :func:`seen_modes`. Modes that have no partner by shape find
+    one by name up to a frequency, Hz, and all of them where not `by_shape`.
+    """
+    first, other = modes
+    hz = [np.array([mode.frequency_hz for mode in own]) for own in (first, other)]
+    pairs: list[SeenPair] = []
+    if by_shape:
+        # what moves no port has no shape to be told by
+        mine, its = ([k for k, mode in enumerate(own) if mode.driven] for own in modes)
+        motions = seen[0][:, mine], seen[1][:, its]
+        alike = mac(*motions)
+        found = partners(hz[0][mine], motions[0], hz[1][its], motions[1])
+        pairs = [
+            ModePair(first[mine[k]], other[its[j]], float(alike[k, j])) for k, j in found.items()
+        ]
+    return all_pairs(pairs, first, other, _motion, highest if by_shape else math.inf)
+
+
+def _motion(mode: SeenMode) -> str:
+    """Name of a mode without its number."""
+    return mode.name.rpartition(" ")[0]

@@ -1,34 +1,44 @@
 """Two trains beside each other: what differs in their files, and what that does to their numbers.
 
-Modes are paired by shape (:mod:`solidgear.studies.train.mode_pairs`); a peak of the mesh force
+Modes are paired by shape (:mod:`solidgear.studies.train.pairing`); a peak of the mesh force
 belongs to the peak of the partner of its mode.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
 from solidgear.machine.threads import pinned
+from solidgear.report.two_trains_page import write_two_trains
+from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.scene.differences import Difference
 from solidgear.scene.gears import Pair
 from solidgear.scene.planetary import PlanetMesh
+from solidgear.studies.beside import Beside, Side, decibels
 from solidgear.studies.change import Change
+from solidgear.studies.train import two_trains_told as told
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
 from solidgear.studies.train.local import local_lines
-from solidgear.studies.train.mode_pairs import (
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.pairing import (
+    BEYOND,
     SeenMode,
     SeenPair,
     mode_pairs,
+    ports_of,
+    seen_modes,
     shared_ports,
     told_modes,
 )
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.pairing import BEYOND, ports_of, seen_modes
 from solidgear.studies.train.respond import Peak, TrainResponse, respond
 from solidgear.studies.train.shaft import JUDGE, LUMPED, told_mix
 from solidgear.studies.train.slips import slips
@@ -38,13 +48,11 @@ FORCE = "mesh force [N]"
 
 
 @dataclass(frozen=True, eq=False)
-class OneTrain:
+class OneTrain(Side):
     """One of the two, by one model of each shaft.
 
     Attributes
     ----------
-    letter, name : str
-        ``A`` or ``B``, and what its file is called.
     response : TrainResponse
         Named by the label.
     modes : tuple of SeenMode
@@ -53,18 +61,15 @@ class OneTrain:
         At its operating point.
     """
 
-    letter: str
-    name: str
     workshop: Workshop
     response: TrainResponse
     modes: tuple[SeenMode, ...]
     loaded: TrainDeflection | None
-    cautions: tuple[str, ...]
 
     @property
-    def label(self) -> str:
-        """Letter and name, as in legends."""
-        return f"{self.letter}: {self.name}"
+    def title(self) -> str:
+        """Title of its file."""
+        return self.workshop.train.called
 
     def largest(self, column: str) -> tuple[float, float] | None:
         """Hz and size of the largest amplitude of a column of the response; None without it."""
@@ -88,8 +93,8 @@ class PeakPair:
         return None if self.a is None or self.b is None else decibels(self.a.force, self.b.force)
 
 
-@dataclass(frozen=True, eq=False)
-class TwoTrains:
+@dataclass(frozen=True, repr=False, eq=False)
+class TwoTrains(Beside[OneTrain, SeenMode]):
     """Two trains beside each other.
 
     Attributes
@@ -98,31 +103,31 @@ class TwoTrains:
         By shaft, the same in both.
     mesh : str
         By whose transmission error both are driven, as :class:`solidgear.scene.gears.Pair` has it.
-    inputs : tuple of Difference
-        Of their files.
-    modes : tuple of SeenPair
-        By frequency; one of each pair at least lies in the range.
+    highest_hz : float
+        One mode of each pair at least lies below it.
     peaks : tuple of PeakPair
         Of the mesh force, by frequency.
-    pairing : str
-        How modes belong together, in words.
     """
 
-    a: OneTrain
-    b: OneTrain
     models: dict[str, str]
     mesh: str
     highest_hz: float
-    inputs: tuple[Difference, ...]
-    modes: tuple[SeenPair, ...]
     peaks: tuple[PeakPair, ...]
-    pairing: str
-    seconds: float
 
-    @property
-    def both(self) -> tuple[OneTrain, OneTrain]:
-        """Both trains."""
-        return self.a, self.b
+    def told(self, units: Units = ENGINEERING) -> list[str]:
+        """Conclusions, with forces in some units."""
+        return told.sentences(self, units)
+
+    @cached_property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        return told.results(self)
+
+    def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
+        """Write results.json, both responses as tables, charts and report.html into a folder, in such
+        units; the path is that of the page.
+        """
+        return write_two_trains(self, out, units_named(units))
 
     @property
     def forces(self) -> dict[str, str]:
@@ -141,13 +146,6 @@ class TwoTrains:
         """Of the largest amplitude of a column, B over A; None where one has none."""
         tops = [one.largest(column) for one in self.both]
         return None if tops[0] is None or tops[1] is None else decibels(tops[0][1], tops[1][1])
-
-    @property
-    def cautions(self) -> list[str]:
-        """Cautions of both trains, each with whose it is unless it is of both."""
-        alike = [text for text in self.a.cautions if text in self.b.cautions]
-        own = [f"{one.letter}: {t}" for one in self.both for t in one.cautions if t not in alike]
-        return [*alike, *own]
 
     @property
     def unpublished(self) -> dict[str, str]:
@@ -173,11 +171,6 @@ def _force_of(pair: Pair | PlanetMesh) -> str:
     return f"force of the {pair.name}" if pair.label else "mesh force"
 
 
-def decibels(one: float, other: float) -> float | None:
-    """Of an amplitude over another; None where either is zero."""
-    return float(20 * np.log10(other / one)) if one > 0 and other > 0 else None
-
-
 @pinned
 def two_trains(
     workshops: Sequence[Workshop],
@@ -188,30 +181,11 @@ def two_trains(
     highest_hz: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> TwoTrains:
-    """Two trains beside each other, by the same model of each shaft.
+    """Two trains beside each other, by one model for all shafts or one for each, `JUDGE` by
+    default.
 
-    Parameters
-    ----------
-    workshops : sequence of Workshop
-        Of both.
-    names : sequence of str
-        Of their files.
-    inputs : sequence of Difference
-        Of their files.
-    *models : str
-        One for each shaft, or one for all; `JUDGE` by default.
-    mesh : str, optional
-        Whose transmission error drives both; the first of the first by default.
-    highest_hz : float, optional
-        The lower of those that both ask for by default.
-    progress : callable, optional
-        Told of every stage.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what a reduction resolves, unknown models, shafts of other names, or
-        a mesh that one of them does not have.
+    The transmission error of one mesh drives both, by default the first of the first, up to a
+    frequency, Hz, by default the lower of those that both ask for.
 
     Examples
     --------
@@ -246,21 +220,21 @@ def two_trains(
     mirrored = _mirrored(first, other)
     pairs = mode_pairs([one.modes for one in trains], seen, highest, by_shape=not mirrored)
     left_out = sorted({*ports_of(first), *ports_of(other)} - {*ends[0], *ends[1]})
-    told = "by the motions of the ports that both trains have"
-    told += f" (all but {', '.join(left_out)})" * bool(left_out)
+    paired = "by the motions of the ports that both trains have"
+    paired += f" (all but {', '.join(left_out)})" * bool(left_out)
     if mirrored:
-        told = "by the motion that names them: hands or apexes differ, which mirrors shapes"
+        paired = "by the motion that names them: hands or apexes differ, which mirrors shapes"
     return TwoTrains(
         trains[0],
         trains[1],
+        tuple(inputs),
+        tuple(p for p in pairs if p.within(highest)),
+        paired,
+        perf_counter() - start,
         mix,
         driver,
         highest,
-        tuple(inputs),
-        tuple(p for p in pairs if p.within(highest)),
         _peak_pairs(trains[0].response.peaks, trains[1].response.peaks, pairs),
-        told,
-        perf_counter() - start,
     )
 
 
@@ -300,7 +274,7 @@ def _one_train(
         loaded = with_ranges(shop, deflection(shop, shop.train.point, *rungs))
     cautions = (*slips(shop), *shop.cautions, *local_lines(shop, system))
     own = tuple(dict.fromkeys(cautions))
-    return OneTrain(letter, name, shop, response, modes, loaded, own), seen
+    return OneTrain(letter, name, own, shop, response, modes, loaded), seen
 
 
 def _peak_pairs(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,20 +16,16 @@ from solidgear.studies import beside
 from solidgear.studies.train.comparison import described
 from solidgear.studies.train.modes import unpublished_lines
 from solidgear.studies.train.shaft import told_mix
-from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains, decibels
+
+if TYPE_CHECKING:
+    from solidgear.studies.train.two_trains import OneTrain, PeakPair, TwoTrains
 
 #: peaks that a verdict tells, the loudest in either train
 LOUDEST = 3
 
 
 def sentences(found: TwoTrains, units: Units = ENGINEERING) -> list[str]:
-    """Conclusions: what the change does, what of it is resolved, and by which models.
-
-    Parameters
-    ----------
-    units : Units, optional
-        Of forces.
-    """
+    """Conclusions: what the change does, what of it is resolved, and by which models."""
     return [
         beside.inputs(found.inputs),
         _models(found),
@@ -85,7 +81,7 @@ def _of_mode(one: OneTrain, hz: float) -> str:
 
 
 def _in_decibels(tops: Sequence[Any]) -> str:
-    change = decibels(tops[0][1], tops[1][1])
+    change = beside.decibels(tops[0][1], tops[1][1])
     return "" if change is None else f", {change:+.1f} dB"
 
 

@@ -220,7 +220,7 @@ def _solved(tables: Tables) -> Computed:
     modes = [m for m in sg.modes(body, scene, n=SHAPES).modes if m.frequency_hz > 0]
     limit = modes[-1].frequency_hz
     body = replace(body, geometry=_Drawn(body.geometry))
-    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), 1e-4, "harmonic", {}, limit)
+    return Computed(scene, body, tuple(modes), (1e-4,) * len(modes), "harmonic", {}, limit)
 
 
 def _shapes(rng: np.random.Generator, true: Computed, at: np.ndarray, noise: float) -> Shapes:

@@ -1,27 +1,60 @@
-"""Tables that two trains and two shafts beside each other share."""
+"""Everything that two trains and two shafts beside each other leave in a folder: numbers, curves,
+charts, and one self-contained page.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from solidgear.report.folder import begun
+from solidgear.report.plot import Make
+from solidgear.report.sheet_files import write_charts, write_json
 from solidgear.report.table import Cell, Column, Table, text, word
-from solidgear.report.words import DASH, hertz, percent
+from solidgear.report.train_sheet import Section, write_sheet
+from solidgear.report.units import Units
+from solidgear.report.words import DASH, hertz, percent, seconds
 
 #: letters of an entry of a file on a page and in a terminal
 LONG, SHORT = 60, 34
 SAME = "Nothing differs in the input."
 
 
-def title(both: Mapping[str, Mapping[str, Any]]) -> str:
-    """Title of two shafts or trains, once if they have the same."""
-    titles = [one["title"] for one in both.values()]
-    return titles[0] if len(set(titles)) == 1 else f"{titles[0]} beside {titles[1]}"
-
-
-def who(found: Any) -> str:
-    """Both letters and what they stand for."""
-    return "; ".join(one.label for one in found.both)
+def write_beside(
+    found: Any,
+    sections: Callable[[], Sequence[Section]],
+    out: str | os.PathLike,
+    units: Units,
+    *,
+    lines: Mapping[str, Table] | None = None,
+    charts: Mapping[str, Make] | None = None,
+) -> Path:
+    """Write results.json, tables for other programs (`lines`), those charts that are files as well,
+    and report.html with its sections; the path is that of the page.
+    """
+    lines, charts = lines or {}, charts or {}
+    files = ["report.html", *(f"{name}.csv" for name in lines)]
+    files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
+    titles = dict.fromkeys(one.title for one in found.both)
+    with begun(out) as folder:
+        # Numbers first: whatever happens to charts, they are there.
+        write_json(folder / "results.json", {**found.results, "files": files})
+        for name, table in lines.items():
+            table.write(folder / f"{name}.csv")
+        for name, make in charts.items():
+            write_charts(folder / name, make)
+        return write_sheet(
+            folder / "report.html",
+            " beside ".join(titles),
+            f"solidgear report on {found.results['kind']}: "
+            f"{'; '.join(one.label for one in found.both)}.",
+            verdict=found.told(units),
+            cautions=found.cautions,
+            sections=sections(),
+            notes=[f"Whole run: {seconds(found.seconds)} s."],
+        )
 
 
 def inputs(found: Any, width: int = LONG) -> Table:
@@ -37,7 +70,7 @@ def inputs(found: Any, width: int = LONG) -> Table:
 def modes(found: Any) -> Table:
     """Natural frequencies side by side, with what of their differences is resolved."""
     columns = [
-        text("mode", _name),
+        text("mode", names),
         Column("A, Hz", lambda p: its(p.a, "frequency_hz"), hertz),
         Column("B, Hz", lambda p: its(p.b, "frequency_hz"), hertz),
         Column("difference", lambda p: apart(p.change)),
@@ -63,10 +96,10 @@ def its(one: Any, key: str) -> Any:
     return None if one is None else getattr(one, key)
 
 
-def _name(pair: Any) -> str:
+def names(pair: Any, key: str = "name") -> str:
     """A mode as A calls it, and as B does where that is another name."""
-    names = [one.name for one in (pair.a, pair.b) if one is not None]
-    return names[0] if len(set(names)) == 1 else f"{names[0]} (B: {names[1]})"
+    told = [getattr(one, key) for one in (pair.a, pair.b) if one is not None]
+    return told[0] if len(set(told)) == 1 else f"{told[0]} (B: {told[1]})"
 
 
 def apart(change: Any, scale: float | None = None) -> str | Cell | None:
