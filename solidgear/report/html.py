@@ -29,7 +29,7 @@ from solidgear.report import (
 )
 from solidgear.report.border import as_record
 from solidgear.report.lumped import lumped_tables
-from solidgear.report.page_parts import data_uri, template
+from solidgear.report.page_parts import Contents, data_uri, template
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.units import Units, units_named
 from solidgear.report.viewer import TURNED, fragment_of
@@ -40,34 +40,6 @@ log = logging.getLogger(__name__)
 
 #: a picture: PNG, JPEG or SVG, in bytes or as a path
 Picture = bytes | str | os.PathLike
-
-
-#: sections of the customer's part and of the appendix: anchor -> title
-CUSTOMER = {
-    "scene": "Shaft and bearings",
-    "stiffness": "Stiffness and compliance",
-    "points": "Further lumped points",
-    "frequencies": "Natural frequencies",
-    "open": "What the data leave open",
-    "shapes": "Mode shape",
-    "models": "Which models may be used",
-}
-APPENDIX = {
-    "results": "All models side by side",
-    "matrices": "Stiffness of the other models",
-    "between": "At the further points and between points",
-    "modes": "Natural frequencies of all models",
-    "renders": "Mode shapes of the other models",
-    "deviations": "Differences between models",
-    "causes": "Causes",
-    "attachments": "Attachments",
-    "verification": "Solution verification",
-    "mac": "Mode correlation",
-    "cost": "Cost",
-    "speed": "Speed against accuracy",
-    "lumped": "Lumped models",
-    "provenance": "Provenance",
-}
 
 
 def write_report(
@@ -131,60 +103,17 @@ def render_page(
     record = as_record(found)
     chosen = units_named(units or record.shown_in)
     drawn = drawn or drawn_charts(record, folder)
-    shown = {
-        **_tables(record, chosen),
-        **_pictures(record, folder, images),
-        "charts": {name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
-        "race": race_tables.section(folder, record.scene),
-        "viewer": Markup(viewer) if viewer else _viewer(record, folder),
-    }
     return template("report.html").render(
         **_opening(record, chosen),
-        **_contents(shown),
-        **shown,
+        **_tables(record, chosen),
+        **_pictures(record, folder, images),
+        customer=Contents(),
+        appendix=Contents("A{}"),
+        charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
+        race=race_tables.section(folder, record.scene),
+        viewer=Markup(viewer) if viewer else _viewer(record, folder),
         warnings=[*record.warnings, *drawn.failed],
     )
-
-
-def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
-    """The sections that have content, numbered, in the order of the page."""
-    charts = shown["charts"]
-    content = {
-        "scene": shown["scene_facts"] or shown["bearings"],
-        "stiffness": shown["own_matrices"],
-        "frequencies": shown["own_frequencies"],
-        "open": shown["budget"],
-        "shapes": shown["own_renders"] or shown["viewer"],
-        "models": shown["models"],
-        "results": shown["summary"],
-        "matrices": shown["other_matrices"],
-        "points": shown["points"],
-        "between": shown["point_matrices"],
-        "modes": shown["frequencies"],
-        "renders": shown["other_renders"],
-        "deviations": shown["deviations"],
-        "causes": shown["causes"] or charts.get("causes"),
-        "attachments": shown["attachments"] or charts.get("attachments"),
-        "verification": shown["levels"] or shown["algebra"] or shown["where"],
-        "mac": shown["pairs"] or charts.get("mac"),
-        "cost": shown["cost"],
-        "speed": shown["race"],
-        "lumped": shown["lumped"],
-        "provenance": shown["environment"] or shown["summary"],
-    }
-    customer = [anchor for anchor in CUSTOMER if content[anchor]]
-    appendix = [anchor for anchor in APPENDIX if content[anchor]]
-    sections = {}
-    for anchors, titles, sign in ((customer, CUSTOMER, ""), (appendix, APPENDIX, "A")):
-        for n, anchor in enumerate(anchors, start=1):
-            number = f"{sign}{n}" if sign else f"{n}."
-            sections[anchor] = {"number": number, "title": titles[anchor]}
-    parts = [("The shaft and its numbers", customer), ("Appendix for the engineer", appendix)]
-    return {
-        "sections": sections,
-        "appendix": appendix,
-        "contents": [(part, anchors) for part, anchors in parts if anchors],
-    }
 
 
 class Drawn(NamedTuple):

@@ -1,14 +1,37 @@
-"""Templates of pages, and pictures inside them."""
+"""Templates of pages, their contents, and pictures inside them."""
 
 from __future__ import annotations
 
 import base64
 import functools
 import logging
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 log = logging.getLogger(__name__)
+
+
+@dataclass
+class Contents:
+    """Sections of a page, numbered as its template tells them.
+
+    Attributes
+    ----------
+    number : str
+        Of a section, with braces for its figure.
+    told : list of (str, str)
+        Anchor and heading of every section.
+    """
+
+    number: str = "{}."
+    told: list[tuple[str, str]] = field(default_factory=list)
+
+    def add(self, anchor: str, title: str) -> str:
+        """Heading of a further section."""
+        heading = f"{self.number.format(len(self.told) + 1)} {title}"
+        self.told.append((anchor, heading))
+        return heading
 
 
 @functools.cache

@@ -14,7 +14,7 @@ from solidgear.machine.whole_file import whole
 from solidgear.report import input_tables, train_tables
 from solidgear.report.folder import begun
 from solidgear.report.order_chart import order_chart
-from solidgear.report.page_parts import data_uri, template
+from solidgear.report.page_parts import Contents, data_uri, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sheet_files import write_charts, write_json
@@ -118,6 +118,8 @@ def _page(
     two = len(train["shafts"]) == 2
     chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train["shafts"])
     return template("train.html").render(
+        contents=Contents(),
+        title=train["title"],
         train=train,
         count="two shafts" if two else f"{len(train['shafts'])} shafts",
         mixed="every mix of models" if two else "mixes of models",
