@@ -72,10 +72,10 @@ def made_up_charts():
     """Charts of the made-up run as its page draws them, once for all files of a process: three
     seconds, and many look at them.
     """
-    from solidgear.report.html import drawn_charts
     from tests.made_up_run import fixture_results
+    from tests.plain import drawn_charts
 
-    return drawn_charts(fixture_results(), None)
+    return drawn_charts(fixture_results())
 
 
 @pytest.fixture(scope="module", autouse=True)

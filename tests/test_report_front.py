@@ -12,11 +12,21 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.judge.record import Record
 from solidgear.report import front
-from solidgear.report.html import render_page
 from solidgear.report.input_tables import scene_facts
-from solidgear.report.terminal import final_table, matrix_table
-from solidgear.report.units import ENGINEERING, SI, SYSTEMS, US, digits_for, in_ascii, plain
+from solidgear.report.terminal import matrix_table
+from solidgear.report.units import (
+    ENGINEERING,
+    SI,
+    SYSTEMS,
+    US,
+    digits_for,
+    in_ascii,
+    plain,
+    units_named,
+)
+from solidgear.report.viewer import END, START, TURNED
 from tests.made_up_run import fixture_results
+from tests.plain import final_table, render_page
 from tests.test_report import shown, text_of
 
 pytestmark = pytest.mark.usefixtures("no_charts")
@@ -24,6 +34,10 @@ pytestmark = pytest.mark.usefixtures("no_charts")
 
 def record_of(**changes):
     return Record.model_validate(fixture_results() | changes)
+
+
+def si_page():
+    return render_page(fixture_results() | {"shown_in": "si"})
 
 
 def part(page, name):
@@ -103,14 +117,14 @@ def test_figures_end_where_the_bar_begins():
 
 def test_unknown_units_are_refused_in_a_sentence():
     with pytest.raises(SolidgearError, match='did you mean "si".*engineering, si, us'):
-        render_page(fixture_results(), units="sii")
+        units_named("sii")
 
 
 def test_terminal_is_ascii_in_every_choice():
     stiffness = fixture_results()["models"]["harmonic"]["stiffness"]
     for name in SYSTEMS:
         text = shown(matrix_table(stiffness, "stiffness", name)) + shown(
-            final_table(fixture_results(), name)
+            final_table(fixture_results() | {"shown_in": name})
         )
         assert "…" not in text and max(map(len, text.splitlines())) <= 80
         assert in_ascii(SYSTEMS[name].unit("N/m")) in text
@@ -121,7 +135,7 @@ def test_terminal_is_ascii_in_every_choice():
 
 def test_the_choice_is_kept_for_a_page_that_is_written_again():
     again = render_page(json.loads(json.dumps(record_of(shown_in="si").as_dict())))
-    assert again == render_page(fixture_results(), units="si") != render_page(fixture_results())
+    assert again == si_page() != render_page(fixture_results())
 
 
 # ------------------------------------------------------------------------------------------------- page one
@@ -129,7 +143,7 @@ def test_customers_part_has_no_exponents():
     page = render_page(fixture_results())
     for name in ("front", "customer"):
         assert not re.search(r"\de[+-]?\d", part(page, name))
-    assert re.search(r"\de-?\d", part(render_page(fixture_results(), units="si"), "front"))
+    assert re.search(r"\de-?\d", part(si_page(), "front"))
 
 
 def test_page_one_has_date_version_and_hash():
@@ -227,11 +241,13 @@ def test_lumped_synthesis_is_told_only_where_it_is_asked_for():
     assert "equations 52" in render_page(results) and 'id="lumped"' in render_page(results)
 
 
-def test_a_viewer_stands_in_the_section_of_the_mode_shape():
-    page = render_page(fixture_results(), viewer='<div id="turning"></div>')
+def test_a_viewer_stands_in_the_section_of_the_mode_shape(tmp_path):
+    fragment = f'{START}<div id="turning"></div>{END}'
+    (tmp_path / TURNED).write_text(fragment)
+    page = render_page(fixture_results() | {"files": [TURNED]}, tmp_path)
     section = page[page.index('<h2 id="shapes">') : page.index('<h2 id="models">')]
     assert '<div id="turning"></div>' in section
-    assert 'id="turning"' not in render_page(fixture_results())
+    assert 'id="turning"' not in render_page(fixture_results(), tmp_path)
 
 
 def test_the_name_of_a_material_stands_beside_its_constants_until_they_change():

@@ -7,7 +7,7 @@ from functools import partial
 from math import degrees, isfinite
 from typing import Any
 
-from solidgear.report.table import Cell, Column, Table, quantity, text, word
+from solidgear.report.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 
 DOFS = ("x", "y", "z", "thx", "thy", "thz")
@@ -71,9 +71,8 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
 
 def turn_lines(turn: Any) -> Table:
     """Mesh force of every planet over the angle of the carrier in SI, for other programs."""
-    heads = ["carrier [rad]", *(f"planet {k} [N]" for k in range(1, turn.force.shape[1] + 1))]
-    rows = [[float(a), *map(float, own)] for a, own in zip(turn.angle, turn.force)]
-    return _plain(heads, rows)
+    forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
+    return numbers({"carrier [rad]": turn.angle, **forces})
 
 
 def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
@@ -271,10 +270,5 @@ def _largest(bearing: Any) -> float | None:
 
 def line(shaft: Any) -> Table:
     """Deflection line of a shaft in SI, for other programs."""
-    heads = ["y [m]", *(f"{d} [{si.split()[0]}]" for d, si in zip(DOFS, SI_OF))]
-    rows = [[float(y), *map(float, six)] for y, six in zip(shaft.stations, shaft.line)]
-    return _plain(heads, rows)
-
-
-def _plain(heads: Sequence[str], rows: Sequence[Sequence[float]]) -> Table:
-    return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in heads], rows)
+    heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOFS, SI_OF)]
+    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})

@@ -9,8 +9,6 @@ file; its one script turns the mode shapes, and without it pictures stand there.
 from __future__ import annotations
 
 import logging
-import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,7 +25,6 @@ from solidgear.report import (
     result_tables,
     run_tables,
 )
-from solidgear.report.border import as_record
 from solidgear.report.lumped import lumped_tables
 from solidgear.report.page_parts import Contents, data_uri, template
 from solidgear.report.reading import model_name, reference_of
@@ -38,34 +35,16 @@ from solidgear.report.words import capital, percent, seconds
 log = logging.getLogger(__name__)
 
 
-#: a picture: PNG, JPEG or SVG, in bytes or as a path
-Picture = bytes | str | os.PathLike
-
-
-def write_report(
-    found: Record | Mapping[str, Any],
-    folder: str | os.PathLike,
-    images: Mapping[str, Picture] | None = None,
-    units: str | Units | None = None,
-    viewer: str = "",
-    drawn: Drawn | None = None,
-) -> Path:
+def write_report(record: Record, folder: Path, drawn: Drawn | None = None) -> Path:
     """Write ``report.html`` into `folder`.
 
     Parameters
     ----------
-    found : Record or mapping
-        What a run found; parts that are missing are left out.
-    folder : path
+    record : Record
+        What a run found, in the units it was shown in; parts that are missing are left out. Mode
+        shapes and pictures that it names are taken from `folder`.
+    folder : Path
         Made if it is not there.
-    images : mapping, optional
-        Renders by model key: PNG, JPEG or SVG, as bytes or as a path. Without it the files that
-        the record names are taken from `folder`.
-    units : str or Units, optional
-        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
-    viewer : str
-        HTML that shows mode shapes, for the section of the mode shape, taken as it is: none of it
-        may come from a scene unescaped.
     drawn : Drawn, optional
         The charts, where :func:`drawn_charts` has drawn them before.
 
@@ -77,41 +56,30 @@ def write_report(
     Raises
     ------
     SolidgearError
-        For plain data that is no record of this version, or unknown units.
+        For unknown units.
     """
-    record = as_record(found)
-    folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
     with whole(target) as partial:
-        page = render_page(record, folder, images, units, viewer, drawn)
-        partial.write_text(page, encoding="utf-8")
+        partial.write_text(render_page(record, folder, drawn), encoding="utf-8")
     return target
 
 
-def render_page(
-    found: Record | Mapping[str, Any],
-    folder: str | os.PathLike | None = None,
-    images: Mapping[str, Picture] | None = None,
-    units: str | Units | None = None,
-    viewer: str = "",
-    drawn: Drawn | None = None,
-) -> str:
+def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str:
     """The page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
-    record = as_record(found)
-    chosen = units_named(units or record.shown_in)
+    chosen = units_named(record.shown_in)
     drawn = drawn or drawn_charts(record, folder)
     return template("report.html").render(
         **_opening(record, chosen),
         **_tables(record, chosen),
-        **_pictures(record, folder, images),
+        **_pictures(record, folder),
         customer=Contents(),
         appendix=Contents("A{}"),
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
         race=race_tables.section(folder, record.scene),
-        viewer=Markup(viewer) if viewer else _viewer(record, folder),
+        viewer=Markup(fragment_of(folder / TURNED) if TURNED in (record.files or ()) else ""),
         warnings=[*record.warnings, *drawn.failed],
     )
 
@@ -131,16 +99,11 @@ class Drawn(NamedTuple):
     failed: list[str]
 
 
-def drawn_charts(found: Record | Mapping[str, Any], folder: str | os.PathLike | None) -> Drawn:
-    """All charts of the page of a record, which need none of its pictures.
-
-    Parameters
-    ----------
-    found : Record or mapping
-    folder : path, optional
-        Of the page, where a race may have left its rows.
+def drawn_charts(record: Record, folder: Path) -> Drawn:
+    """All charts of the page of a record, which need none of its pictures; in the folder of the page
+    a race may have left its rows.
     """
-    record, out = as_record(found), Drawn({}, [])
+    out = Drawn({}, [])
     for name, chart in {
         **charts.CHARTS,
         "speed": lambda found: race_tables.chart(folder, found.scene),
@@ -222,34 +185,13 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
     }
 
 
-def _pictures(
-    record: Record, folder: str | os.PathLike | None, images: Mapping[str, Picture] | None
-) -> dict[str, list[tuple[str, str | None]]]:
+def _pictures(record: Record, folder: Path) -> dict[str, list[tuple[str, str | None]]]:
     """(caption, data URI or None when the picture could not be had), of the model shown on page one
-    and of the others.
+    and of the others: only files inside the folder of the report, results must not pull in others.
     """
-    if images is None:
-        images = _named_images(record, folder)
-    told = {k: (capital(model_name(record, k)), data_uri(k, image)) for k, image in images.items()}
     own = front.shown_model(record)
-    return {
-        "own_renders": [found for key, found in told.items() if key == own],
-        "other_renders": [found for key, found in told.items() if key != own],
-    }
-
-
-def _viewer(record: Record, folder: str | os.PathLike | None) -> Any:
-    """The mode shapes to be turned, from the page that the run has written beside this one."""
-    from markupsafe import Markup
-
-    here = folder is not None and TURNED in (record.files or ())
-    return Markup(fragment_of(Path(folder) / TURNED)) if folder is not None and here else ""
-
-
-def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str, Picture]:
-    """The files that a record names, only those inside the folder of the report: results must not
-    pull in others.
-    """
-    if folder is None:
-        return {}
-    return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
+    shown: dict[str, list[tuple[str, str | None]]] = {"own_renders": [], "other_renders": []}
+    for key, name in record.images.items():
+        picture = capital(model_name(record, key)), data_uri(key, folder / Path(name).name)
+        shown["own_renders" if key == own else "other_renders"].append(picture)
+    return shown

@@ -12,8 +12,7 @@ import numpy as np
 from solidgear.report import train_tables
 from solidgear.report.nonlinear_chart import backlash_chart, waterfall_chart
 from solidgear.report.sheet_files import write_files
-from solidgear.report.table import Column, Table, text
-from solidgear.report.train_files import figures
+from solidgear.report.table import Column, Table, numbers, text
 from solidgear.report.units import ENGINEERING, Units, plain, units_named
 from solidgear.report.words import DASH, hertz
 
@@ -104,8 +103,7 @@ def branch(found: Any, one: Any) -> Table:
             f"{other.teeth.mesh} largest force [N]": other.highest,
             f"{other.teeth.mesh} share of the cycle in contact": other.driving,
         }
-    rows = np.column_stack(list(there.values())).tolist()
-    return Table("", [Column(head, write=figures) for head in there], rows)
+    return numbers(there)
 
 
 def runs(found: Any) -> dict[str, Table]:
@@ -124,8 +122,7 @@ def runs(found: Any) -> dict[str, Table]:
                 f"{other.found.teeth.mesh} dynamic force [N]": other.force,
                 f"{other.found.teeth.mesh} largest force [N]": other.run.highest,
             }
-        rows = np.column_stack(list(there.values())).tolist()
-        out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
+        out[stem] = numbers(there)
     return out
 
 

@@ -81,7 +81,7 @@ def designs_chart(found: Any, title: str, width: float = WIDE) -> Chart:
                 "x": a,
                 "y": one.value,
                 "name": name,
-                "told": readout(f"design {one.number}", *facts, goal),
+                "readout": readout(f"design {one.number}", *facts, goal),
             }
         )
     panel.draw({"type": "point", "filled": True, "size": 60}, rows)

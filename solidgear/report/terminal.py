@@ -15,13 +15,14 @@ from solidgear.judge.open_record import OpenNumbers
 from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.report import open_words, reading, words
-from solidgear.report.border import as_record
 from solidgear.report.matrices import block
 from solidgear.report.table import MARK, Column, Table, text, word
 from solidgear.report.units import SI, Units, in_ascii, units_named
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from solidgear.solve.modes import Mode
 
 #: tells something of a model by its key
 Tell = Callable[[str], Any]
@@ -43,32 +44,12 @@ COLUMNS = {
 }
 
 
-def final_table(
-    found: Record | Mapping[str, Any], units: str | Units | None = None
-) -> RenderableType:
+def final_table(record: Record) -> RenderableType:
     """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, error
-    bar, size, time.
-
-    Parameters
-    ----------
-    found : Record or mapping
-        What a run found; missing parts show as a dash.
-    units : str or Units, optional
-        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
-
-    Returns
-    -------
-    rich renderable
-        A table of at most 80 columns, and below it what its marks mean and why a model must not be
-        trusted.
-
-    Raises
-    ------
-    SolidgearError
-        For plain data that is no record of this version, or unknown units.
+    bar, size, time, in at most 80 columns; missing parts show as a dash. Below it what the marks
+    mean and why a model must not be trusted.
     """
-    record = as_record(found)
-    chosen = units_named(units or record.shown_in)
+    chosen = units_named(record.shown_in)
     table = Table("", _columns(record, chosen), list(record.models), style="narrow")
     unresolved = any(NOT_RESOLVED in row for row in table.rows)
     notes = [*_notes(record, unresolved), *_further_points(record, chosen)]
@@ -166,11 +147,10 @@ def _against_reference(record: Record, key: str, quantity: str) -> str:
     return words.percent(row.relative) if reading.is_resolved(row) else NOT_RESOLVED
 
 
-def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
+def closing_lines(record: Record) -> list[str]:
     """Lines below a verdict: cautions, modes that were counted, seconds and peak memory (plain
     text).
     """
-    record = as_record(found)
     lines = [f"caution: {w}" for w in record.warnings]
     if told := reading.left_open(record):
         lines.append(told)
@@ -194,9 +174,8 @@ def _memory(record: Record) -> str:
     return peak
 
 
-def verdict_text(found: Record | Mapping[str, Any]) -> str:
+def verdict_text(record: Record) -> str:
     """The verdict in plain words, one statement a line (plain text: print it without markup)."""
-    record = as_record(found)
     verdict = record.verdict
     if verdict == VerdictRecord():
         return "No verdict: the run did not get that far."
@@ -243,7 +222,7 @@ def matrix_table(
 
 
 def modes_table(
-    modes: Sequence[ModeRecord | Mapping[str, Any]],
+    modes: Sequence[ModeRecord | Mode],
     bars: Mapping[str, float] | None = None,
     open_: OpenNumbers | None = None,
 ) -> Table:
@@ -267,4 +246,4 @@ def modes_table(
     if open_ is not None:
         columns += open_words.columns(open_, lambda mode: mode.name)
         note = open_words.remark(open_)
-    return Table("", columns, list(map(ModeRecord.model_validate, modes)), note)
+    return Table("", columns, modes, note)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from solidgear.report.panel import Axis, Panel
+from solidgear.report.panel import Axis, Panel, curve
 
 #: dB below the largest line at which spectra begin, and how high one is over the distance of two
 DEEP, TALL = 50.0, 1.8
@@ -58,6 +58,5 @@ def waterfall(
     heights = rpm[:, None] + tall * np.maximum(1 + level / DEEP, 0.0)
     for x, y in zip(hertz, heights):
         here = (x > 0) & (x < highest)
-        rows = [{"x": a, "y": b} for a, b in zip(x[here].tolist(), y[here].tolist())]
-        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, rows)
+        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, curve(x[here], y[here]))
     return panel

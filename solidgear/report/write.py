@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
@@ -11,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
-from solidgear.machine.whole_file import whole
 from solidgear.report.folder import begun, prepare
 from solidgear.report.html import drawn_charts, write_report
 from solidgear.report.outputs import OUTPUTS
 from solidgear.report.page_parts import data_uri
 from solidgear.report.reading import model_name
 from solidgear.report.render import Drawing, RenderJob, render_modes
+from solidgear.report.sheet_files import write_json
 from solidgear.report.turning import Turned, turned
 from solidgear.report.viewer import TURNED, Turning
 
@@ -57,7 +56,7 @@ def write_all(
             *(f"mode_{m}.png" for m in shapes if renders),
             *([TURNED] if shapes and renders else []),
         ]
-        _write_json(folder / "results.json", record)
+        write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
             progress("renders")
         jobs = _jobs(comparison, folder) if renders else {}
@@ -75,15 +74,9 @@ def write_all(
         record.files = [
             name for name in record.files if name == "report.html" or (folder / name).exists()
         ]
-        _write_json(folder / "results.json", record)
+        write_json(folder / "results.json", record.as_dict())
         write_report(record, folder, drawn=drawn)
     return folder
-
-
-def _write_json(path: Path, record: Record) -> None:
-    text = json.dumps(record.as_dict(), indent=1, allow_nan=False)
-    with whole(path) as partial:
-        partial.write_text(text + "\n", encoding="utf-8")
 
 
 def _try(record: Record, what: str, action: Callable[..., object], *arguments: Any) -> None:

@@ -1,0 +1,29 @@
+"""What a report shows of plain results, as tests make them up."""
+
+from pathlib import Path
+
+from solidgear.report import html, terminal
+from solidgear.report.border import as_record
+
+#: a folder without a file
+NOWHERE = Path("there is no such folder")
+
+
+def render_page(results, folder=NOWHERE, drawn=None):
+    return html.render_page(as_record(results), folder, drawn)
+
+
+def write_report(results, folder):
+    return html.write_report(as_record(results), folder)
+
+
+def drawn_charts(results):
+    return html.drawn_charts(as_record(results), NOWHERE)
+
+
+def final_table(results):
+    return terminal.final_table(as_record(results))
+
+
+def verdict_text(results):
+    return terminal.verdict_text(as_record(results))
