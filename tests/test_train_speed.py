@@ -16,6 +16,7 @@ from solidgear.scene.catalogue import Catalogue
 from solidgear.studies.spectrum import Spectrum, read_spectrum
 from solidgear.studies.train.at_speed import Line, at_speed, explained, turns_of_pinion
 from solidgear.studies.train.kinematics import SLIP, of_bearing, settled_angles, train_orders
+from tests.charted import words_of
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

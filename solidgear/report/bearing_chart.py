@@ -41,18 +41,7 @@ class BearingPanel(NamedTuple):
 
 
 def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:
-    """Write the picture.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending, ``.png`` or ``.svg``, says what it becomes.
-
-    Raises
-    ------
-    SolidgearError
-        For another ending, or a file that cannot be written.
-    """
+    """Write the picture as a file that ends in ``.png`` or ``.svg``."""
     Chart([[_stiffness(panel), _shares(panel)] for panel in panels]).write(file)
 
 

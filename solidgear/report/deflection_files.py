@@ -29,25 +29,9 @@ def write_deflection(
     units: str | Units = ENGINEERING,
     turns: Sequence[Any] = (),
 ) -> list[Path]:
-    """Write a deflection into a folder.
-
-    Parameters
-    ----------
-    models : mapping of str to sequence of ShaftDeflection
-        Shafts by model, the judge last.
-    data : mapping
-        Everything as plain data in SI, which becomes ``deflection.json``.
-    told : sequence of Table
-        Before those of displacements and bearings.
-    units : str or Units
-        Of chart and page.
-    turns : sequence of StageTurn
-        Of planetary stages.
-
-    Returns
-    -------
-    list of Path
-        ``deflection.html`` first, then a CSV a shaft with its line by the judge, the JSON, the chart.
+    """Write page, data, chart, and a CSV a shaft with its line by the judge, the last of the
+    models; of planetary stages the forces over a turn. `data` is in SI, chart and page in `units`;
+    `told` stands before the tables of displacements and bearings.
     """
     shown = units_named(units)
     judge = list(models.values())[-1]
@@ -105,15 +89,7 @@ def deflection_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Deflection of every shaft in both planes.
-
-    Parameters
-    ----------
-    found : mapping of str to sequence of ShaftDeflection
-        Shafts of each model, by its name; the last is the reference.
-    width : float
-        px.
-    """
+    """Deflection of every shaft in both planes by every model, the last of them the reference."""
     looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(found)}
     names = [shaft.name for shaft in next(iter(found.values()))]
     panels = [

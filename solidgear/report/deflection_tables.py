@@ -76,12 +76,8 @@ def turn_lines(turn: Any) -> Table:
 
 
 def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Misalignment and radial bearing loads at all operating points of a train.
-
-    Parameters
-    ----------
-    points : sequence of TrainDeflection
-        By one model; none for one point, of which there are tables already.
+    """Misalignment and radial bearing loads at all operating points of a train, by one model; none
+    for one point, of which there are tables already.
     """
     if not points:
         return []
@@ -159,11 +155,8 @@ def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
 
 
 def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
-    """Load on every mount of the housing of a train, and how the housing moves; none without one.
-
-    Parameters
-    ----------
-    found : TrainDeflection
+    """Load on every mount of the housing of a train, and how the housing moves; none without
+    one.
     """
     if not found.mounts:
         return []
@@ -186,13 +179,7 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
 
 
 def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
-    """Motion of one place by every model.
-
-    Parameters
-    ----------
-    shafts : sequence of ShaftDeflection
-        One a model.
-    """
+    """Motion of one place by every model, of which there is a shaft each."""
     columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
     return Table(f"Motion of {port}", columns, shafts)
 

@@ -36,27 +36,9 @@ log = logging.getLogger(__name__)
 
 
 def write_report(record: Record, folder: Path, drawn: Drawn | None = None) -> Path:
-    """Write ``report.html`` into `folder`.
-
-    Parameters
-    ----------
-    record : Record
-        What a run found, in the units it was shown in; parts that are missing are left out. Mode
-        shapes and pictures that it names are taken from `folder`.
-    folder : Path
-        Made if it is not there.
-    drawn : Drawn, optional
-        The charts, where :func:`drawn_charts` has drawn them before.
-
-    Returns
-    -------
-    Path
-        Of the page. It appears whole or not at all: an earlier one is replaced in one step.
-
-    Raises
-    ------
-    SolidgearError
-        For unknown units.
+    """Write ``report.html``, whole or not at all, in the units that the record was shown in. Parts
+    that it lacks are left out; mode shapes and pictures that it names are taken from the folder,
+    `drawn` are charts that were drawn before.
     """
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
@@ -85,14 +67,8 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
 
 
 class Drawn(NamedTuple):
-    """The charts of a page.
-
-    Attributes
-    ----------
-    svg : dict of str to bytes
-        By name; None where there is nothing to draw.
-    failed : list of str
-        A sentence for every chart that could not be drawn.
+    """The charts of a page by name, None where there is nothing to draw, and a sentence for every
+    one that could not be drawn.
     """
 
     svg: dict[str, bytes | None]

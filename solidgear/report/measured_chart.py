@@ -31,17 +31,7 @@ NAMES = 0.32
 def measured_chart(
     found: Any, response: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """The measured spectrum with the orders of its peaks, above the computed mesh force.
-
-    Parameters
-    ----------
-    found : AtSpeed
-        With a spectrum.
-    units : Units, optional
-        Of the computed force.
-    width : float
-        px.
-    """
+    """The measured spectrum with the orders of its peaks, above the computed mesh force."""
     last = float(found.spectrum.frequency_hz[-1])
     ends = (0.0, min(last, max(float(response.frequency_hz[-1]), _last_peak(found))))
     return Chart(

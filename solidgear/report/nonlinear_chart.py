@@ -42,13 +42,8 @@ BINS = 160
 def backlash_chart(
     found: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and orders.
-
-    Parameters
-    ----------
-    found : BacklashTold
-    width : float
-        px.
+    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and
+    orders.
     """
     judge, teeth = found.judge, found.teeth_a_turn
     rpm = 60 * judge.frequency_hz / teeth

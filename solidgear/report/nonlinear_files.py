@@ -48,15 +48,8 @@ def write_nonlinear(
     units: str | Units = ENGINEERING,
     cautions: Sequence[str] = (),
 ) -> list[Path]:
-    """``nonlinear.csv`` of the branch of the first mix, ``nonlinear.json``, its chart and page.
-
-    Parameters
-    ----------
-    found : BacklashTold
-    train : mapping
-        What is known of the train, as plain data.
-    units : str or Units
-        Of chart and page; all else is SI.
+    """``nonlinear.csv`` of the branch of the first mix and ``nonlinear.json`` in SI, its chart and
+    page in `units`; `train` is what is known of the train as plain data.
     """
     shown = units_named(units)
     return write_files(

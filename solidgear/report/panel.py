@@ -157,16 +157,9 @@ class Panel:
     def draw(
         self, mark: str | Mapping[str, Any], rows: Iterable[Mapping[str, Any]], **encoding: Any
     ) -> None:
-        """Add a layer.
-
-        Parameters
-        ----------
-        mark : str or mapping
-            Of Vega-Lite, with what all of its rows share.
-        rows : iterable of mapping
-            Those with a place that is no number, or none on a logarithmic axis, are left out.
-        **encoding
-            Channels of Vega-Lite besides those of the rows.
+        """Add a layer: a mark of Vega-Lite with what all of its rows share, and channels besides
+        those of the rows. Rows with a place that is no number, or none on a logarithmic axis, are
+        left out.
         """
         kept = [dict(row) for row in rows if self._placed(row)]
         if kept:

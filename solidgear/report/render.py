@@ -82,18 +82,9 @@ class RenderResult:
 
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
-    """Draw deformed shafts, coloured by displacement, over their shape at rest.
-
-    Parameters
-    ----------
-    jobs : iterable of RenderJob
-    timeout : float
-        For all of them together, s.
-
-    Returns
-    -------
-    list of RenderResult
-        One per job, in order. Nothing is raised for a picture that could not be drawn or written.
+    """Draw deformed shafts, coloured by displacement, over their shape at rest, within so many
+    seconds for all of them; a result a job. Nothing is raised for a picture that could not be drawn
+    or written.
     """
     with Drawing(jobs, timeout=timeout) as drawing:
         return drawing.results()
@@ -102,12 +93,8 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
 class Drawing:
     """Pictures being drawn by a child, while the caller does something else.
 
-    As a context manager: the child starts where it is entered, and is gone where it is left.
-
-    Parameters
-    ----------
-    jobs, timeout
-        As of :func:`render_modes`; the time runs from the start.
+    As a context manager: the child starts where it is entered, from when the time runs, and is gone
+    where it is left.
     """
 
     def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
@@ -134,13 +121,7 @@ class Drawing:
         self._folder.cleanup()
 
     def results(self) -> list[RenderResult]:
-        """Wait for the pictures and put them in their places.
-
-        Returns
-        -------
-        list of RenderResult
-            One per job, in order.
-        """
+        """Wait for the pictures and put them in their places; a result a job."""
         if not self.jobs:
             return []
         end = self._end or self._wait()

@@ -10,15 +10,8 @@ CUT = "#8a1f1f"
 
 
 def draw_feature(pen: Any, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
-    """Draw a feature, seen along x, whatever way it looks.
-
-    Parameters
-    ----------
-    pen : object
-        With ``ax``, ``x(y)`` (inches along the shaft) and ``radial`` (inches per metre across).
-    feature : mapping
-        Of the record of a scene.
-    segments : sequence of mapping
+    """Draw a feature of the record of a scene, seen along x, whatever way it looks. The pen has
+    ``ax``, ``x(y)`` (inches along the shaft) and ``radial`` (inches per metre across).
     """
     here = next(s for s in segments if s["name"] == feature["segment"])
     if "addendum" in feature:

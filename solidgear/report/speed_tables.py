@@ -53,14 +53,8 @@ def coincidences(found: Any) -> Table:
 
 
 def measured(found: Any, most: int | None = None) -> Table:
-    """Measured peaks and whose they are, by frequency.
-
-    Parameters
-    ----------
-    found : AtSpeed
-        With a spectrum.
-    most : int, optional
-        Of the largest; all by default.
+    """Measured peaks and whose they are, by frequency; of the largest alone where there is a
+    `most`.
     """
     peaks = sorted(found.peaks, key=lambda peak: -peak.amplitude)[:most]
     unit = found.spectrum.unit

@@ -198,20 +198,8 @@ def matrix_table(
     title: str = "",
     sizes: Sequence[Sequence[float]] | None = None,
 ) -> Table:
-    """A 6x6 with its units; free components (None or NaN) show as a dash.
-
-    Parameters
-    ----------
-    matrix : (6, 6) array_like
-        SI, order x y z thx thy thz.
-    kind : {'stiffness', 'compliance'}
-    units : str or Units
-        To show it in.
-    title : str
-        By default the kind.
-    sizes : two lists of six numbers, optional
-        Diagonal entries beside which a coupling may be next to nothing, of rows and of columns; by
-        default those of the matrix.
+    """A 6x6 with its units, titled by its kind; free components (None or NaN) show as a dash. See
+    :func:`solidgear.report.matrices.block`.
     """
     chosen = units_named(units)
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix

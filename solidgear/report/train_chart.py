@@ -53,16 +53,12 @@ def response_chart(
 
     Parameters
     ----------
-    responses : sequence of TrainResponse
-        By their labels; the peaks of the first are named.
     teeth : int or None
         Of the pinion, for the upper axis in rpm; None where the responses do not share them.
     band : float or None
         Drawn around the first where there are others, dB.
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
-    width : float
-        px.
     """
     last = responses[0].frequency_hz[-1]
     # where models differ is the upper end; below half the first departure they are one line
@@ -112,20 +108,9 @@ def columns_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart | None:
-    """Amplitudes of several columns over frequency, a panel each, the responses over one another;
-    None without any.
-
-    Parameters
-    ----------
-    responses : sequence of TrainResponse
-        By their labels; a column that one does not have is left out there.
-    columns : sequence of (str, str)
-        Name in the responses, with its unit, and what its panel is called; those that never move
-        are left out.
-    teeth : int or None
-        As of :func:`response_chart`.
-    width : float
-        px.
+    """Amplitudes of several columns over frequency, a panel each, the responses over one another,
+    where they have them; None without any. Columns are names in the responses, with their units,
+    and what panels are called; those that never move are left out.
     """
     ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
     models, panels = _models(responses, PAIR), []
@@ -173,16 +158,8 @@ def receptance_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
-
-    Parameters
-    ----------
-    found : sequence of TrainReceptance
-        Of the same two ends.
-    teeth : float
-        In one turn of the shaft that speeds are told of, for the upper axis in rpm.
-    width : float
-        px.
+    """Amplitude and phase of receptances between the same two ends over frequency, the peaks of the
+    first model named; `teeth` as of a response.
     """
     unit, models = units.unit(found[0].unit), _models(found)
     sizes = [units.values(np.abs(one.value), one.unit) for one in found]

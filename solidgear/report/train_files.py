@@ -91,19 +91,9 @@ def write_receptance(
     train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
 ) -> list[Path]:
-    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all,
-    ``receptance.json`` with the peaks and what else is told, and the page ``receptance.html``.
-
-    Parameters
-    ----------
-    found : sequence of TrainReceptance
-        Of the same two ends.
-    teeth : float
-        Of the mesh in one turn of the shaft that speeds are told of.
-    train : mapping
-        What is known of the train, as plain data.
-    units : str or Units
-        Of chart and page; all else is SI.
+    """``receptance.csv`` of the first model and ``receptance.json`` with the peaks and what else is
+    told in SI, ``receptance.png``, ``receptance.svg`` and the page ``receptance.html`` of all in
+    `units`. `train` is what is known of the train as plain data.
     """
     first, shown = found[0], units_named(units)
     unit, value = first.unit, first.value

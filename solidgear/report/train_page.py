@@ -46,8 +46,6 @@ def write_train(
         To draw, the judge's first.
     marks : mapping of str to float
         Where a model leaves its band, Hz.
-    orders : OrderMap
-        Of the judge.
     draw : callable, optional
         Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
         sentences on what could not be drawn.
@@ -55,16 +53,6 @@ def write_train(
         Of tables and charts; results.json and the other tables are SI.
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
-
-    Returns
-    -------
-    Path
-        Of the page.
-
-    Raises
-    ------
-    SolidgearError
-        If the folder cannot be written.
     """
     verdict, train = results["verdict"], results["train"]
     driven = train["title"]

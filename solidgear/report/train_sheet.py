@@ -107,26 +107,9 @@ def write_sheet(
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
 ) -> Path:
-    """Write a page that needs no network and no other file.
-
-    Parameters
-    ----------
-    title, lead : str
-        What is shown, and with which models.
-    tables : iterable of Table
-    charts : mapping of str to callable, optional
-        A chart each, by a name that begins with one of ``WORDS``.
-    viewer : str
-        HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
-    verdict : sequence of str
-        Conclusions, which come first.
-    sections : sequence of Section
-        After all else but the notes.
-
-    Raises
-    ------
-    SolidgearError
-        If the file cannot be written.
+    """Write a page that needs no network and no other file: conclusions, cautions, charts with
+    names that begin with one of ``WORDS``, HTML of mode shapes, tables, sections, notes. The HTML
+    is taken as it is: none of it may come from a file unescaped.
     """
     from markupsafe import Markup
 

@@ -23,20 +23,8 @@ def waterfall(
     highest: float,
     title: str = "",
 ) -> Panel:
-    """Spectra over frequency and speed.
-
-    Parameters
-    ----------
-    rpm : (n,) ndarray
-        Ascending, evenly apart.
-    hertz, size : (n, k) ndarray
-        Of lines at each speed, in any unit.
-    orders : mapping of str to float
-        Of lines that are drawn, by their names, of the shaft.
-    shaft : str
-        Whose speed it is.
-    highest : float
-        Frequency that is shown, Hz.
+    """Spectra, a row each, over frequency and ascending speeds that are evenly apart, with lines of
+    orders of the shaft by their names, up to the highest frequency that is shown.
     """
     step = float(rpm[1] - rpm[0]) if len(rpm) > 1 else float(rpm[0])
     tall = TALL * step

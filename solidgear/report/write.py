@@ -195,29 +195,8 @@ class Drawn:
 def turn_modes(
     drawn: Sequence[Drawn], path: str | os.PathLike, title: str, name: str
 ) -> tuple[Path, str]:
-    """Write a page in which all modes can be turned.
-
-    Parameters
-    ----------
-    drawn : sequence of Drawn
-        Models, side by side.
-    path : path
-        Of the page.
-    title : str
-        Of the page.
-    name : str
-        The mode that it opens with, and of the picture of the first model for print.
-
-    Returns
-    -------
-    path : Path
-    said : str
-        Why there is no picture for print; empty if there is one.
-
-    Raises
-    ------
-    SolidgearError
-        If there is no such mode, or the page cannot be written.
+    """Write a page in which all modes of models side by side can be turned, opened with the named
+    one, and with a picture of it by the first model for print; why there is no such picture, if so.
     """
     path = Path(path)
     prepare(path.parent)
