@@ -168,7 +168,7 @@ def test_pictures(overhung, solved, tmp_path):
         tmp_path / "still.png",
     )
     *results, refused = render_modes([*jobs, dead])
-    if any(r.no_renderer for r in results):
+    if any("OpenGL" in r.reason for r in results):
         pytest.skip(results[0].reason)
     for result in results:
         assert result.ok, result.reason
@@ -181,7 +181,7 @@ def test_pictures(overhung, solved, tmp_path):
         columns = np.flatnonzero(covered[100:580].any(axis=0))
         assert np.ptp(columns) > 0.7 * 1200
     # One picture that cannot be drawn costs no other, and leaves nothing behind.
-    assert not refused.ok and not refused.no_renderer and "zero or not finite" in refused.reason
+    assert not refused.ok and "zero or not finite" in refused.reason
     assert sorted(p.name for p in tmp_path.iterdir()) == ["harmonic.png", "timoshenko.png"]
 
 
@@ -192,7 +192,7 @@ def test_without_a_renderer_there_is_a_sentence_and_no_file(
     results = render_modes(drawing(overhung, solved, tmp_path))
     assert len(results) == 2
     for r in results:
-        assert not r.ok and r.no_renderer
+        assert not r.ok
         assert PACKAGES in r.reason and "\n" not in r.reason
     assert not list(tmp_path.iterdir())
 

@@ -71,14 +71,11 @@ class RenderResult:
         Holds the new picture if ``ok``; otherwise whatever was there before is untouched.
     reason : str
         One sentence on what went wrong, and what mends it; empty if ``ok``.
-    no_renderer : bool
-        Whether the reason is that this machine cannot draw at all.
     """
 
     ok: bool
     path: Path
     reason: str = ""
-    no_renderer: bool = False
 
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
@@ -128,9 +125,8 @@ class Drawing:
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._left() > 0:
             end = self._start() or self._wait()
-        works = (self._room / "window").exists()
         return [
-            _collect(self._room, i, Path(job.path), end, works, self.timeout)
+            _collect(self._room, i, Path(job.path), end, self.timeout)
             for i, job in enumerate(self.jobs)
         ]
 
@@ -206,9 +202,7 @@ def _windows() -> list[str | None]:
     ]
 
 
-def _collect(
-    room: Path, index: int, path: Path, end: str, works: bool, timeout: float
-) -> RenderResult:
+def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> RenderResult:
     """Move a finished picture to its place, or say why there is none."""
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
@@ -239,5 +233,4 @@ def _collect(
         False,
         path,
         f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`",
-        not works,
     )
