@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from solidgear.report.sketch_pen import Pen
+
 CUT = "#8a1f1f"
 
 
-def draw_feature(pen: Any, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
-    """Draw a feature of the record of a scene, seen along x, whatever way it looks. The pen has
-    ``ax``, ``x(y)`` (inches along the shaft) and ``radial`` (inches per metre across).
-    """
+def draw_feature(pen: Pen, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
+    """Draw a feature of the record of a scene, seen along x, whatever way it looks."""
     here = next(s for s in segments if s["name"] == feature["segment"])
     if "addendum" in feature:
         _teeth(pen, feature, here)
@@ -32,22 +32,7 @@ def _name(feature: Mapping) -> str:
     return f"{kind}{turn}" if feature["name"] == kind else f"{kind} {feature['name']}{turn}"
 
 
-def _label(pen, x: float, height: float, text: str) -> None:
-    pen.ax.text(
-        x,
-        height,
-        text,
-        color=CUT,
-        ha="center",
-        va="top",
-        fontsize=8,
-        parse_math=False,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        zorder=10,
-    )
-
-
-def _cut(pen, cut: Mapping, here: Mapping) -> None:
+def _cut(pen: Pen, cut: Mapping, here: Mapping) -> None:
     """Draw a cut into a segment."""
     lo, hi, lean = cut["y"], cut["y"] + cut.get("length", 0.0), 0.0
     radius = here["outer0"]
@@ -58,11 +43,12 @@ def _cut(pen, cut: Mapping, here: Mapping) -> None:
     x = [pen.x(y) for y in (lo - lean, hi - lean, hi + lean, lo + lean, lo - lean)]
     r = [pen.radial * v for v in (floor, floor, radius, radius, floor)]
     pen.ax.fill(x, r, facecolor="white", lw=0, zorder=4)
-    pen.ax.plot(x, r, color=CUT, lw=1.1, ls="-" if "depth" in cut else "--", zorder=5)
-    _label(pen, pen.x((lo + hi) / 2), pen.radial * max(floor, 0) - 0.05, _name(cut))
+    pen.line(x, r, CUT, ls="-" if "depth" in cut else "--")
+    place = pen.x((lo + hi) / 2), pen.radial * max(floor, 0) - 0.05
+    pen.words(*place, _name(cut), CUT, va="top")
 
 
-def _teeth(pen, teeth: Mapping, here: Mapping) -> None:
+def _teeth(pen: Pen, teeth: Mapping, here: Mapping) -> None:
     """Tips and roots above, where the section shows a tooth; the run of the teeth below."""
     x = [pen.x(here["y0"]), pen.x(here["y1"])]
     ends = [pen.radial * here[k] for k in ("outer0", "outer1")]
@@ -70,10 +56,10 @@ def _teeth(pen, teeth: Mapping, here: Mapping) -> None:
     root = 1 - 2 * teeth["dedendum"] / teeth["count"]
     for side in (1, -1):
         for share, style in ((tip, "-"), (root, "--")):
-            pen.ax.plot(x, [side * share * r for r in ends], color=CUT, lw=1.0, ls=style, zorder=5)
+            pen.line(x, [side * share * r for r in ends], CUT, 1.0, ls=style)
         for k in (0, 1):
             band = [side * share * ends[k] for share in (root, tip)]
-            pen.ax.plot([x[k]] * 2, band, color=CUT, lw=1.0, zorder=5)
+            pen.line([x[k]] * 2, band, CUT, 1.0)
     lean = math.tan(teeth["spiral_angle"]) * (1 if teeth["hand"] == "right" else -1)
     steps = 20
     for j in range(teeth["count"]):
@@ -88,16 +74,17 @@ def _teeth(pen, teeth: Mapping, here: Mapping) -> None:
             step = (here["y1"] - here["y0"]) / steps * math.hypot(1.0, slope)
             angle += lean * step / r
         if line:
-            pen.ax.plot(*zip(*line), color=CUT, lw=0.7, alpha=0.8, zorder=5)
+            places, heights = zip(*line)
+            pen.line(places, heights, CUT, 0.7, alpha=0.8)
     text = f"{teeth['count']} {_name(teeth)}"
     if teeth["spiral_angle"]:
         text += f", {math.degrees(teeth['spiral_angle']):.3g} deg {teeth['hand']}"
     if teeth["model"] == "pitch_cone":
         text += " (smeared)"
-    _label(pen, sum(x) / 2, 0.6 * sum(ends) / 2, text)
+    pen.words(sum(x) / 2, 0.6 * sum(ends) / 2, text, CUT, va="top")
 
 
-def _holes(pen, bolts: Mapping, here: Mapping) -> None:
+def _holes(pen: Pen, bolts: Mapping, here: Mapping) -> None:
     """The outlines of a hole above and below, hidden."""
     lo, hi = here["y0"], here["y1"]
     if bolts.get("depth") is not None:
@@ -108,7 +95,7 @@ def _holes(pen, bolts: Mapping, here: Mapping) -> None:
     middle, half = bolts["circle"] / 2, bolts["diameter"] / 2
     for side in (1, -1):
         r = [side * pen.radial * v for v in (middle - half,) * 2 + (middle + half,) * 2]
-        pen.ax.plot(x, [*r, r[0]], color=CUT, lw=1.1, ls="--", zorder=5)
+        pen.line(x, [*r, r[0]], CUT, ls="--")
     size = f"{2e3 * half:.4g}"
     text = f"{bolts['count']} x ⌀{size} {_name(bolts)}"
-    _label(pen, (x[0] + x[1]) / 2, pen.radial * (middle - half) - 0.05, text)
+    pen.words((x[0] + x[1]) / 2, pen.radial * (middle - half) - 0.05, text, CUT, va="top")
