@@ -19,7 +19,8 @@ from solidgear.report.plot import Chart, page_svg
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.where_chart import where_chart
 
-_DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
+#: those that are described in Vega-Lite, for a page of a width
+DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
     "budget": budget_chart,
     "modes": mode_chart,
     "mac": mac_chart,
@@ -33,11 +34,11 @@ _DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
 
 def _drawn(name: str, record: Record) -> bytes | None:
     """A chart as it stands in the page."""
-    return page_svg(name, partial(_DESCRIBED[name], record))
+    return page_svg(name, partial(DESCRIBED[name], record))
 
 
 #: heading -> chart, in the order of the report; what each picture says in words is up to the page
 CHARTS: dict[str, Callable[[Record], bytes | None]] = {
     "sketch": lambda record: sketch_svg("sketch", record.scene),
-    **{name: partial(_drawn, name) for name in _DESCRIBED},
+    **{name: partial(_drawn, name) for name in DESCRIBED},
 }

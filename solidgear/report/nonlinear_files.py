@@ -13,6 +13,7 @@ from solidgear.report import train_tables
 from solidgear.report.nonlinear_chart import backlash_chart, waterfall_chart
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Column, Table, numbers, text
+from solidgear.report.train_files import places
 from solidgear.report.units import ENGINEERING, Units, plain, units_named
 from solidgear.report.words import DASH, hertz
 
@@ -81,8 +82,7 @@ def apart(found: Any) -> dict[str, Table]:
 def branch(found: Any, one: Any) -> Table:
     """A branch of the first mix in its order, in SI."""
     there = {
-        "frequency [Hz]": one.frequency_hz,
-        f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
+        **places(one.frequency_hz, found.teeth_a_turn),
         "dynamic mesh force [N]": one.force,
         "largest mesh force [N]": one.highest,
         "share of the cycle in contact": one.driving,
@@ -104,8 +104,7 @@ def runs(found: Any) -> dict[str, Table]:
     out = {}
     for stem, one in _stems(found).items():
         there = {
-            "frequency [Hz]": one.frequency_hz,
-            f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
+            **places(one.frequency_hz, found.teeth_a_turn),
             "dynamic mesh force [N]": one.force,
             "largest mesh force [N]": one.run.highest,
             "steady dynamic mesh force [N]": one.steady_force,

@@ -5,8 +5,8 @@ Everything fits 80 columns and says the same without colour.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -24,24 +24,11 @@ if TYPE_CHECKING:
 
     from solidgear.solve.modes import Mode
 
-#: tells something of a model by its key
-Tell = Callable[[str], Any]
 NOT_RESOLVED = "n.r."
 #: figures of a coupling that is next to nothing
 WEAK = 3
 #: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
-#: heads of the columns of numbers in the final table, and their units in SI
-COLUMNS = {
-    "K_zz": "N/m",
-    "C_zz": "m/N",
-    "fb1": "Hz",
-    "dC_zz": "",
-    "dfb1": "",
-    "bar C": "",
-    "DOFs": "",
-    "time": "s",
-}
 
 
 def final_table(record: Record) -> RenderableType:
@@ -61,32 +48,39 @@ def _columns(record: Record, units: Units) -> list[Column]:
     """Columns of the final table, which tell of a model by its key."""
     models = record.models
 
-    def entry(name: Quantity) -> Tell:
-        return lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
+    def entry(name: Quantity) -> Column:
+        head = f"{name}\n{units.unit(name.unit)}"
+        return Column(
+            head, lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
+        )
+
+    def apart(head: str, name: Quantity) -> Column:
+        return Column(head, lambda key: _against_reference(record, key, name))
 
     def bar(key: str) -> float | None:
         found = models[key].band
         return found.compliance if found else None
 
-    tells: dict[str, tuple[Tell, Callable[[Any], str]]] = {
-        "K_zz": (entry(K_ZZ), str),
-        "C_zz": (entry(C_ZZ), str),
-        "fb1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
-        "dC_zz": (lambda key: _against_reference(record, key, C_ZZ), str),
-        "dfb1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
-        "bar C": (bar, words.bar_percent),
-        "DOFs": (lambda key: models[key].dofs, words.count),
-        "time": (lambda key: reading.answer_seconds(models[key]), words.seconds),
-    }
     return [
         word("model", lambda key: reading.heading(record, key)[:10]),
         Column("valid", lambda key: VALID[reading.validity(models[key])], kind=MARK),
-        *(Column(_head(name, si, units), *tells[name]) for name, si in COLUMNS.items()),
+        entry(K_ZZ),
+        entry(C_ZZ),
+        Column(
+            f"fb1\n{units.unit('Hz')}",
+            lambda key: reading.first_frequency(models[key], "bending"),
+            words.hertz,
+        ),
+        apart("dC_zz", C_ZZ),
+        apart("dfb1", FIRST_BENDING),
+        Column("bar\nC", bar, words.bar_percent),
+        Column("DOFs", lambda key: models[key].dofs, words.count),
+        Column(
+            f"time\n{units.unit('s')}",
+            lambda key: reading.answer_seconds(models[key]),
+            words.seconds,
+        ),
     ]
-
-
-def _head(name: str, si: str, units: Units) -> str:
-    return f"{name}\n{units.unit(si)}" if si else name.replace(" ", "\n")
 
 
 def _notes(record: Record, unresolved: bool) -> list[str]:

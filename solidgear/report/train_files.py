@@ -99,7 +99,7 @@ def write_receptance(
     unit, value = first.unit, first.value
     table = numbers(
         {
-            **_places(first.frequency_hz, teeth),
+            **places(first.frequency_hz, teeth),
             f"amplitude [{unit}]": np.abs(value),
             "phase [deg]": np.degrees(np.angle(value)),
             f"real part [{unit}]": value.real,
@@ -132,7 +132,7 @@ def _plain(one: Any) -> dict[str, Any]:
 
 def over_frequency(response: Any, teeth: float) -> Table:
     """Amplitude and phase of every column over frequency; the unit stands in brackets."""
-    columns = _places(response.frequency_hz, teeth)
+    columns = places(response.frequency_hz, teeth)
     for name, value in response.columns.items():
         what, _, unit = name.partition(" [")
         columns[f"{what} [{unit}"] = np.abs(value)
@@ -152,6 +152,6 @@ def crossings(orders: Any, of: str = "pinion") -> Table:
     return Table("", columns, orders.crossings)
 
 
-def _places(hz: np.ndarray, teeth: float) -> dict[str, np.ndarray]:
+def places(hz: np.ndarray, teeth: float) -> dict[str, np.ndarray]:
     """Columns of frequency and speed."""
     return {"frequency [Hz]": hz, f"{train_tables.turned(teeth)} speed [rpm]": 60 * hz / teeth}
