@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.machine.whole_file import whole
+from solidgear.report.drawing import ARRAYS
 
 if TYPE_CHECKING:
     from solidgear.body.surface import Surface
@@ -31,7 +32,6 @@ PACKAGES = (
     "libxft2 libxinerama1 libxcursor1 libgomp1"
 )
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
-ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: what a child writes to its standard error
 SAID = "said.txt"
 #: a shape as it is, without a caption

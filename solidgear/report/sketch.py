@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.report.sketch_details import MASS, draw_blend, draw_mass
-from solidgear.report.sketch_features import draw_feature
+from solidgear.report.sketch_features import MASS, draw_blend, draw_feature, draw_mass
 from solidgear.report.sketch_pen import FILL, INK, Pen
 from solidgear.report.words import is_number
 

@@ -80,12 +80,12 @@ def line_place(line: Any) -> str | None:
     return f"{hertz(line.low_hz)} to {hertz(line.high_hz)}"
 
 
-def _also(names: Sequence[str], most: int = 2) -> str:
-    """Some further names, and how many more there are."""
+def _also(names: Sequence[str]) -> str:
+    """Two further names, and how many more there are."""
     if not names:
         return DASH
-    left = len(names) - most
-    return ", ".join(names[:most]) + (f" and {left} more" if left > 0 else "")
+    left = len(names) - 2
+    return ", ".join(names[:2]) + (f" and {left} more" if left > 0 else "")
 
 
 def measured_file(found: Any) -> Table:
