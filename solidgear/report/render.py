@@ -73,9 +73,13 @@ class RenderResult:
         One sentence on what went wrong, and what mends it; empty if ``ok``.
     """
 
-    ok: bool
     path: Path
     reason: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """True if it was drawn and written."""
+        return not self.reason
 
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
@@ -125,9 +129,10 @@ class Drawing:
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._left() > 0:
             end = self._start() or self._wait()
+        paths = [Path(job.path) for job in self.jobs]
         return [
-            _collect(self._room, i, Path(job.path), end, self.timeout)
-            for i, job in enumerate(self.jobs)
+            RenderResult(path, _collect(self._room, i, path, end, self.timeout))
+            for i, path in enumerate(paths)
         ]
 
     @property
@@ -202,35 +207,23 @@ def _windows() -> list[str | None]:
     ]
 
 
-def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> RenderResult:
-    """Move a finished picture to its place, or say why there is none."""
+def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> str:
+    """Move a finished picture to its place; else the reason why there is none, and what mends it."""
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
-        return RenderResult(
-            False,
-            path,
-            f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}",
-        )
+        return f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}"
     if drawn.exists():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole(path) as partial:
                 shutil.copyfile(drawn, partial)
         except OSError as error:
-            return RenderResult(
-                False, path, f"the picture {path} could not be written: {error.strerror or error}"
-            )
-        return RenderResult(True, path)
+            return f"the picture {path} could not be written: {error.strerror or error}"
+        return ""
     if end == "timeout":
-        return RenderResult(
-            False,
-            path,
+        return (
             f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, "
-            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`",
+            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`"
         )
     what = end or "left no picture"
-    return RenderResult(
-        False,
-        path,
-        f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`",
-    )
+    return f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`"

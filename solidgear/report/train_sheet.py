@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from solidgear.machine.whole_file import write_page
-from solidgear.report.page_parts import template
+from solidgear.report.page_parts import Contents, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.table import Table
 
@@ -118,6 +118,7 @@ def write_sheet(
         for s in sections
     ]
     page = template("train_sheet.html").render(
+        contents=Contents(),
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
