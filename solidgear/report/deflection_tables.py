@@ -164,8 +164,7 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
     most = [max(abs(six[k].value) for six in found.mounts.values()) for k in range(6)]
 
     def one(k: int, row: tuple[str, Sequence[Any]]) -> float:
-        value = row[1][k].value
-        return value if abs(value) > ROUNDING * max(most[3 * (k // 3) :][:3]) else 0.0
+        return _of_weight(row[1][k].value, most[3 * (k // 3) :][:3])
 
     name, six = word("mount", lambda row: row[0]), enumerate(zip(DOFS, LOAD_OF))
     carried = [quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in six]
@@ -176,6 +175,11 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
         Table("Mount loads", [name, *carried], [*found.mounts.items()], note),
         Table("Motion of the housing", [place, *_six(units, lambda row: row[1])], moved),
     ]
+
+
+def _of_weight(value: float, alike: Sequence[float]) -> float:
+    """A value, and zero for one that is rounding beside the largest of its kind."""
+    return float(value) if abs(value) > ROUNDING * max(map(abs, alike)) else 0.0
 
 
 def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
@@ -189,8 +193,7 @@ def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
 
     def one(k: int, item: Any) -> float:
         six = of(item)
-        alike = six[:3] if k < 3 else six[3:]
-        return float(six[k]) if abs(six[k]) > ROUNDING * max(map(abs, alike)) else 0.0
+        return _of_weight(six[k], six[:3] if k < 3 else six[3:])
 
     return [
         quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in enumerate(zip(DOFS, SI_OF))

@@ -46,7 +46,7 @@ class RenderJob:
     ----------
     title : str
         Such as ``harmonic - bending 1 - 2758.0 Hz``.
-    path : str or Path
+    path : Path
         Of the png.
     frames : sequence of (float, str)
         Factors on the displacement and what is written over each, side by side.
@@ -56,7 +56,7 @@ class RenderJob:
 
     surface: Surface
     title: str
-    path: str | Path
+    path: Path
     frames: Sequence[tuple[float, str]] = STILL
     along: bool = True
 
@@ -129,10 +129,9 @@ class Drawing:
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._left() > 0:
             end = self._start() or self._wait()
-        paths = [Path(job.path) for job in self.jobs]
         return [
-            RenderResult(path, _collect(self._room, i, path, end, self.timeout))
-            for i, path in enumerate(paths)
+            RenderResult(job.path, _collect(self._room, i, job.path, end, self.timeout))
+            for i, job in enumerate(self.jobs)
         ]
 
     @property
