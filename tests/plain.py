@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from solidgear.judge.record import Record
 from solidgear.report import html, terminal
 from solidgear.report.border import as_record
 
@@ -9,21 +10,25 @@ from solidgear.report.border import as_record
 NOWHERE = Path("there is no such folder")
 
 
+def _record(results):
+    return results if isinstance(results, Record) else as_record(results)
+
+
 def render_page(results, folder=NOWHERE, drawn=None):
-    return html.render_page(as_record(results), folder, drawn)
+    return html.render_page(_record(results), folder, drawn)
 
 
 def write_report(results, folder):
-    return html.write_report(as_record(results), folder)
+    return html.write_report(_record(results), folder)
 
 
 def drawn_charts(results):
-    return html.drawn_charts(as_record(results), NOWHERE)
+    return html.drawn_charts(_record(results), NOWHERE)
 
 
 def final_table(results):
-    return terminal.final_table(as_record(results))
+    return terminal.final_table(_record(results))
 
 
 def verdict_text(results):
-    return terminal.verdict_text(as_record(results))
+    return terminal.verdict_text(_record(results))

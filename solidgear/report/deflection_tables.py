@@ -43,13 +43,6 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
     def column(title: str, key: str) -> Column:
         return quantity(title, "N", units, lambda planet: getattr(planet, key), 4)
 
-    heads = {
-        "at": "here",
-        "mean": "mean",
-        "least": "least",
-        "most": "largest",
-        "once": "once a turn",
-    }
     note = (
         "Of each planet with the sun, and for it spins freely with the ring alike; bearings with the "
         "stiffness that they have here. Here: at the position of the file; once a turn: amplitude "
@@ -60,7 +53,11 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
             f"Mesh forces over a turn of the carrier ({one.stage})",
             [
                 Column("planet", lambda planet: planet.planet),
-                *(column(*h[::-1]) for h in heads.items()),
+                column("here", "at"),
+                column("mean", "mean"),
+                column("least", "least"),
+                column("largest", "most"),
+                column("once a turn", "once"),
             ],
             one.planets,
             note,
