@@ -68,14 +68,31 @@ def overhung():
 
 
 @pytest.fixture(scope="session")
+def drawable(overhung):
+    """Body and modes of the overhung pinion by a model, each built once for files that draw them."""
+    import solidgear as sg
+
+    options = {"timoshenko": {}, "harmonic": {"order": 4}, "solid": {"refinement": 0.5}}
+    made = {}
+
+    def get(model):
+        if model not in made:
+            body = sg.build(overhung, model, **options[model])
+            made[model] = body, sg.modes(body, overhung, n=5)
+        return made[model]
+
+    return get
+
+
+@pytest.fixture(scope="session")
 def made_up_charts():
     """Charts of the made-up run as its page draws them, once for all files of a process: three
     seconds, and many look at them.
     """
-    from solidgear.report.html import drawn_charts
     from tests.made_up_run import fixture_results
+    from tests.plain import drawn_charts
 
-    return drawn_charts(fixture_results(), None)
+    return drawn_charts(fixture_results())
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -30,42 +30,16 @@ STIFFNESS = {
     "harmonic": (4.71078133e9, 1.13637271e9, 2.40131356e8, 1.90104307e7),
     "solid": (4.71542048e9, 1.13654552e9, 2.40524864e8, 1.90501559e7),
 }
+MODES = ("rigid torsion", "axial 1", "bending 1", "bending 2", "torsion 1", "bending 3", "axial 2")
 FREQUENCY = {
-    "euler": {
-        "rigid torsion": 0.0,
-        "axial 1": 1388.0674,
-        "bending 1": 3343.8930,
-        "bending 2": 4482.2185,
-        "torsion 1": 4956.7916,
-        "axial 2": 8790.0971,
-    },
-    "timoshenko": {
-        "rigid torsion": 0.0,
-        "axial 1": 1388.0674,
-        "bending 1": 2782.7973,
-        "bending 2": 4010.6014,
-        "torsion 1": 4956.7916,
-        "bending 3": 8369.6690,
-        "axial 2": 8790.0971,
-    },
-    "harmonic": {
-        "rigid torsion": 0.0,
-        "axial 1": 1385.6329,
-        "bending 1": 2758.0902,
-        "bending 2": 4038.3145,
-        "torsion 1": 4843.6107,
-        "bending 3": 8148.8623,
-        "axial 2": 8554.7405,
-    },
-    "solid": {
-        "rigid torsion": 0.0,
-        "axial 1": 1385.6497,
-        "bending 1": 2759.0611,
-        "bending 2": 4038.8256,
-        "torsion 1": 4843.8043,
-        "bending 3": 8152.6586,
-        "axial 2": 8556.2716,
-    },
+    "euler": (0.0, 1388.0674, 3343.8930, 4482.2185, 4956.7916, None, 8790.0971),
+    "timoshenko": (0.0, 1388.0674, 2782.7973, 4010.6014, 4956.7916, 8369.6690, 8790.0971),
+    "harmonic": (0.0, 1385.6329, 2758.0902, 4038.3145, 4843.6107, 8148.8623, 8554.7405),
+    "solid": (0.0, 1385.6497, 2759.0611, 4038.8256, 4843.8043, 8152.6586, 8556.2716),
+}
+FREQUENCY = {
+    key: {name: hz for name, hz in zip(MODES, own) if hz is not None}
+    for key, own in FREQUENCY.items()
 }
 TIES = {  # C_zz, K_zz, first bending
     "harmonic": {

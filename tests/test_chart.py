@@ -17,7 +17,6 @@ from solidgear.judge.race import timing as racing
 from solidgear.judge.race.pareto import Race, Row
 from solidgear.judge.race.timing import race
 from solidgear.report import race_rows, race_style
-from solidgear.report.html import render_page, write_report
 from solidgear.report.panel import SHAPES
 from solidgear.report.race_figure import draw, race_chart
 from solidgear.report.race_rows import (
@@ -32,6 +31,7 @@ from solidgear.report.race_rows import (
 )
 from solidgear.report.race_tables import front_rows, section
 from tests.charted import texts_of, words_of
+from tests.plain import render_page, write_report
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"

@@ -17,7 +17,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.report.html import render_page
 from solidgear.report.race_figure import race_chart
 from solidgear.report.terminal import final_table
-from solidgear.report.write import render_mode
+from solidgear.report.write import Drawn, render_mode
 from solidgear.studies.check import check_scene
 from tests.charted import texts_of
 
@@ -95,7 +95,12 @@ def test_it_is_drawn_and_written(found, ladder, tmp_path):
     assert body.fidelity == "coarse"
     assert len(body.surface(modes.named("bending 1").vectors[0]).points) > 100
     try:
-        assert render_mode(body, modes, "bending 1", tmp_path / "mode.png").stat().st_size > 1000
+        assert (
+            render_mode(Drawn(body, modes, "coarse"), "bending 1", tmp_path / "mode.png")
+            .stat()
+            .st_size
+            > 1000
+        )
     except sg.SolidgearError as error:
         pytest.skip(f"no pictures here: {error}")
 

@@ -16,10 +16,10 @@ from solidgear.judge.quantities import change
 from solidgear.judge.record import Record
 from solidgear.judge.recording import recorded
 from solidgear.judge.study import study
-from solidgear.report.html import render_page
 from solidgear.report.terminal import final_table
 from solidgear.scene import Bearing, Port, Scene, Segment
 from tests.dense import rigid_at
+from tests.plain import render_page
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: quick meshes; two points that both see the same mesh error are compared on them

@@ -9,8 +9,8 @@ import subprocess
 import pytest
 from test_report_browser import CHROMIUM, DARK, READABLE, WIDTHS, browse
 
-from solidgear.report.html import render_page
 from tests.made_up_run import fixture_results
+from tests.plain import render_page
 
 # one start of the browser by default is that of `test_report_browser.py`
 pytestmark = [

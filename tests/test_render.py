@@ -28,23 +28,7 @@ from solidgear.solve.modes import Mode
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}
-FINE = {"order": 4}
 RIGID = {"attachments": ("rigid",)}
-
-
-@pytest.fixture(scope="module")
-def solved(overhung):
-    """Bodies and modes, each built once."""
-    made = {}
-
-    def get(fidelity, **options):
-        key = fidelity, tuple(sorted(options.items()))
-        if key not in made:
-            body = sg.build(overhung, fidelity, **options)
-            made[key] = body, sg.modes(body, overhung, n=4)
-        return made[key]
-
-    return get
 
 
 def unit_motion(body, component):
@@ -115,16 +99,13 @@ def test_ovalising_shapes_move_as_their_harmonic(overhung):
     np.testing.assert_allclose(s.displacement[on], 0, atol=1e-12)
 
 
-def shapes(scene, body, modes, name="bending 1"):
-    return [body.surface(v) for v in modes.named(name).vectors]
+def first_bending(body, modes):
+    return [body.surface(v) for v in modes.named("bending 1").vectors]
 
 
-@pytest.mark.parametrize(
-    "fidelity, options, share", [("harmonic", FINE, 0.01), ("timoshenko", {}, 0.08)]
-)
-def test_first_bending_moves_as_in_the_solid(overhung, solved, fidelity, options, share):
-    pair = shapes(overhung, *solved(fidelity, **options))
-    others = shapes(overhung, *solved("solid", **SOLID))
+@pytest.mark.parametrize("fidelity, share", [("harmonic", 0.01), ("timoshenko", 0.08)])
+def test_first_bending_moves_as_in_the_solid(drawable, fidelity, share):
+    pair, others = first_bending(*drawable(fidelity)), first_bending(*drawable("solid"))
     distance, at = cKDTree(pair[0].points).query(others[0].points)
     near = distance < 1e-3
     assert near.sum() > 300
@@ -141,26 +122,26 @@ def test_first_bending_moves_as_in_the_solid(overhung, solved, fidelity, options
     np.testing.assert_allclose(np.array(turn) @ np.array(turn).T, np.eye(2), atol=2 * share)
 
 
-def test_what_does_not_fit_is_refused(overhung, solved):
-    body, _ = solved("timoshenko")
+def test_what_does_not_fit_is_refused(drawable):
+    body, _ = drawable("timoshenko")
     with pytest.raises(SolidgearError, match="block bending_z has"):
         body.surface({0: np.zeros(3)})
 
 
-def drawing(overhung, solved, folder):
+def drawing(drawable, folder):
     jobs = []
-    for fidelity, options in (("timoshenko", {}), ("harmonic", FINE)):
-        body, modes = solved(fidelity, **options)
+    for fidelity in ("timoshenko", "harmonic"):
+        body, modes = drawable(fidelity)
         mode = modes.named("bending 1")
         title = f"{fidelity} - {mode.name} - {mode.frequency_hz:.1f} Hz"
         jobs.append(RenderJob(body.surface(mode.vectors[0]), title, folder / f"{fidelity}.png"))
     return jobs
 
 
-def test_pictures(overhung, solved, tmp_path):
+def test_pictures(drawable, tmp_path):
     from matplotlib.image import imread
 
-    jobs = drawing(overhung, solved, tmp_path)
+    jobs = drawing(drawable, tmp_path)
     still = jobs[0].surface
     dead = RenderJob(
         type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines),
@@ -168,7 +149,7 @@ def test_pictures(overhung, solved, tmp_path):
         tmp_path / "still.png",
     )
     *results, refused = render_modes([*jobs, dead])
-    if any(r.no_renderer for r in results):
+    if any("OpenGL" in r.reason for r in results):
         pytest.skip(results[0].reason)
     for result in results:
         assert result.ok, result.reason
@@ -181,18 +162,16 @@ def test_pictures(overhung, solved, tmp_path):
         columns = np.flatnonzero(covered[100:580].any(axis=0))
         assert np.ptp(columns) > 0.7 * 1200
     # One picture that cannot be drawn costs no other, and leaves nothing behind.
-    assert not refused.ok and not refused.no_renderer and "zero or not finite" in refused.reason
+    assert not refused.ok and "zero or not finite" in refused.reason
     assert sorted(p.name for p in tmp_path.iterdir()) == ["harmonic.png", "timoshenko.png"]
 
 
-def test_without_a_renderer_there_is_a_sentence_and_no_file(
-    overhung, solved, tmp_path, monkeypatch
-):
+def test_without_a_renderer_there_is_a_sentence_and_no_file(drawable, tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
-    results = render_modes(drawing(overhung, solved, tmp_path))
+    results = render_modes(drawing(drawable, tmp_path))
     assert len(results) == 2
     for r in results:
-        assert not r.ok and r.no_renderer
+        assert not r.ok
         assert PACKAGES in r.reason and "\n" not in r.reason
     assert not list(tmp_path.iterdir())
 
@@ -204,22 +183,20 @@ def test_without_a_renderer_there_is_a_sentence_and_no_file(
         ("import time; time.sleep(60)", 1),
     ],
 )
-def test_a_child_that_dies_or_hangs_is_survived(
-    overhung, solved, tmp_path, monkeypatch, death, timeout
-):
+def test_a_child_that_dies_or_hangs_is_survived(drawable, tmp_path, monkeypatch, death, timeout):
     fake = tmp_path / "python"
     fake.write_text(f"#!{sys.executable}\n{death}\n")
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
     out = tmp_path / "out"
-    results = render_modes(drawing(overhung, solved, out), timeout=timeout)
+    results = render_modes(drawing(drawable, out), timeout=timeout)
     assert [r.ok for r in results] == [False, False]
     assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
     assert not out.exists()
 
 
-def test_a_child_is_gone_when_its_caller_has_left(overhung, solved, tmp_path, monkeypatch):
+def test_a_child_is_gone_when_its_caller_has_left(drawable, tmp_path, monkeypatch):
     """Pictures are drawn beside what the caller does; Ctrl-C in there leaves no process behind."""
     fake, told = tmp_path / "python", tmp_path / "told"
     fake.write_text(
@@ -228,7 +205,7 @@ def test_a_child_is_gone_when_its_caller_has_left(overhung, solved, tmp_path, mo
     )
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
-    with pytest.raises(KeyboardInterrupt), Drawing(drawing(overhung, solved, tmp_path)):
+    with pytest.raises(KeyboardInterrupt), Drawing(drawing(drawable, tmp_path)):
         while not (told.exists() and told.read_text()):
             time.sleep(0.01)
         os.kill(int(told.read_text()), 0)  # it is there
@@ -307,9 +284,9 @@ def test_a_solid_comes_back_from_its_file(overhung, tmp_path, element, kind, vtk
     assert measured.sum() == pytest.approx(volume.sum(), rel=0.026 if kind[-1].isdigit() else 1e-12)
 
 
-@pytest.mark.parametrize("fidelity, options", [("timoshenko", {}), ("harmonic", FINE)])
-def test_other_bodies_are_written_as_surfaces(overhung, solved, tmp_path, fidelity, options):
-    body, modes = solved(fidelity, **options)
+@pytest.mark.parametrize("fidelity", ["timoshenko", "harmonic"])
+def test_other_bodies_are_written_as_surfaces(drawable, tmp_path, fidelity):
+    body, modes = drawable(fidelity)
     back = meshio.read(write_vtu(body, modes, tmp_path / "body.vtu"))
     assert {c.type for c in back.cells} == {"quad", "triangle"}
     bending = modes.named("bending 1")

@@ -14,8 +14,8 @@ import subprocess
 
 import pytest
 
-from solidgear.report.html import render_page
 from tests.made_up_run import fixture_results
+from tests.plain import render_page
 
 CHROMIUM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None

@@ -202,7 +202,7 @@ def test_wrong_units_are_seen(measured):
 
 def test_a_full_disk_costs_the_picture_a_sentence(tmp_path, monkeypatch):
     from solidgear.report import render
-    from solidgear.report.write import render_mode
+    from solidgear.report.write import Drawn, render_mode
 
     scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
     body = sg.build(scene, "timoshenko")
@@ -212,7 +212,9 @@ def test_a_full_disk_costs_the_picture_a_sentence(tmp_path, monkeypatch):
 
     monkeypatch.setattr(render.np, "savez", full)
     with pytest.raises(sg.SolidgearError, match="No space left on device"):
-        render_mode(body, sg.modes(body, scene, 4), "bending 1", tmp_path / "mode.png")
+        render_mode(
+            Drawn(body, sg.modes(body, scene, 4), "3D solid"), "bending 1", tmp_path / "mode.png"
+        )
     assert not list(tmp_path.iterdir())
 
 

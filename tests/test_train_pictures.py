@@ -102,7 +102,7 @@ def test_modes_are_drawn_with_four_phases(shop, tmp_path):
 
     done = draw_modes(shop, "timoshenko", "timoshenko", folder=tmp_path, numbers=[4])
     ((told, one),) = done.items()
-    if one.no_renderer:
+    if "OpenGL" in one.reason:
         pytest.skip(one.reason)
     assert one.ok and told.startswith("gear bending 1, ")
     assert one.path.name == "system_mode_04.png"

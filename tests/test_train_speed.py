@@ -16,6 +16,7 @@ from solidgear.scene.catalogue import Catalogue
 from solidgear.studies.spectrum import Spectrum, read_spectrum
 from solidgear.studies.train.at_speed import Line, at_speed, explained, turns_of_pinion
 from solidgear.studies.train.kinematics import SLIP, of_bearing, settled_angles, train_orders
+from tests.charted import words_of
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)
@@ -262,6 +263,8 @@ def test_the_command_tells_orders_and_lays_a_spectrum_over_the_response(tmp_path
     assert found["pinion_rpm"] == pytest.approx(1500) and len(found["measured"]["peaks"]) == 2
     chart = (tmp_path / "out" / "measured.svg").read_text(encoding="utf-8")
     assert "acceleration, g" in chart and "not ours" in chart and "mesh force in N" in chart
+    read = words_of(chart)
+    assert any("amplitude:" in w for w in read) and any("natural frequency:" in w for w in read)
     page = (tmp_path / "out" / "response.html").read_text(encoding="utf-8")
     assert "First orders at this speed" in page and "Peaks of run.csv" in page
 

@@ -20,21 +20,7 @@ from solidgear.scene.outline import Outline
 from tests.command import command
 
 ROOT = Path(__file__).parents[1]
-KINDS = {"timoshenko": {}, "harmonic": {"order": 4}, "solid": {"refinement": 0.5}}
-
-
-@pytest.fixture(scope="module")
-def solved(overhung):
-    """Bodies and modes, each built once."""
-    made = {}
-
-    def get(kind):
-        if kind not in made:
-            body = sg.build(overhung, kind, **KINDS[kind])
-            made[kind] = body, sg.modes(body, overhung, n=5)
-        return made[kind]
-
-    return get
+KINDS = ("timoshenko", "harmonic", "solid")
 
 
 def told(fragment):
@@ -70,8 +56,8 @@ def closed_volume(points, triangles):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, solved, overhung):
-    points, triangles, _ = drawn(viewer.viewer_fragment([turned(*solved(kind))]))
+def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, drawable, overhung):
+    points, triangles, _ = drawn(viewer.viewer_fragment([turned(*drawable(kind))]))
     # 48 sides for a circle are 0.3 % too little area; outward normals make it positive
     assert closed_volume(points, triangles) == pytest.approx(
         volume_of(Outline(overhung.segments)), rel=0.01
@@ -79,16 +65,16 @@ def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, solved, o
     assert len(np.unique(triangles)) == len(points)
 
 
-def test_edges_are_drawn_where_the_surface_is_sharp(solved):
-    mesh = turned(*solved("harmonic")).mesh
+def test_edges_are_drawn_where_the_surface_is_sharp(drawable):
+    mesh = turned(*drawable("harmonic")).mesh
     # both ends, and both rims of the head where it meets cone and shaft, in 48 pieces each
     assert len(mesh.edges) == 48 * 4
     assert np.ptp(mesh.points[mesh.edges][:, :, 1], axis=1).max() < 1e-9
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_is_drawn_moves_as_the_body_does(kind, solved):
-    body, modes = solved(kind)
+def test_what_is_drawn_moves_as_the_body_does(kind, drawable):
+    body, modes = drawable(kind)
     model = turned(body, modes)
     points, _, shapes = drawn(viewer.viewer_fragment([model]))
     rest = body.surface({}).points
@@ -108,10 +94,10 @@ def test_what_is_drawn_moves_as_the_body_does(kind, solved):
         assert np.linalg.norm(left, axis=1).max() < 1e-3 * largest
 
 
-def test_models_side_by_side_bend_the_same_way(solved):
+def test_models_side_by_side_bend_the_same_way(drawable):
     models = []
     for kind in KINDS:
-        models.append(turned(*solved(kind), like=models))
+        models.append(turned(*drawable(kind), like=models))
     for model in models:
         bent = model.shapes[model.index("bending 1")]
         assert bent.pair
@@ -123,8 +109,8 @@ def test_models_side_by_side_bend_the_same_way(solved):
     assert len({np.sign(v) for v in fronts}) == 1
 
 
-def test_which_shapes_of_a_pair_and_which_sign_a_solver_gives_is_not_seen(solved):
-    body, modes = solved("solid")
+def test_which_shapes_of_a_pair_and_which_sign_a_solver_gives_is_not_seen(drawable):
+    body, modes = drawable("solid")
     mode = modes.named("bending 1")
     one, other = mode.vectors
     c, s = np.cos(2.0), np.sin(2.0)
@@ -156,8 +142,8 @@ def test_two_halves_of_a_part_become_one_surface():
     assert not flat.any()
 
 
-def test_modes_of_all_models_are_listed_once(solved):
-    models = [turned(*solved(kind)) for kind in ("harmonic", "timoshenko")]
+def test_modes_of_all_models_are_listed_once(drawable):
+    models = [turned(*drawable(kind)) for kind in ("harmonic", "timoshenko")]
     rows = picks(models)
     names = [row["name"] for row in rows]
     assert len(names) == len(set(names))
@@ -166,12 +152,12 @@ def test_modes_of_all_models_are_listed_once(solved):
     assert [m.shapes[k].name for m, k in zip(models, row["at"])] == ["bending 1"] * 2
 
 
-def test_a_page_stays_small_and_alone(solved, monkeypatch):
-    models = [turned(*solved(kind)) for kind in KINDS]
+def test_a_page_stays_small_and_alone(drawable, monkeypatch):
+    models = [turned(*drawable(kind)) for kind in KINDS]
     page = viewer.viewer_page(models, "three models")
     assert len(page) < 200_000
     assert not re.search(r"(src|href)=|https?://|import\(|fetch\(", page)
-    assert [m["title"] for m in told(page)["models"]] == list(KINDS)
+    assert [m["title"] for m in told(page)["models"]] == [*KINDS]
     # what would not fit is left out from the end, and nothing refers to it
     monkeypatch.setattr(viewer, "BUDGET", 1)
     less = told(viewer.viewer_fragment(models))
@@ -179,9 +165,9 @@ def test_a_page_stays_small_and_alone(solved, monkeypatch):
     assert {len(row["at"]) for row in less["modes"]} == {1}
 
 
-def test_words_of_a_scene_cannot_leave_their_place(solved, tmp_path):
+def test_words_of_a_scene_cannot_leave_their_place(drawable, tmp_path):
     nasty = "</script><b>&"
-    model = turned(*solved("timoshenko"), title=nasty)
+    model = turned(*drawable("timoshenko"), title=nasty)
     path = viewer.Turning((model,), nasty).write(tmp_path / "model.html")
     page = path.read_text()
     assert nasty not in page
@@ -191,15 +177,15 @@ def test_words_of_a_scene_cannot_leave_their_place(solved, tmp_path):
     assert viewer.fragment_of(tmp_path / "none.html") == ""
 
 
-def test_a_notebook_shows_it_in_a_frame_of_its_own(solved):
-    found = sg.turn(*solved("harmonic"), solved("timoshenko"))
+def test_a_notebook_shows_it_in_a_frame_of_its_own(drawable):
+    found = sg.turn(*drawable("harmonic"), drawable("timoshenko"))
     assert repr(found).startswith("Models to turn: harmonic (")
     shown = found._repr_html_()
     assert shown.startswith("<iframe srcdoc=") and "<script" not in shown
 
 
-def test_rigid_motions_are_no_modes_to_turn(solved):
-    body, modes = solved("timoshenko")
+def test_rigid_motions_are_no_modes_to_turn(drawable):
+    body, modes = drawable("timoshenko")
     rigid = [m for m in modes.modes if not m.frequency_hz > 0]
     assert rigid
     with pytest.raises(SolidgearError, match="no elastic mode"):

@@ -114,7 +114,7 @@ def modes(
         ended(settled)
         return
 
-    say(heading(loaded, body, settled), modes_table(rows, bars, open_), soft_wrap=False)
+    say(heading(loaded, body, settled), modes_table(found.modes, bars, open_), soft_wrap=False)
     if len(rows) > MANY:
         shapes = sum(m.multiplicity for m in found.modes)
         say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")

@@ -51,7 +51,7 @@ def render(
         found = solve(body, loaded, max(loaded.ask.modes, 10))
         drawn.append(Drawn(body, found, LADDER[one.name].title))
     if turn is None:
-        print(render_mode(drawn[0].body, drawn[0].modes, mode, out, drawn[0].title))
+        print(render_mode(drawn[0], mode, out))
         return
     path, said = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
     if said:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.report.panel import GREY, Axis, Panel, Series, log_ticks
+from solidgear.report.panel import GREY, Axis, Panel, Series, curve, log_ticks
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.words import engineering
 
@@ -41,18 +41,7 @@ class BearingPanel(NamedTuple):
 
 
 def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:
-    """Write the picture.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending, ``.png`` or ``.svg``, says what it becomes.
-
-    Raises
-    ------
-    SolidgearError
-        For another ending, or a file that cannot be written.
-    """
+    """Write the picture as a file that ends in ``.png`` or ``.svg``."""
     Chart([[_stiffness(panel), _shares(panel)] for panel in panels]).write(file)
 
 
@@ -73,13 +62,11 @@ def _stiffness(panel: BearingPanel) -> Panel:
     for k, (name, colour) in enumerate(COLOURS.items()):
         if not np.any(panel.middle[:, k] > 0):
             continue
-        columns = panel.factors, panel.low[:, k], panel.high[:, k], panel.middle[:, k]
-        places = list(zip(*(column.tolist() for column in columns)))
-        band = [{"x": x, "y": low, "y2": high} for x, low, high, _ in places]
+        band = curve(panel.factors, panel.low[:, k])
+        for row, high in zip(band, panel.high[:, k].tolist()):
+            row["y2"] = high
         drawn.draw({"type": "area", "opacity": 0.18, "color": colour}, band)
-        named = f"K_{name}{name}"
-        curve = [{"x": x, "y": middle, "name": named} for x, _, _, middle in places]
-        drawn.draw("line", curve)
+        drawn.draw("line", curve(panel.factors, panel.middle[:, k], name=f"K_{name}{name}"))
     drawn.draw({"type": "rule", "color": GREY, "strokeDash": [5, 3]}, [{"x": 1.0}])
     return drawn
 
@@ -104,9 +91,8 @@ def _shares(panel: BearingPanel) -> Panel:
     )
     round_it = np.linspace(0, 2 * np.pi, 73)
     for ring in rings.tolist():
-        x, y = (ring * np.cos(round_it)).tolist(), (ring * np.sin(round_it)).tolist()
         circle = {"type": "line", "color": "#e3e3e3", "strokeWidth": 1}
-        drawn.draw(circle, [{"x": a, "y": b} for a, b in zip(x, y)])
+        drawn.draw(circle, curve(ring * np.cos(round_it), ring * np.sin(round_it)))
     for (azimuth, load), (name, look) in zip(panel.rows, drawn.series.items()):
         half = 0.55 * np.pi / len(azimuth)
         wedges = [

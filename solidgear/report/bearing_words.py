@@ -14,17 +14,7 @@ LOADS = {"x": "N", "y": "N", "z": "N", "thx": "N m", "thz": "N m"}
 
 
 def load_row(scene: Mapping[str, Any], units: Units) -> list[list[str]]:
-    """The load under which catalogue bearings have their stiffness, as a row; none without one.
-
-    Parameters
-    ----------
-    scene : mapping
-        As a record has it.
-
-    Returns
-    -------
-    list of list of str
-    """
+    """The load under which catalogue bearings have their stiffness, as a row; none without one."""
     told = loads(scene.get("load") or {}, units)
     return [["load at the lumped point", f"{told}; bearings are taken under it"]] if told else []
 
@@ -45,17 +35,8 @@ def loads(load: Mapping[str, Any], units: Units) -> str:
 
 
 def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
-    """Designation, dimensions and load of a bearing from its catalogue data; nothing for a given 6x6.
-
-    Parameters
-    ----------
-    data : mapping or None
-        ``catalogue`` of a bearing in a record.
-
-    Returns
-    -------
-    str
-        A sentence.
+    """Designation, dimensions and load of a bearing from its catalogue data in a record; nothing
+    for a given 6x6.
     """
     if not data:
         return ""
@@ -86,19 +67,8 @@ def catalogue(data: Mapping[str, Any] | None, units: Units) -> str:
 
 
 def without_column(bearings: Sequence[Mapping[str, Any]], shown: Sequence[tuple[int, int]]) -> str:
-    """Sentence that names the bearings with entries which a table of some entries leaves out.
-
-    Parameters
-    ----------
-    bearings : sequence of mapping
-        Of a record.
-    shown : sequence of (int, int)
-        Places of the entries that have a column.
-
-    Returns
-    -------
-    str
-        Nothing where nothing is left out. K_x,thz stands with K_z,thx where one is the other turned.
+    """Sentence that names the bearings with entries beside those `shown`, by their places; empty
+    where there are none. K_x,thz stands with K_z,thx where one is the other turned.
     """
     names = [f"'{b.get('name', '')}'" for b in bearings if not b.get("hold") and _more(b, shown)]
     if not names:

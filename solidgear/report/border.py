@@ -1,4 +1,4 @@
-"""Border of the report: whatever it is given, it reads typed records."""
+"""Border of the report, which reads typed records: results that come out of a file."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.record import SCHEMA, Record
 
 
-def as_record(found: Record | Mapping[str, Any], name: str = "the results") -> Record:
-    """A record as it is, and plain data, such as ``results.json`` has it, as a record.
+def as_record(found: Mapping[str, Any], name: str = "the results") -> Record:
+    """Plain data, such as ``results.json`` has it, as a record.
 
     Parameters
     ----------
-    found : Record or mapping
-        Parts may be missing.  Plain data without a ``schema`` is taken for current.
+    found : mapping
+        Parts may be missing.  Data without a ``schema`` is taken for current.
     name : str
         What an error calls it.
 
@@ -35,8 +35,6 @@ def as_record(found: Record | Mapping[str, Any], name: str = "the results") -> R
     solidgear.errors.SolidgearError: out/results.json: written by an older version of solidgear \
 (layout 2; this version reads 4); run solidgear compare again
     """
-    if isinstance(found, Record):
-        return found
     version = found.get("schema")
     if version is not None and version != SCHEMA:
         older = isinstance(version, int) and version < SCHEMA

@@ -114,7 +114,9 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
     for pair, x, y in zip(told, khz, off.tolist()):
         facts = ("measured", hertz(pair.measured.frequency), "Hz"), ("off", percent(y), "")
         verdict = pair.verdict.partition(",")[0]
-        rows.append({"x": x, "y": y, "name": verdict, "told": readout(pair.computed.name, *facts)})
+        rows.append(
+            {"x": x, "y": y, "name": verdict, "readout": readout(pair.computed.name, *facts)}
+        )
     panel.draw({"type": "point", "filled": True, "size": 50}, rows)
     return Chart([[panel]], width, title)
 
@@ -223,7 +225,7 @@ def _responses(
             ("computed", hertz(its.frequency_hz) if its else "", "Hz"),
         )
         words = readout(its.name if its else "no mode", *facts)
-        dots.append({"x": float(khz[at]), "y": float(measured[at]), "told": words})
+        dots.append({"x": float(khz[at]), "y": float(measured[at]), "readout": words})
     panel.draw({"type": "point", "filled": True, "size": 34, "color": INK}, dots)
     return panel
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.report import deflection_tables as tables
-from solidgear.report.panel import GREY, Axis, Panel, Series, readout
+from solidgear.report.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.sheet_files import write_files
 from solidgear.report.table import Table
@@ -29,25 +29,9 @@ def write_deflection(
     units: str | Units = ENGINEERING,
     turns: Sequence[Any] = (),
 ) -> list[Path]:
-    """Write a deflection into a folder.
-
-    Parameters
-    ----------
-    models : mapping of str to sequence of ShaftDeflection
-        Shafts by model, the judge last.
-    data : mapping
-        Everything as plain data in SI, which becomes ``deflection.json``.
-    told : sequence of Table
-        Before those of displacements and bearings.
-    units : str or Units
-        Of chart and page.
-    turns : sequence of StageTurn
-        Of planetary stages.
-
-    Returns
-    -------
-    list of Path
-        ``deflection.html`` first, then a CSV a shaft with its line by the judge, the JSON, the chart.
+    """Write page, data, chart, and a CSV a shaft with its line by the judge, the last of the
+    models; of planetary stages the forces over a turn. `data` is in SI, chart and page in `units`;
+    `told` stands before the tables of displacements and bearings.
     """
     shown = units_named(units)
     judge = list(models.values())[-1]
@@ -83,18 +67,16 @@ def turn_chart(turn: Any, units: Units = ENGINEERING, width: float = WIDE) -> Ch
         Axis(f"mesh force in {unit}", (force.min() - room, force.max() + room)),
         230.0,
         series=looks,
-        legend={"orient": "top", "columns": 6, "symbolType": "stroke", "symbolStrokeWidth": 3},
+        legend=lines_legend(6),
     )
     for name, own in zip(names, force.T):
-        rows = [{"x": float(a), "y": float(f)} for a, f in zip(angle, own)]
-        panel.draw("line", [{**row, "name": name} for row in rows])
-        told = [
-            readout(name, ("at", f"{r['x']:.0f}", "°"), ("", f"{r['y']:.4g}", unit)) for r in rows
-        ]
-        panel.read([{**row, "readout": say} for row, say in zip(rows, told)], looks[name].colour)
-    return Chart(
-        in_columns([panel], 1), width, f"Mesh forces over a turn of the carrier ({turn.stage})"
-    )
+        panel.draw("line", curve(angle, own, name=name))
+        read = curve(angle, own)
+        for row in read:
+            at, size = ("at", f"{row['x']:.0f}", "°"), ("", f"{row['y']:.4g}", unit)
+            row["readout"] = readout(name, at, size)
+        panel.read(read, looks[name].colour)
+    return Chart([[panel]], width, f"Mesh forces over a turn of the carrier ({turn.stage})")
 
 
 #: planes by the translation and the rotation that belong to each
@@ -107,15 +89,7 @@ def deflection_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Deflection of every shaft in both planes.
-
-    Parameters
-    ----------
-    found : mapping of str to sequence of ShaftDeflection
-        Shafts of each model, by its name; the last is the reference.
-    width : float
-        px.
-    """
+    """Deflection of every shaft in both planes by every model, the last of them the reference."""
     looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(found)}
     names = [shaft.name for shaft in next(iter(found.values()))]
     panels = [
@@ -143,7 +117,6 @@ def _panel(
     along = {name: units.values(s.stations, "m") for name, s in shafts.items()}
     moved = {name: units.values(s.line[:, component], "m moved") for name, s in shafts.items()}
     ends = _ends(np.concatenate(list(moved.values())))
-    legend = {"orient": "top", "columns": 4, "symbolType": "stroke", "symbolStrokeWidth": 3}
     length, unit = units.unit("m"), units.unit("m moved")
     last = float(along[list(shafts)[-1]][-1])
     panel = Panel(
@@ -152,7 +125,7 @@ def _panel(
         190.0,
         f"{reference.name}, {plane}",
         series=looks,
-        legend=legend if first else None,
+        legend=lines_legend(4) if first else None,
     )
     panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
     for bearing in reference.bearings:
@@ -161,19 +134,12 @@ def _panel(
         name = {"type": "text", "color": GREY, "align": "left", "dx": 3, "dy": -85}
         panel.draw(name, [{"x": place, "text": bearing.name}], y={"value": 95})
     for model in shafts:
-        rows: list[dict[str, Any]] = [
-            {
-                "x": float(x),
-                "y": float(y),
-                "name": model,
-                "readout": readout(model, ("y", f"{x:.1f}", length), (plane, f"{y:.3g}", unit)),
-            }
-            for x, y in zip(along[model], moved[model])
-        ]
-        panel.draw("line", [{k: v for k, v in row.items() if k != "readout"} for row in rows])
-        panel.read(
-            [{k: v for k, v in row.items() if k != "name"} for row in rows], looks[model].colour
-        )
+        panel.draw("line", curve(along[model], moved[model], name=model))
+        read = curve(along[model], moved[model])
+        for row in read:
+            at, size = ("y", f"{row['x']:.1f}", length), (plane, f"{row['y']:.3g}", unit)
+            row["readout"] = readout(model, at, size)
+        panel.read(read, looks[model].colour)
     return panel
 
 

@@ -7,7 +7,7 @@ from functools import partial
 from math import degrees, isfinite
 from typing import Any
 
-from solidgear.report.table import Cell, Column, Table, quantity, text, word
+from solidgear.report.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 
 DOFS = ("x", "y", "z", "thx", "thy", "thz")
@@ -43,13 +43,6 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
     def column(title: str, key: str) -> Column:
         return quantity(title, "N", units, lambda planet: getattr(planet, key), 4)
 
-    heads = {
-        "at": "here",
-        "mean": "mean",
-        "least": "least",
-        "most": "largest",
-        "once": "once a turn",
-    }
     note = (
         "Of each planet with the sun, and for it spins freely with the ring alike; bearings with the "
         "stiffness that they have here. Here: at the position of the file; once a turn: amplitude "
@@ -60,7 +53,11 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
             f"Mesh forces over a turn of the carrier ({one.stage})",
             [
                 Column("planet", lambda planet: planet.planet),
-                *(column(*h[::-1]) for h in heads.items()),
+                column("here", "at"),
+                column("mean", "mean"),
+                column("least", "least"),
+                column("largest", "most"),
+                column("once a turn", "once"),
             ],
             one.planets,
             note,
@@ -71,18 +68,13 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
 
 def turn_lines(turn: Any) -> Table:
     """Mesh force of every planet over the angle of the carrier in SI, for other programs."""
-    heads = ["carrier [rad]", *(f"planet {k} [N]" for k in range(1, turn.force.shape[1] + 1))]
-    rows = [[float(a), *map(float, own)] for a, own in zip(turn.angle, turn.force)]
-    return _plain(heads, rows)
+    forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
+    return numbers({"carrier [rad]": turn.angle, **forces})
 
 
 def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Misalignment and radial bearing loads at all operating points of a train.
-
-    Parameters
-    ----------
-    points : sequence of TrainDeflection
-        By one model; none for one point, of which there are tables already.
+    """Misalignment and radial bearing loads at all operating points of a train, by one model; none
+    for one point, of which there are tables already.
     """
     if not points:
         return []
@@ -160,11 +152,8 @@ def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
 
 
 def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
-    """Load on every mount of the housing of a train, and how the housing moves; none without one.
-
-    Parameters
-    ----------
-    found : TrainDeflection
+    """Load on every mount of the housing of a train, and how the housing moves; none without
+    one.
     """
     if not found.mounts:
         return []
@@ -172,8 +161,7 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
     most = [max(abs(six[k].value) for six in found.mounts.values()) for k in range(6)]
 
     def one(k: int, row: tuple[str, Sequence[Any]]) -> float:
-        value = row[1][k].value
-        return value if abs(value) > ROUNDING * max(most[3 * (k // 3) :][:3]) else 0.0
+        return _of_weight(row[1][k].value, most[3 * (k // 3) :][:3])
 
     name, six = word("mount", lambda row: row[0]), enumerate(zip(DOFS, LOAD_OF))
     carried = [quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in six]
@@ -186,14 +174,13 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
     ]
 
 
-def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
-    """Motion of one place by every model.
+def _of_weight(value: float, alike: Sequence[float]) -> float:
+    """A value, and zero for one that is rounding beside the largest of its kind."""
+    return float(value) if abs(value) > ROUNDING * max(map(abs, alike)) else 0.0
 
-    Parameters
-    ----------
-    shafts : sequence of ShaftDeflection
-        One a model.
-    """
+
+def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
+    """Motion of one place by every model, of which there is a shaft each."""
     columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
     return Table(f"Motion of {port}", columns, shafts)
 
@@ -203,8 +190,7 @@ def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
 
     def one(k: int, item: Any) -> float:
         six = of(item)
-        alike = six[:3] if k < 3 else six[3:]
-        return float(six[k]) if abs(six[k]) > ROUNDING * max(map(abs, alike)) else 0.0
+        return _of_weight(six[k], six[:3] if k < 3 else six[3:])
 
     return [
         quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in enumerate(zip(DOFS, SI_OF))
@@ -271,10 +257,5 @@ def _largest(bearing: Any) -> float | None:
 
 def line(shaft: Any) -> Table:
     """Deflection line of a shaft in SI, for other programs."""
-    heads = ["y [m]", *(f"{d} [{si.split()[0]}]" for d, si in zip(DOFS, SI_OF))]
-    rows = [[float(y), *map(float, six)] for y, six in zip(shaft.stations, shaft.line)]
-    return _plain(heads, rows)
-
-
-def _plain(heads: Sequence[str], rows: Sequence[Sequence[float]]) -> Table:
-    return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in heads], rows)
+    heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOFS, SI_OF)]
+    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})

@@ -33,12 +33,10 @@ def _main(room: Path) -> int:
     import pyvista as pv
 
     pv.OFF_SCREEN = True
-    # Drawing nothing is what fails where there is no OpenGL; past this mark the renderer is not to
-    # blame.
+    # Drawing nothing is what fails where there is no OpenGL.
     probe = pv.Plotter(off_screen=True, window_size=[16, 16])
     probe.show(auto_close=False)
     probe.close()
-    (room / "window").touch()
     jobs = json.loads((room / "jobs.json").read_text(encoding="utf-8"))
     with np.load(room / "surfaces.npz") as store:
         for i, job in enumerate(jobs):

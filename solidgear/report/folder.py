@@ -174,17 +174,11 @@ def clear_halves(folder: Path) -> None:
 
 
 def _listed(folder: Path) -> list[str]:
-    """Files of an earlier run, by its own list; before there was one, by its models."""
+    """Files of an earlier run, by its own list."""
     try:
         results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-        listed = results.get("files")
-        if listed is None:
-            models = results["models"]
-            listed = [f"modes_{model}.vtu" for model in models] + [
-                f"mode_{model}.png" for model in models
-            ]
-        return [str(name) for name in listed]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return [str(name) for name in results["files"]]
+    except (OSError, ValueError, KeyError, TypeError):
         return []
 
 

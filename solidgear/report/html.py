@@ -9,8 +9,6 @@ file; its one script turns the mode shapes, and without it pictures stand there.
 from __future__ import annotations
 
 import logging
-import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,9 +25,8 @@ from solidgear.report import (
     result_tables,
     run_tables,
 )
-from solidgear.report.border import as_record
 from solidgear.report.lumped import lumped_tables
-from solidgear.report.page_parts import data_uri, template
+from solidgear.report.page_parts import Contents, data_uri, template
 from solidgear.report.reading import model_name, reference_of
 from solidgear.report.units import Units, units_named
 from solidgear.report.viewer import TURNED, fragment_of
@@ -38,180 +35,51 @@ from solidgear.report.words import capital, percent, seconds
 log = logging.getLogger(__name__)
 
 
-#: a picture: PNG, JPEG or SVG, in bytes or as a path
-Picture = bytes | str | os.PathLike
-
-
-#: sections of the customer's part and of the appendix: anchor -> title
-CUSTOMER = {
-    "scene": "Shaft and bearings",
-    "stiffness": "Stiffness and compliance",
-    "points": "Further lumped points",
-    "frequencies": "Natural frequencies",
-    "open": "What the data leave open",
-    "shapes": "Mode shape",
-    "models": "Which models may be used",
-}
-APPENDIX = {
-    "results": "All models side by side",
-    "matrices": "Stiffness of the other models",
-    "between": "At the further points and between points",
-    "modes": "Natural frequencies of all models",
-    "renders": "Mode shapes of the other models",
-    "deviations": "Differences between models",
-    "causes": "Causes",
-    "attachments": "Attachments",
-    "verification": "Solution verification",
-    "mac": "Mode correlation",
-    "cost": "Cost",
-    "speed": "Speed against accuracy",
-    "lumped": "Lumped models",
-    "provenance": "Provenance",
-}
-
-
-def write_report(
-    found: Record | Mapping[str, Any],
-    folder: str | os.PathLike,
-    images: Mapping[str, Picture] | None = None,
-    units: str | Units | None = None,
-    viewer: str = "",
-    drawn: Drawn | None = None,
-) -> Path:
-    """Write ``report.html`` into `folder`.
-
-    Parameters
-    ----------
-    found : Record or mapping
-        What a run found; parts that are missing are left out.
-    folder : path
-        Made if it is not there.
-    images : mapping, optional
-        Renders by model key: PNG, JPEG or SVG, as bytes or as a path. Without it the files that
-        the record names are taken from `folder`.
-    units : str or Units, optional
-        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
-    viewer : str
-        HTML that shows mode shapes, for the section of the mode shape, taken as it is: none of it
-        may come from a scene unescaped.
-    drawn : Drawn, optional
-        The charts, where :func:`drawn_charts` has drawn them before.
-
-    Returns
-    -------
-    Path
-        Of the page. It appears whole or not at all: an earlier one is replaced in one step.
-
-    Raises
-    ------
-    SolidgearError
-        For plain data that is no record of this version, or unknown units.
+def write_report(record: Record, folder: Path, drawn: Drawn | None = None) -> Path:
+    """Write ``report.html``, whole or not at all, in the units that the record was shown in. Parts
+    that it lacks are left out; mode shapes and pictures that it names are taken from the folder,
+    `drawn` are charts that were drawn before.
     """
-    record = as_record(found)
-    folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
     with whole(target) as partial:
-        page = render_page(record, folder, images, units, viewer, drawn)
-        partial.write_text(page, encoding="utf-8")
+        partial.write_text(render_page(record, folder, drawn), encoding="utf-8")
     return target
 
 
-def render_page(
-    found: Record | Mapping[str, Any],
-    folder: str | os.PathLike | None = None,
-    images: Mapping[str, Picture] | None = None,
-    units: str | Units | None = None,
-    viewer: str = "",
-    drawn: Drawn | None = None,
-) -> str:
+def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str:
     """The page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
-    record = as_record(found)
-    chosen = units_named(units or record.shown_in)
+    chosen = units_named(record.shown_in)
     drawn = drawn or drawn_charts(record, folder)
-    shown = {
-        **_tables(record, chosen),
-        **_pictures(record, folder, images),
-        "charts": {name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
-        "race": race_tables.section(folder, record.scene),
-        "viewer": Markup(viewer) if viewer else _viewer(record, folder),
-    }
     return template("report.html").render(
         **_opening(record, chosen),
-        **_contents(shown),
-        **shown,
+        **_tables(record, chosen),
+        **_pictures(record, folder),
+        customer=Contents(),
+        appendix=Contents("A{}"),
+        charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
+        race=race_tables.section(folder, record.scene),
+        viewer=Markup(fragment_of(folder / TURNED) if TURNED in (record.files or ()) else ""),
         warnings=[*record.warnings, *drawn.failed],
     )
 
 
-def _contents(shown: Mapping[str, Any]) -> dict[str, Any]:
-    """The sections that have content, numbered, in the order of the page."""
-    charts = shown["charts"]
-    content = {
-        "scene": shown["scene_facts"] or shown["bearings"],
-        "stiffness": shown["own_matrices"],
-        "frequencies": shown["own_frequencies"],
-        "open": shown["budget"],
-        "shapes": shown["own_renders"] or shown["viewer"],
-        "models": shown["models"],
-        "results": shown["summary"],
-        "matrices": shown["other_matrices"],
-        "points": shown["points"],
-        "between": shown["point_matrices"],
-        "modes": shown["frequencies"],
-        "renders": shown["other_renders"],
-        "deviations": shown["deviations"],
-        "causes": shown["causes"] or charts.get("causes"),
-        "attachments": shown["attachments"] or charts.get("attachments"),
-        "verification": shown["levels"] or shown["algebra"] or shown["where"],
-        "mac": shown["pairs"] or charts.get("mac"),
-        "cost": shown["cost"],
-        "speed": shown["race"],
-        "lumped": shown["lumped"],
-        "provenance": shown["environment"] or shown["summary"],
-    }
-    customer = [anchor for anchor in CUSTOMER if content[anchor]]
-    appendix = [anchor for anchor in APPENDIX if content[anchor]]
-    sections = {}
-    for anchors, titles, sign in ((customer, CUSTOMER, ""), (appendix, APPENDIX, "A")):
-        for n, anchor in enumerate(anchors, start=1):
-            number = f"{sign}{n}" if sign else f"{n}."
-            sections[anchor] = {"number": number, "title": titles[anchor]}
-    parts = [("The shaft and its numbers", customer), ("Appendix for the engineer", appendix)]
-    return {
-        "sections": sections,
-        "appendix": appendix,
-        "contents": [(part, anchors) for part, anchors in parts if anchors],
-    }
-
-
 class Drawn(NamedTuple):
-    """The charts of a page.
-
-    Attributes
-    ----------
-    svg : dict of str to bytes
-        By name; None where there is nothing to draw.
-    failed : list of str
-        A sentence for every chart that could not be drawn.
+    """The charts of a page by name, None where there is nothing to draw, and a sentence for every
+    one that could not be drawn.
     """
 
     svg: dict[str, bytes | None]
     failed: list[str]
 
 
-def drawn_charts(found: Record | Mapping[str, Any], folder: str | os.PathLike | None) -> Drawn:
-    """All charts of the page of a record, which need none of its pictures.
-
-    Parameters
-    ----------
-    found : Record or mapping
-    folder : path, optional
-        Of the page, where a race may have left its rows.
+def drawn_charts(record: Record, folder: Path) -> Drawn:
+    """All charts of the page of a record, which need none of its pictures; in the folder of the page
+    a race may have left its rows.
     """
-    record, out = as_record(found), Drawn({}, [])
+    out = Drawn({}, [])
     for name, chart in {
         **charts.CHARTS,
         "speed": lambda found: race_tables.chart(folder, found.scene),
@@ -293,34 +161,13 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
     }
 
 
-def _pictures(
-    record: Record, folder: str | os.PathLike | None, images: Mapping[str, Picture] | None
-) -> dict[str, list[tuple[str, str | None]]]:
+def _pictures(record: Record, folder: Path) -> dict[str, list[tuple[str, str | None]]]:
     """(caption, data URI or None when the picture could not be had), of the model shown on page one
-    and of the others.
+    and of the others: only files inside the folder of the report, results must not pull in others.
     """
-    if images is None:
-        images = _named_images(record, folder)
-    told = {k: (capital(model_name(record, k)), data_uri(k, image)) for k, image in images.items()}
     own = front.shown_model(record)
-    return {
-        "own_renders": [found for key, found in told.items() if key == own],
-        "other_renders": [found for key, found in told.items() if key != own],
-    }
-
-
-def _viewer(record: Record, folder: str | os.PathLike | None) -> Any:
-    """The mode shapes to be turned, from the page that the run has written beside this one."""
-    from markupsafe import Markup
-
-    here = folder is not None and TURNED in (record.files or ())
-    return Markup(fragment_of(Path(folder) / TURNED)) if folder is not None and here else ""
-
-
-def _named_images(record: Record, folder: str | os.PathLike | None) -> dict[str, Picture]:
-    """The files that a record names, only those inside the folder of the report: results must not
-    pull in others.
-    """
-    if folder is None:
-        return {}
-    return {key: Path(folder) / Path(name).name for key, name in record.images.items()}
+    shown: dict[str, list[tuple[str, str | None]]] = {"own_renders": [], "other_renders": []}
+    for key, name in record.images.items():
+        picture = capital(model_name(record, key)), data_uri(key, folder / Path(name).name)
+        shown["own_renders" if key == own else "other_renders"].append(picture)
+    return shown

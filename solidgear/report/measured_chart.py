@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, INK, Axis, Panel, Series, read_places, readout
+from solidgear.report.panel import GREY, INK, Axis, Panel, Series, curve, read_places, readout
 from solidgear.report.plot import NARROW, WIDE, Chart
 from solidgear.report.speed_tables import line_place
 from solidgear.report.units import ENGINEERING, Units, plain
@@ -31,17 +31,7 @@ NAMES = 0.32
 def measured_chart(
     found: Any, response: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """The measured spectrum with the orders of its peaks, above the computed mesh force.
-
-    Parameters
-    ----------
-    found : AtSpeed
-        With a spectrum.
-    units : Units, optional
-        Of the computed force.
-    width : float
-        px.
-    """
+    """The measured spectrum with the orders of its peaks, above the computed mesh force."""
     last = float(found.spectrum.frequency_hz[-1])
     ends = (0.0, min(last, max(float(response.frequency_hz[-1]), _last_peak(found))))
     return Chart(
@@ -71,10 +61,7 @@ def _measured(found: Any, ends: tuple[float, float], width: float) -> Panel:
     )
     _modes(panel, found, ends, name=False)
     kept = outline(hz, size)
-    panel.draw(
-        {"type": "line", "color": INK, "strokeWidth": 1},
-        [{"x": x, "y": y} for x, y in zip(hz[kept].tolist(), size[kept].tolist())],
-    )
+    panel.draw({"type": "line", "color": INK, "strokeWidth": 1}, curve(hz[kept], size[kept]))
     rows = []
     for peak in (p for p in found.peaks if p.frequency_hz <= ends[1]):
         facts = (
@@ -85,7 +72,7 @@ def _measured(found: Any, ends: tuple[float, float], width: float) -> Panel:
         )
         words = readout(peak.name, *facts)
         rows.append(
-            {"x": peak.frequency_hz, "y": peak.amplitude, "name": _kind(peak), "told": words}
+            {"x": peak.frequency_hz, "y": peak.amplitude, "name": _kind(peak), "readout": words}
         )
     panel.draw({"type": "point", "filled": True, "size": 34}, rows)
     _names(panel, found.peaks, ends, width)
@@ -158,15 +145,14 @@ def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units
         own = [line for line in orders if (line.frequency_hz > 0.9 * ends[1]) == (aside < 0)]
         names = [{"x": line.frequency_hz, "y": high, "text": line.name} for line in own]
         panel.draw({"type": "text", "color": LINE, "align": align, "dx": aside, "dy": 7}, names)
-    curve = [{"x": x, "y": y} for x, y in zip(hz.tolist(), force.tolist())]
-    panel.draw({"type": "line", "color": INK, "strokeWidth": 1.6}, curve)
+    panel.draw({"type": "line", "color": INK, "strokeWidth": 1.6}, curve(hz, force))
     rows = []
     for k in read_places(hz, force, PLACES) if len(hz) > 2 else []:
         facts = (
             ("frequency", hertz(float(hz[k])), "Hz"),
             ("mesh force", plain(float(force[k]), 4), unit),
         )
-        rows.append({"x": hz[k], "y": force[k], "told": readout("computed", *facts)})
+        rows.append({"x": hz[k], "y": force[k], "readout": readout("computed", *facts)})
     panel.read(rows, INK)
     return panel
 
@@ -178,7 +164,7 @@ def _modes(panel: Panel, found: Any, ends: tuple[float, float], name: bool) -> N
     if name:
         low = panel.y.ends[0]
         words = [
-            {"x": hz, "y": low, "told": readout(mode, ("natural frequency", hertz(hz), "Hz"))}
+            {"x": hz, "y": low, "readout": readout(mode, ("natural frequency", hertz(hz), "Hz"))}
             for mode, hz in there
         ]
         panel.read(words, MODE)

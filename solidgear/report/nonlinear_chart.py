@@ -8,7 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, Axis, Panel, Series, read_places, readout
+from solidgear.report.panel import (
+    GREY,
+    Axis,
+    Panel,
+    Series,
+    curve,
+    lines_legend,
+    read_places,
+    readout,
+)
 from solidgear.report.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.report.units import ENGINEERING, Units, plain
 from solidgear.report.waterfall import DEEP, waterfall
@@ -33,13 +42,8 @@ BINS = 160
 def backlash_chart(
     found: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and orders.
-
-    Parameters
-    ----------
-    found : BacklashTold
-    width : float
-        px.
+    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and
+    orders.
     """
     judge, teeth = found.judge, found.teeth_a_turn
     rpm = 60 * judge.frequency_hz / teeth
@@ -63,7 +67,7 @@ def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
         "Teeth part below the line; triangles: jumps as the speed rises (up) and falls (down)",
         series={LINEAR: LOOKS[LINEAR]},
     )
-    line = _line(60 * hz / teeth, units.values(size, "N"), LINEAR)
+    line = curve(60 * hz / teeth, units.values(size, "N"), name=LINEAR)
     panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, line)
     for rising, shape in ((True, "triangle-up"), (False, "triangle-down")):
         rows = [
@@ -99,24 +103,19 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
         "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
         series={name: look for name, look in LOOKS.items() if name != APART or judge.apart}
         | others,
-        legend={
-            "orient": "top",
-            "columns": 3 if width > NARROW else 1,
-            "symbolType": "stroke",
-            "symbolStrokeWidth": 3,
-        },
+        legend=lines_legend(3 if width > NARROW else 1),
     )
-    rows = _line(60 * hz / teeth, linear, LINEAR)
+    rows = curve(60 * hz / teeth, linear, name=LINEAR)
     panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, rows)
     for one in found.found[1:]:
         places, own = 60 * one.frequency_hz / teeth, curves[one.label]
         inside = one.stable & (places >= ends[0]) & (places <= ends[1])
         for part, (a, b) in enumerate(_runs(inside)):
-            rows = _line(places[a:b], own[a:b], one.label, part)
+            rows = curve(places[a:b], own[a:b], name=one.label, detail=part)
             panel.draw({"type": "line", "strokeWidth": 1.1, "clip": True}, rows)
     for name, one in ran.items():
         places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
-        panel.draw({"type": "line", "strokeWidth": 1.4}, _line(places, own, name))
+        panel.draw({"type": "line", "strokeWidth": 1.4}, curve(places, own, name=name))
     for one in (*judge.apart, judge):
         calm = STABLE if one is judge else APART
         _branch(panel, one, 60 * one.frequency_hz / teeth, units, calm)
@@ -150,7 +149,7 @@ def _branch(panel: Panel, one: Any, rpm: np.ndarray, units: Units, calm: str) ->
         for part, (a, b) in enumerate(_runs(where)):
             # a part reaches its neighbours, so that the branch has no gaps
             a, b = max(a - 1, 0), min(b + 1, len(rpm))
-            rows = _line(rpm[a:b], force[a:b], name, part)
+            rows = curve(rpm[a:b], force[a:b], name=name, detail=part)
             panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
 
 
@@ -175,11 +174,6 @@ def _envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The largest of every few cycles, no more of them than are seen."""
     first = np.arange(0, len(x), -(-len(x) // (3 * BINS)))
     return x[first], np.maximum.reduceat(y, first)
-
-
-def _line(x: np.ndarray, y: np.ndarray, name: str, part: int = 0) -> list[dict[str, Any]]:
-    rows = zip(x.tolist(), y.tolist())
-    return [{"x": a, "y": b, "name": name, "detail": part} for a, b in rows]
 
 
 def _runs(where: np.ndarray) -> np.ndarray:

@@ -12,8 +12,8 @@ import numpy as np
 from solidgear.report import train_tables
 from solidgear.report.nonlinear_chart import backlash_chart, waterfall_chart
 from solidgear.report.sheet_files import write_files
-from solidgear.report.table import Column, Table, text
-from solidgear.report.train_files import figures
+from solidgear.report.table import Column, Table, numbers, text
+from solidgear.report.train_files import places
 from solidgear.report.units import ENGINEERING, Units, plain, units_named
 from solidgear.report.words import DASH, hertz
 
@@ -49,15 +49,8 @@ def write_nonlinear(
     units: str | Units = ENGINEERING,
     cautions: Sequence[str] = (),
 ) -> list[Path]:
-    """``nonlinear.csv`` of the branch of the first mix, ``nonlinear.json``, its chart and page.
-
-    Parameters
-    ----------
-    found : BacklashTold
-    train : mapping
-        What is known of the train, as plain data.
-    units : str or Units
-        Of chart and page; all else is SI.
+    """``nonlinear.csv`` of the branch of the first mix and ``nonlinear.json`` in SI, its chart and
+    page in `units`; `train` is what is known of the train as plain data.
     """
     shown = units_named(units)
     return write_files(
@@ -89,8 +82,7 @@ def apart(found: Any) -> dict[str, Table]:
 def branch(found: Any, one: Any) -> Table:
     """A branch of the first mix in its order, in SI."""
     there = {
-        "frequency [Hz]": one.frequency_hz,
-        f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
+        **places(one.frequency_hz, found.teeth_a_turn),
         "dynamic mesh force [N]": one.force,
         "largest mesh force [N]": one.highest,
         "share of the cycle in contact": one.driving,
@@ -104,8 +96,7 @@ def branch(found: Any, one: Any) -> Table:
             f"{other.teeth.mesh} largest force [N]": other.highest,
             f"{other.teeth.mesh} share of the cycle in contact": other.driving,
         }
-    rows = np.column_stack(list(there.values())).tolist()
-    return Table("", [Column(head, write=figures) for head in there], rows)
+    return numbers(there)
 
 
 def runs(found: Any) -> dict[str, Table]:
@@ -113,8 +104,7 @@ def runs(found: Any) -> dict[str, Table]:
     out = {}
     for stem, one in _stems(found).items():
         there = {
-            "frequency [Hz]": one.frequency_hz,
-            f"{found.teeth_a_turn.of} speed [rpm]": 60 * one.frequency_hz / found.teeth_a_turn,
+            **places(one.frequency_hz, found.teeth_a_turn),
             "dynamic mesh force [N]": one.force,
             "largest mesh force [N]": one.run.highest,
             "steady dynamic mesh force [N]": one.steady_force,
@@ -124,8 +114,7 @@ def runs(found: Any) -> dict[str, Table]:
                 f"{other.found.teeth.mesh} dynamic force [N]": other.force,
                 f"{other.found.teeth.mesh} largest force [N]": other.run.highest,
             }
-        rows = np.column_stack(list(there.values())).tolist()
-        out[stem] = Table("", [Column(head, write=figures) for head in there], rows)
+        out[stem] = numbers(there)
     return out
 
 

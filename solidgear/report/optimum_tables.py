@@ -85,7 +85,7 @@ def designs_chart(found: Any, title: str, width: float = WIDE) -> Chart:
                 "x": a,
                 "y": one.value,
                 "name": _look(found, one),
-                "told": readout(f"design {one.number}", *facts, goal),
+                "readout": readout(f"design {one.number}", *facts, goal),
             }
         )
     panel.draw({"type": "point", "filled": True, "size": 60}, rows)

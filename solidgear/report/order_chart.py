@@ -25,14 +25,8 @@ PLAIN, SHAFTS = "#666666", ("#b3305c", "#5a3e8c", "#2b7a5d", "#8a5a00")
 def order_chart(
     found: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """Order lines and natural frequencies.
-
-    Parameters
-    ----------
-    teeth : float
-        In one turn of the shaft that speeds are told of, for the upper axis.
-    width : float
-        px.
+    """Order lines and natural frequencies; the upper axis needs the teeth in one turn of the shaft
+    that speeds are told of.
     """
     high, narrow = found.highest_rpm, width <= NARROW
     panel = Panel(

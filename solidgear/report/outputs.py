@@ -92,16 +92,10 @@ def _volume(body: Body, mesh: Volume, shapes):
 
 
 def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
-    """Local nodes of an element in VTK's order, found by their reference coordinates.
+    """Local nodes of an element in VTK's order, found by their reference coordinates, (nb, 3).
 
     Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
-
-    Parameters
-    ----------
-    doflocs : (nb, 3) ndarray
-        Reference coordinates in the element's own order.
-    vtk_name : str
-        Class of the VTK cell, which knows its own.
+    `vtk_name` is the class of the VTK cell, which knows its own.
     """
     from vtkmodules import vtkCommonDataModel  # needs no OpenGL
 

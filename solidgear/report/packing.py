@@ -126,13 +126,8 @@ def _sorted(rows: np.ndarray) -> np.ndarray:
 
 
 def packed(values: np.ndarray, step: float = 1) -> str:
-    """Values as differences of successive whole numbers of steps, deflated, in base64.
-
-    Parameters
-    ----------
-    values : (n,) ndarray
-    step : float
-        In their unit; numbers of steps stay below 2^30.
+    """Values as differences of successive whole numbers of steps, which stay below 2^30, deflated,
+    in base64.
     """
     apart = np.diff(np.rint(values / step).astype(np.int64), prepend=0)
     counts = (2 * np.abs(apart) - (apart < 0)).astype("<u4")

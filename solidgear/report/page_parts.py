@@ -1,14 +1,36 @@
-"""Templates of pages, and pictures inside them."""
+"""Templates of pages, their contents, and pictures inside them."""
 
 from __future__ import annotations
 
 import base64
 import functools
 import logging
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 log = logging.getLogger(__name__)
+
+
+@dataclass
+class Contents:
+    """Sections of a page, numbered as its template tells them.
+
+    Attributes
+    ----------
+    number : str
+        Of a section, with braces for its figure.
+    told : list of (str, str)
+        Anchor and heading of every section.
+    """
+
+    number: str = "{}."
+    told: list[tuple[str, str]] = field(default_factory=list)
+
+    def add(self, anchor: str, title: str) -> str:
+        """Heading of a further section."""
+        heading = f"{self.number.format(len(self.told) + 1)} {title}"
+        self.told.append((anchor, heading))
+        return heading
 
 
 @functools.cache
@@ -26,24 +48,13 @@ def template(name: str):
     ).get_template(name)
 
 
-def data_uri(key: str, image: Any) -> str | None:
-    """A picture in bytes or in a file as a data URI; None if it cannot be had or is none."""
+def data_uri(key: str, path: Path) -> str | None:
+    """A picture in a file as a data URI; None if it cannot be had or is none."""
     try:
-        in_memory = isinstance(image, (bytes, bytearray, memoryview))
-        data = bytes(image) if in_memory else Path(image).read_bytes()
+        data = path.read_bytes()
     except OSError as error:
         log.warning("render of %s: %s", key, error)
         return None
-    kind = _picture_kind(data)
-    if kind is None:
+    if not data.startswith(b"\x89PNG"):
         return None
-    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
-
-
-def _picture_kind(data: bytes) -> str | None:
-    """The kind of a picture by its first bytes."""
-    if data[:4] == b"\x89PNG":
-        return "png"
-    if data[:2] == b"\xff\xd8":
-        return "jpeg"
-    return "svg+xml" if b"<svg" in data[:1000] else None
+    return f"data:image/png;base64,{base64.b64encode(data).decode()}"

@@ -1,7 +1,7 @@
 """Panels of charts: pairs of axes, and layers of marks over rows of data, described in Vega-Lite.
 
 Keys of a row are channels of Vega-Lite (``x``, ``y``, ``text``, ``fill`` ...), and two more: ``name``,
-a series of the legend, and ``told``, the words that ``readout.js`` shows where a mark is pointed at.
+a series of the legend, and ``readout``, the words that ``readout.js`` shows where a mark is pointed at.
 """
 
 from __future__ import annotations
@@ -157,16 +157,9 @@ class Panel:
     def draw(
         self, mark: str | Mapping[str, Any], rows: Iterable[Mapping[str, Any]], **encoding: Any
     ) -> None:
-        """Add a layer.
-
-        Parameters
-        ----------
-        mark : str or mapping
-            Of Vega-Lite, with what all of its rows share.
-        rows : iterable of mapping
-            Those with a place that is no number, or none on a logarithmic axis, are left out.
-        **encoding
-            Channels of Vega-Lite besides those of the rows.
+        """Add a layer: a mark of Vega-Lite with what all of its rows share, and channels besides
+        those of the rows. Rows with a place that is no number, or none on a logarithmic axis, are
+        left out.
         """
         kept = [dict(row) for row in rows if self._placed(row)]
         if kept:
@@ -255,6 +248,22 @@ class Panel:
             }
             for channel, values in ranges.items()
         }
+
+
+def curve(x: np.ndarray, y: np.ndarray, **same: Any) -> list[dict[str, Any]]:
+    """Rows of a curve, with the channels that all of its places share.
+
+    Examples
+    --------
+    >>> curve(np.array([0.0, 1.0]), np.array([2.0, 3.0]), name="beam")
+    [{'x': 0.0, 'y': 2.0, 'name': 'beam'}, {'x': 1.0, 'y': 3.0, 'name': 'beam'}]
+    """
+    return [{"x": a, "y": b, **same} for a, b in zip(x.tolist(), y.tolist())]
+
+
+def lines_legend(columns: int) -> dict[str, Any]:
+    """Legend of curves above a panel, in Vega-Lite."""
+    return {"orient": "top", "columns": columns, "symbolType": "stroke", "symbolStrokeWidth": 3}
 
 
 def readout(name: str, *facts: tuple[str, str, str]) -> str:

@@ -109,17 +109,8 @@ class Chart:
         return _compact(_drawing_library().vegalite_to_svg(self.spec()), name)
 
     def write(self, file: Path, *beside: Path) -> Path:
-        """Write a picture, drawn once for all files it goes to.
-
-        Parameters
-        ----------
-        file, *beside : Path
-            Their endings, ``.png`` or ``.svg``, say what they become.
-
-        Raises
-        ------
-        SolidgearError
-            For another ending, or a file that cannot be written.
+        """Write a picture, drawn once for all files it goes to, as their endings say: ``.png`` or
+        ``.svg``.
         """
         library = _drawing_library()
         endings = {one: check_ending(one) for one in (file, *beside)}
@@ -210,12 +201,7 @@ Make = Callable[[float], "Chart | None"]
 
 def page_svg(name: str, make: Make) -> bytes | None:
     """A chart as it stands in a page: a wide drawing and one for a phone, of which ``style.html``
-    shows either.
-
-    Parameters
-    ----------
-    name : str
-        Letters and underscores, of no other chart of the page.
+    shows either. Its name has letters and underscores, and is of no other chart of the page.
     """
     drawings = []
     for kind, width in (("wide", WIDE), ("narrow", NARROW)):

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.machine.whole_file import whole
+from solidgear.report.drawing import ARRAYS
 
 if TYPE_CHECKING:
     from solidgear.body.surface import Surface
@@ -31,7 +32,6 @@ PACKAGES = (
     "libxft2 libxinerama1 libxcursor1 libgomp1"
 )
 WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
-ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: what a child writes to its standard error
 SAID = "said.txt"
 #: a shape as it is, without a caption
@@ -46,7 +46,7 @@ class RenderJob:
     ----------
     title : str
         Such as ``harmonic - bending 1 - 2758.0 Hz``.
-    path : str or Path
+    path : Path
         Of the png.
     frames : sequence of (float, str)
         Factors on the displacement and what is written over each, side by side.
@@ -56,7 +56,7 @@ class RenderJob:
 
     surface: Surface
     title: str
-    path: str | Path
+    path: Path
     frames: Sequence[tuple[float, str]] = STILL
     along: bool = True
 
@@ -71,29 +71,21 @@ class RenderResult:
         Holds the new picture if ``ok``; otherwise whatever was there before is untouched.
     reason : str
         One sentence on what went wrong, and what mends it; empty if ``ok``.
-    no_renderer : bool
-        Whether the reason is that this machine cannot draw at all.
     """
 
-    ok: bool
     path: Path
     reason: str = ""
-    no_renderer: bool = False
+
+    @property
+    def ok(self) -> bool:
+        """True if it was drawn and written."""
+        return not self.reason
 
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
-    """Draw deformed shafts, coloured by displacement, over their shape at rest.
-
-    Parameters
-    ----------
-    jobs : iterable of RenderJob
-    timeout : float
-        For all of them together, s.
-
-    Returns
-    -------
-    list of RenderResult
-        One per job, in order. Nothing is raised for a picture that could not be drawn or written.
+    """Draw deformed shafts, coloured by displacement, over their shape at rest, within so many
+    seconds for all of them; a result a job. Nothing is raised for a picture that could not be drawn
+    or written.
     """
     with Drawing(jobs, timeout=timeout) as drawing:
         return drawing.results()
@@ -102,12 +94,8 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
 class Drawing:
     """Pictures being drawn by a child, while the caller does something else.
 
-    As a context manager: the child starts where it is entered, and is gone where it is left.
-
-    Parameters
-    ----------
-    jobs, timeout
-        As of :func:`render_modes`; the time runs from the start.
+    As a context manager: the child starts where it is entered, from when the time runs, and is gone
+    where it is left.
     """
 
     def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
@@ -134,22 +122,15 @@ class Drawing:
         self._folder.cleanup()
 
     def results(self) -> list[RenderResult]:
-        """Wait for the pictures and put them in their places.
-
-        Returns
-        -------
-        list of RenderResult
-            One per job, in order.
-        """
+        """Wait for the pictures and put them in their places; a result a job."""
         if not self.jobs:
             return []
         end = self._end or self._wait()
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._left() > 0:
             end = self._start() or self._wait()
-        works = (self._room / "window").exists()
         return [
-            _collect(self._room, i, Path(job.path), end, works, self.timeout)
+            RenderResult(job.path, _collect(self._room, i, job.path, end, self.timeout))
             for i, job in enumerate(self.jobs)
         ]
 
@@ -225,38 +206,23 @@ def _windows() -> list[str | None]:
     ]
 
 
-def _collect(
-    room: Path, index: int, path: Path, end: str, works: bool, timeout: float
-) -> RenderResult:
-    """Move a finished picture to its place, or say why there is none."""
+def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> str:
+    """Move a finished picture to its place; else the reason why there is none, and what mends it."""
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
-        return RenderResult(
-            False,
-            path,
-            f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}",
-        )
+        return f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}"
     if drawn.exists():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole(path) as partial:
                 shutil.copyfile(drawn, partial)
         except OSError as error:
-            return RenderResult(
-                False, path, f"the picture {path} could not be written: {error.strerror or error}"
-            )
-        return RenderResult(True, path)
+            return f"the picture {path} could not be written: {error.strerror or error}"
+        return ""
     if end == "timeout":
-        return RenderResult(
-            False,
-            path,
+        return (
             f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, "
-            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`",
+            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`"
         )
     what = end or "left no picture"
-    return RenderResult(
-        False,
-        path,
-        f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`",
-        not works,
-    )
+    return f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`"

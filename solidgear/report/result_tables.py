@@ -110,19 +110,8 @@ def models(record: Record) -> Table:
 
 
 def apart(record: Record, key: str, quantity: str) -> Cell | None:
-    """Deviation of a model from the reference.
-
-    Parameters
-    ----------
-    key : str
-        Of the model.
-    quantity : str
-        ``C_zz@gear`` at a further point, ``C_zz@wheel@pinion`` between two.
-
-    Returns
-    -------
-    Cell or None
-        Said with less weight where bars do not tell the models apart.
+    """Deviation of a model from the reference, with less weight where bars do not tell them apart.
+    Quantities are such as ``C_zz@gear`` at a further point, ``C_zz@wheel@pinion`` between two.
     """
     if key == reference_of(record):
         return Cell("reference", "quiet")

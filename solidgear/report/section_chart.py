@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.report.panel import GREY, Axis, Panel, Series, readout
+from solidgear.report.panel import GREY, Axis, Panel, Series, curve, readout
 from solidgear.report.plot import WIDE, Chart
 from solidgear.report.units import ENGINEERING, Units, plain
 
@@ -78,15 +78,12 @@ def _panel(
         else None,
         right=70.0,
     )
-    zero: list[dict[str, Any]] = [{"y": 0.0}]
-    panel.draw({"type": "rule", "color": GREY, "strokeWidth": 1}, zero)
+    panel.draw({"type": "rule", "color": GREY, "strokeWidth": 1}, [{"y": 0.0}])
     for key, (place, values) in curves.items():
         mark = {"type": "line", "strokeWidth": 2}
-        if len(curves) > 1 and key not in components:
+        if key not in components:
             mark |= {"strokeDash": [5, 3]}
-        panel.draw(
-            mark, [{"x": a, "y": b, "name": key} for a, b in zip(place.tolist(), values.tolist())]
-        )
+        panel.draw(mark, curve(place, values, name=key))
         if key in components:
             panel.read(
                 _read(forces, y, key, values, units.unit(si), units.unit("m")), series[key].colour
@@ -111,14 +108,11 @@ def _read(
     forces: SectionForces, y, key: str, values, unit: str, length: str
 ) -> list[dict[str, Any]]:
     """Places to be read: both sides of every load."""
-    rows = []
-    for k, (place, value) in enumerate(zip(y.tolist(), values.tolist())):
-        side = "beyond" if k % 2 else "before"
-        what = forces.names[k // 2] or "end"
-        words = readout(
-            f"{key} {side} {what}", ("y", plain(place), length), (key, plain(value), unit)
-        )
-        rows.append({"x": place, "y": value, "readout": words})
+    rows = curve(y, values)
+    for k, row in enumerate(rows):
+        name = f"{key} {'beyond' if k % 2 else 'before'} {forces.names[k // 2] or 'end'}"
+        facts = ("y", plain(row["x"]), length), (key, plain(row["y"]), unit)
+        row["readout"] = readout(name, *facts)
     return rows
 
 

@@ -29,25 +29,9 @@ def write_files(
     viewer: str = "",
     sections: Sequence[Section] = (),
 ) -> list[Path]:
-    """Write a page, the data it shows, tables for other programs, and charts.
-
-    Parameters
-    ----------
-    name : str
-        Of page and data.
-    title, lead, tables, notes, cautions, verdict, viewer, sections
-        Of the page.
-    data : mapping
-        In SI.
-    lines : mapping of str to Table
-        By the names of their files.
-    charts : mapping of str to callable
-        By their names, which the page has words for.
-
-    Returns
-    -------
-    list of Path
-        The page, the tables, the data, the charts.
+    """Write a page and the data it shows, both of the same name, tables for other programs by the
+    names of their files, and charts by those that the page has words for. The data and those tables
+    are in SI. Given are the page, the tables, the data, the charts.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]

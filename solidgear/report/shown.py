@@ -19,6 +19,9 @@ from solidgear.report.words import bar_of, percent
 if TYPE_CHECKING:
     from solidgear.body import Body
 
+#: results that are told by a table of their pages
+correlation, identification, optimum = pairs, entries, designs
+
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6
 #: a motion this small beside the largest of its mode is not drawn
@@ -139,46 +142,25 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
 
 
 def condensed(statics: Any, kind: str = "stiffness") -> Table:
-    """The 6x6 at a port.
-
-    Parameters
-    ----------
-    kind : {'stiffness', 'compliance'}
-    """
-    if kind not in BLOCK_UNITS:
-        raise ValueError(f"kind {kind!r}: use stiffness or compliance")
-    matrix = getattr(statics, kind)
-    rows = [
-        (name, *(float(v) if np.isfinite(v) else None for v in row))
-        for name, row in zip(DOF_NAMES, matrix)
-    ]
-    units = ", ".join(BLOCK_UNITS[kind])
-    free = f"; free: {', '.join(statics.free_names)}" if statics.free_names else ""
-    return Table(
-        f"{kind} at {statics.port} ({statics.attachment}), {units}{free}", ("", *DOF_NAMES), rows
-    )
+    """The 6x6 at a port, a stiffness or a compliance."""
+    return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
 
 
 def coupled(statics: Any, kind: str = "compliance") -> Table:
-    """The matrix between several ports.
+    """The matrix between several ports, a stiffness or a compliance."""
+    heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
+    return _matrix(statics, kind, f"between {' and '.join(statics.ports)}", heads, "free together")
 
-    Parameters
-    ----------
-    kind : {'stiffness', 'compliance'}
-    """
+
+def _matrix(statics: Any, kind: str, place: str, heads: Sequence[str], free: str) -> Table:
     if kind not in BLOCK_UNITS:
         raise ValueError(f"kind {kind!r}: use stiffness or compliance")
-    heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
     rows = [
         (name, *(float(v) if np.isfinite(v) else None for v in row))
         for name, row in zip(heads, getattr(statics, kind))
     ]
-    free = f"; free together: {', '.join(statics.free_names)}" if statics.free_names else ""
-    return Table(
-        f"{kind} between {' and '.join(statics.ports)}, {', '.join(BLOCK_UNITS[kind])}{free}",
-        ("", *heads),
-        rows,
-    )
+    names = f"; {free}: {', '.join(statics.free_names)}" if statics.free_names else ""
+    return Table(f"{kind} {place}, {', '.join(BLOCK_UNITS[kind])}{names}", ("", *heads), rows)
 
 
 def comparison(compared: Any) -> Table:
@@ -226,21 +208,6 @@ def _told(columns: Mapping[str, list], head: str, k: int) -> str:
     if value is None or isinstance(value, str):
         return (value or "-")[:60]
     return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
-
-
-def correlation(found: Any) -> Table:
-    """Every measured resonance and the mode it is."""
-    return pairs(found)
-
-
-def identification(found: Any) -> Table:
-    """Entries that were identified."""
-    return entries(found)
-
-
-def optimum(found: Any) -> Table:
-    """All designs of a search."""
-    return designs(found)
 
 
 def two_shafts(found: Any) -> Table:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.report import sketch_details as details
-from solidgear.report.sketch_details import FILL, INK, MASS
-from solidgear.report.sketch_features import draw_feature
+from solidgear.report.sketch_features import MASS, draw_blend, draw_feature, draw_mass
+from solidgear.report.sketch_pen import FILL, INK, Pen
 from solidgear.report.words import is_number
 
 PART_NAMES = {"shaft": "shaft", "frustum": "gear head (pitch cone)", "backcone": "backcone"}
@@ -63,46 +62,28 @@ def draw(scene: Mapping[str, Any], width: float = WIDTH) -> Any:
     ax = figure.add_axes((0, 0, 1, 1))
     ax.set(xlim=(0, width), ylim=(-below, above))
     ax.axis("off")
-    pen = _Pen(ax, left, inch, enlarged, top)
+    pen = Pen(ax, left, inch, inch * enlarged, top)
     for s in segments:
-        pen.segment(s)
-    ends = [left - 0.3, left + length * inch + 0.3]
-    ax.plot(ends, [0, 0], color=INK, lw=0.8, dashes=(12, 3, 2, 3), zorder=4)
+        _segment(pen, s)
+    pen.line([left - 0.3, left + length * inch + 0.3], [0, 0], INK, 0.8, 4, dashes=(12, 3, 2, 3))
     for blend in scene.get("blends") or []:
-        details.blend(pen, blend, segments)
+        draw_blend(pen, blend, segments)
     for cut in scene.get("features") or []:
         draw_feature(pen, cut, segments)
     for b in scene.get("bearings") or []:
-        pen.bearing(b, segments)
+        _bearing(pen, b, segments)
     for mass in scene.get("masses") or []:
-        details.mass(pen, mass)
+        draw_mass(pen, mass)
     for port in points:
-        pen.port(port, segments)
+        _port(pen, port, segments)
     for x, text, station, is_port, level in labels:
         colour = SPAN if is_port else SEAT
-        height = top + 0.62 + 0.34 * level
-        ax.plot(
-            [station, station],
-            [0.08 if is_port else top + 0.45, height - 0.04],
-            color=colour,
-            lw=0.6,
-            zorder=6,
-        )
-        ax.text(
-            x,
-            height,
-            text,
-            color=colour,
-            ha="center",
-            va="bottom",
-            fontsize=8.5,
-            linespacing=1.1,
-            parse_math=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-            zorder=7,
-        )
-    pen.lengths(segments, chain, -top - 0.72)
-    pen.ruler(ordinates, length, -top - 1.04 - deep)
+        foot, height = 0.08 if is_port else top + 0.45, top + 0.62 + 0.34 * level
+        pen.line([station, station], [foot, height - 0.04], colour, 0.6, 6)
+        look: dict[str, Any] = {"va": "bottom", "size": 8.5, "linespacing": 1.1}
+        pen.words(x, height, text, colour, 7, alpha=1.0, pad=0.6, **look)
+    _lengths(pen, segments, chain, -top - 0.72)
+    _ruler(pen, ordinates, length, -top - 1.04 - deep)
     for k, note in enumerate(notes):
         how: dict[str, Any] = {"va": "top", "fontsize": 8, "style": "italic", "parse_math": False}
         ax.text(0.15, above - 0.1 - LINE * k, note, **how)
@@ -188,172 +169,104 @@ def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
     return points
 
 
-class _Pen:
-    """Draws in inches: x along the shaft, 0 on the axis."""
+def _segment(pen: Pen, s: Mapping) -> None:
+    """A segment, cut above and from outside below, with its diameters."""
+    x0, x1 = pen.x(s["y0"]), pen.x(s["y1"])
+    o0, o1, i0, i1 = (pen.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
+    colour, along = FILL.get(s.get("part", "shaft"), FILL["shaft"]), [x0, x1, x1, x0]
+    cut: dict[str, Any] = {"facecolor": colour, "edgecolor": "#8a8f94", "hatch": "////", "lw": 0}
+    pen.ax.fill(along, [i0, i1, o1, o0], zorder=2, **cut)
+    pen.ax.fill(along, [0, 0, -o1, -o0], facecolor=colour, alpha=0.55, lw=0, zorder=2)
+    pen.line([x0, x0, x1, x1, x0], [-o0, o0, o1, -o1, -o0], order=3)
+    if i0 > 0 or i1 > 0:
+        pen.line([x0, x1], [i0, i1], INK, 0.9, 3)
+        pen.line([x0, x1], [-i0, -i1], INK, 0.7, 3, ls="--")
+    _diameter(pen, s, x0, x1, min(o0, o1))
 
-    def __init__(self, ax, left: float, inch: float, enlarged: float, top: float):
-        self.ax, self.left, self.inch, self.radial, self.top = ax, left, inch, inch * enlarged, top
 
-    def x(self, y: float) -> float:
-        return self.left + y * self.inch
+def _diameter(pen: Pen, s: Mapping, x0: float, x1: float, room: float) -> None:
+    d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
+    text = d0 if d0 == d1 else f"{d0} – {d1}"
+    bore = ""
+    if s["inner0"] or s["inner1"]:
+        bore = f"\nbore {2e3 * s['inner0']:.5g}"
+        if s["inner0"] != s["inner1"]:
+            bore += f" – {2e3 * s['inner1']:.5g}"
+    size = CHAR * max(len(line) for line in (text + bore).splitlines()) * 0.95
+    upright = size > x1 - x0
+    if upright and (size > 0.95 * room or x1 - x0 < 0.14):
+        return
+    turn = 90 if upright else 0
+    pen.words((x0 + x1) / 2, -room / 2, text + bore, order=5, alpha=0.55, rotation=turn)
 
-    def segment(self, s: Mapping) -> None:
-        x0, x1 = self.x(s["y0"]), self.x(s["y1"])
-        o0, o1, i0, i1 = (self.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
-        colour = FILL.get(s.get("part", "shaft"), FILL["shaft"])
-        self.ax.fill(
-            [x0, x1, x1, x0],
-            [i0, i1, o1, o0],
-            facecolor=colour,
-            edgecolor="#8a8f94",
-            hatch="////",
-            lw=0,
-            zorder=2,
-        )
-        self.ax.fill(
-            [x0, x1, x1, x0], [0, 0, -o1, -o0], facecolor=colour, alpha=0.55, lw=0, zorder=2
-        )
-        self.ax.plot([x0, x0, x1, x1, x0], [-o0, o0, o1, -o1, -o0], color=INK, lw=1.1, zorder=3)
-        if i0 > 0 or i1 > 0:
-            self.ax.plot([x0, x1], [i0, i1], color=INK, lw=0.9, zorder=3)
-            self.ax.plot([x0, x1], [-i0, -i1], color=INK, lw=0.7, ls="--", zorder=3)
-        self._diameter(s, x0, x1, min(o0, o1))
 
-    def _diameter(self, s, x0, x1, room):
-        d0, d1 = (f"⌀{2e3 * s[k]:.5g}" for k in ("outer0", "outer1"))
-        text = d0 if d0 == d1 else f"{d0} – {d1}"
-        bore = ""
-        if s["inner0"] or s["inner1"]:
-            bore = f"\nbore {2e3 * s['inner0']:.5g}"
-            if s["inner0"] != s["inner1"]:
-                bore += f" – {2e3 * s['inner1']:.5g}"
-        size = CHAR * max(len(line) for line in (text + bore).splitlines()) * 0.95
-        upright = size > x1 - x0
-        if upright and (size > 0.95 * room or x1 - x0 < 0.14):
-            return
-        self.ax.text(
-            (x0 + x1) / 2,
-            -room / 2,
-            text + bore,
-            rotation=90 if upright else 0,
-            ha="center",
-            va="center",
-            fontsize=8,
-            color=INK,
-            zorder=5,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.55, "pad": 0.5},
-        )
+def _seat(pen: Pen, s: Mapping, segments, side: int, colour: str, width: float, **look) -> None:
+    """The surface that carries a bearing or lumped point, on one side of the axis."""
+    points = _surface(segments, s["lo"], s["hi"])
+    x, r = [pen.x(y) for y, _ in points], [side * pen.radial * r for _, r in points]
+    pen.line(x, r, colour, width, solid_capstyle="butt", **look)
 
-    def bearing(self, b: Mapping, segments) -> None:
-        points = _surface(segments, b["lo"], b["hi"])
-        middle = _surface(segments, b["y"] - 1e-6, b["y"] + 1e-6)
-        radius = self.radial * (middle[0][1] if middle else 0.0)
-        x, ground = self.x(b["y"]), self.top + 0.38
-        for side in (1, -1):
-            self.ax.plot(
-                [self.x(y) for y, _ in points],
-                [side * self.radial * r for _, r in points],
-                color=SEAT,
-                lw=4.5,
-                solid_capstyle="butt",
-                zorder=5,
-            )
-            rise = ground - radius
-            zigzag = (
-                [(0, 0), (0, 0.2)]
-                + [(0.07 * (-1) ** k, 0.2 + 0.6 * (k + 0.5) / 6) for k in range(6)]
-                + [(0, 0.8), (0, 1)]
-            )
-            self.ax.plot(
-                [x + dx for dx, _ in zigzag],
-                [side * (radius + t * rise) for _, t in zigzag],
-                color=SEAT,
-                lw=1.1,
-                zorder=5,
-            )
-            self.ax.plot([x - 0.17, x + 0.17], [side * ground] * 2, color=SEAT, lw=1.4, zorder=5)
-            for k in range(6):
-                foot = x - 0.17 + 0.068 * k
-                self.ax.plot(
-                    [foot, foot - 0.05],
-                    [side * ground, side * (ground + 0.06)],
-                    color=SEAT,
-                    lw=0.7,
-                    zorder=5,
-                )
 
-    def port(self, port: Mapping, segments) -> None:
-        points = _surface(segments, port["lo"], port["hi"])
-        x = self.x(port["y"])
-        for side in (1, -1):
-            self.ax.plot(
-                [self.x(y) for y, _ in points],
-                [side * self.radial * r for _, r in points],
-                color=SPAN,
-                lw=4,
-                alpha=0.9,
-                solid_capstyle="butt",
-                zorder=5,
-            )
-            for k in range(5):
-                y = port["lo"] + (port["hi"] - port["lo"]) * (0.04 + 0.92 * k / 4)
-                spot = _surface(segments, y - 1e-6, y + 1e-6)
-                if spot:
-                    self.ax.plot(
-                        [x, self.x(y)],
-                        [0, side * self.radial * spot[0][1]],
-                        color=SPAN,
-                        lw=0.5,
-                        ls=":",
-                        zorder=4,
-                    )
-        self.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
-        self.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
+#: of a spring, from the seat to the ground: inches aside, and share of the way
+SPRING = [
+    *((0, 0), (0, 0.2)),
+    *((0.07 * (-1) ** k, 0.2 + 0.6 * (k + 0.5) / 6) for k in range(6)),
+    *((0, 0.8), (0, 1)),
+]
 
-    def lengths(self, segments, chain: list[tuple], level: float) -> None:
-        """The chain of segment lengths; a text that has no room stands below it."""
-        for s in segments:
-            for x, y in ((self.x(s["y0"]), s["outer0"]), (self.x(s["y1"]), s["outer1"])):
-                self.ax.plot(
-                    [x, x],
-                    [-self.radial * y - 0.04, level - 0.06],
-                    color="#777777",
-                    lw=0.4,
-                    zorder=1,
-                )
-        for middle, text, (a, b), step in chain:
-            wide = b - a > CHAR * len(text) + 0.2
-            self.ax.annotate(
-                "",
-                (a, level),
-                (b, level),
-                arrowprops={
-                    "arrowstyle": "<|-|>",
-                    "lw": 0.6,
-                    "shrinkA": 0,
-                    "shrinkB": 0,
-                    "color": INK,
-                    "mutation_scale": 6 if wide else 4,
-                },
-            )
-            self.ax.text(
-                middle,
-                level - 0.07 - LINE * (step - 1) if step else level + (0.02 if wide else 0.07),
-                text,
-                ha="center",
-                va="top" if step else "bottom",
-                fontsize=8,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
-                zorder=6,
-            )
 
-    def ruler(self, ordinates, length: float, level: float) -> None:
-        """Positions from y = 0 of the ends, the bearings and the lumped point."""
-        self.ax.plot([self.x(0), self.x(length)], [level, level], color=INK, lw=0.6)
-        for x, text, step in ordinates:
-            self.ax.plot([x, x], [level + 0.05, level - 0.05 - 0.17 * step], color=INK, lw=0.6)
-            self.ax.text(x, level - 0.07 - 0.17 * step, text, ha="center", va="top", fontsize=8)
-        self.ax.text(self.x(length) + 0.22, level, "y, mm", va="center", fontsize=8, style="italic")
+def _bearing(pen: Pen, b: Mapping, segments) -> None:
+    """The seat of a bearing, and springs from it to the ground."""
+    middle = _surface(segments, b["y"] - 1e-6, b["y"] + 1e-6)
+    radius = pen.radial * (middle[0][1] if middle else 0.0)
+    x, ground = pen.x(b["y"]), pen.top + 0.38
+    rise = ground - radius
+    for side in (1, -1):
+        _seat(pen, b, segments, side, SEAT, 4.5)
+        zigzag = [x + aside for aside, _ in SPRING], [side * (radius + t * rise) for _, t in SPRING]
+        pen.line(*zigzag, SEAT)
+        pen.line([x - 0.17, x + 0.17], [side * ground] * 2, SEAT, 1.4)
+        for k in range(6):
+            foot = x - 0.17 + 0.068 * k
+            pen.line([foot, foot - 0.05], [side * ground, side * (ground + 0.06)], SEAT, 0.7)
+
+
+def _port(pen: Pen, port: Mapping, segments) -> None:
+    """A lumped point, and its spokes to the surface that carries it."""
+    x = pen.x(port["y"])
+    for side in (1, -1):
+        _seat(pen, port, segments, side, SPAN, 4, alpha=0.9)
+        for k in range(5):
+            y = port["lo"] + (port["hi"] - port["lo"]) * (0.04 + 0.92 * k / 4)
+            spot = _surface(segments, y - 1e-6, y + 1e-6)
+            if spot:
+                end = side * pen.radial * spot[0][1]
+                pen.line([x, pen.x(y)], [0, end], SPAN, 0.5, 4, ls=":")
+    pen.ax.plot([x], [0], marker="o", ms=8, mfc="white", mec=SPAN, mew=1.6, zorder=8)
+    pen.ax.plot([x], [0], marker="+", ms=8, mec=SPAN, mew=1.0, zorder=9)
+
+
+def _lengths(pen: Pen, segments, chain: list[tuple], level: float) -> None:
+    """The chain of segment lengths; a text that has no room stands below it."""
+    for s in segments:
+        for x, y in ((pen.x(s["y0"]), s["outer0"]), (pen.x(s["y1"]), s["outer1"])):
+            pen.line([x, x], [-pen.radial * y - 0.04, level - 0.06], "#777777", 0.4, 1)
+    arrow = {"arrowstyle": "<|-|>", "lw": 0.6, "shrinkA": 0, "shrinkB": 0, "color": INK}
+    for middle, text, (a, b), step in chain:
+        wide = b - a > CHAR * len(text) + 0.2
+        own = {**arrow, "mutation_scale": 6 if wide else 4}
+        pen.ax.annotate("", (a, level), (b, level), arrowprops=own)
+        place = level - 0.07 - LINE * (step - 1) if step else level + (0.02 if wide else 0.07)
+        pen.words(middle, place, text, "black", 6, va="top" if step else "bottom", alpha=1.0)
+
+
+def _ruler(pen: Pen, ordinates, length: float, level: float) -> None:
+    """Positions from y = 0 of the ends, the bearings and the lumped point."""
+    pen.line([pen.x(0), pen.x(length)], [level, level], INK, 0.6, 2)
+    for x, text, step in ordinates:
+        pen.line([x, x], [level + 0.05, level - 0.05 - 0.17 * step], INK, 0.6, 2)
+        pen.ax.text(x, level - 0.07 - 0.17 * step, text, ha="center", va="top", fontsize=8)
+    pen.ax.text(pen.x(length) + 0.22, level, "y, mm", va="center", fontsize=8, style="italic")
 
 
 def _handles(segments, scene) -> list[Any]:

@@ -23,12 +23,8 @@ WITHOUT = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
 def sketch_svg(name: str, scene: Mapping[str, Any]) -> bytes | None:
-    """Both drawings of a scene, of which ``style.html`` shows either; None without segments.
-
-    Parameters
-    ----------
-    name : str
-        Letters and underscores, of no other drawing of the page.
+    """Both drawings of a scene, of which ``style.html`` shows either; None without segments. The
+    name has letters and underscores, and is of no other drawing of the page.
     """
     import matplotlib
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from solidgear.report.table import Cell, Column, Table, text
+from solidgear.report.table import Cell, Column, Table, exact, text
 from solidgear.report.words import DASH, hertz, whole
 
 
@@ -30,9 +30,9 @@ def all_lines(found: Sequence[Any]) -> Table:
     columns = [
         Column("kind", lambda line: line.kind),
         text("order", lambda line: line.name),
-        Column("frequency [Hz]", lambda line: line.frequency_hz, _figures),
-        Column("from [Hz]", lambda line: line.low_hz, _figures),
-        Column("to [Hz]", lambda line: line.high_hz, _figures),
+        Column("frequency [Hz]", lambda line: line.frequency_hz, exact),
+        Column("from [Hz]", lambda line: line.low_hz, exact),
+        Column("to [Hz]", lambda line: line.high_hz, exact),
         text("source", lambda line: line.source),
     ]
     return Table("", columns, found)
@@ -53,14 +53,8 @@ def coincidences(found: Any) -> Table:
 
 
 def measured(found: Any, most: int | None = None) -> Table:
-    """Measured peaks and whose they are, by frequency.
-
-    Parameters
-    ----------
-    found : AtSpeed
-        With a spectrum.
-    most : int, optional
-        Of the largest; all by default.
+    """Measured peaks and whose they are, by frequency; of the largest alone where there is a
+    `most`.
     """
     peaks = sorted(found.peaks, key=lambda peak: -peak.amplitude)[:most]
     unit = found.spectrum.unit
@@ -86,29 +80,24 @@ def line_place(line: Any) -> str | None:
     return f"{hertz(line.low_hz)} to {hertz(line.high_hz)}"
 
 
-def _also(names: Sequence[str], most: int = 2) -> str:
-    """Some further names, and how many more there are."""
+def _also(names: Sequence[str]) -> str:
+    """Two further names, and how many more there are."""
     if not names:
         return DASH
-    left = len(names) - most
-    return ", ".join(names[:most]) + (f" and {left} more" if left > 0 else "")
+    left = len(names) - 2
+    return ", ".join(names[:2]) + (f" and {left} more" if left > 0 else "")
 
 
 def measured_file(found: Any) -> Table:
     """Every measured peak and whose it is, for a file."""
     unit = f" [{found.spectrum.unit}]" if found.spectrum.unit else ""
     columns = [
-        Column("frequency [Hz]", lambda peak: peak.frequency_hz, _figures),
-        Column(f"amplitude{unit}", lambda peak: peak.amplitude, _figures),
+        Column("frequency [Hz]", lambda peak: peak.frequency_hz, exact),
+        Column(f"amplitude{unit}", lambda peak: peak.amplitude, exact),
         text("order", lambda peak: peak.name),
-        Column("order [Hz]", lambda peak: peak.line and peak.line.frequency_hz, _figures),
-        Column("from [Hz]", lambda peak: peak.line and peak.line.low_hz, _figures),
-        Column("to [Hz]", lambda peak: peak.line and peak.line.high_hz, _figures),
+        Column("order [Hz]", lambda peak: peak.line and peak.line.frequency_hz, exact),
+        Column("from [Hz]", lambda peak: peak.line and peak.line.low_hz, exact),
+        Column("to [Hz]", lambda peak: peak.line and peak.line.high_hz, exact),
         text("others", lambda peak: "; ".join(peak.others)),
     ]
     return Table("", columns, found.peaks)
-
-
-def _figures(value: float) -> str:
-    """A number for other programs."""
-    return f"{value:.9g}"

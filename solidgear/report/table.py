@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -248,6 +248,16 @@ class Table:
         import pandas
 
         return pandas.DataFrame(self.values, columns=self.heads)
+
+
+def exact(value: float) -> str:
+    """A number for other programs."""
+    return f"{value:.9g}"
+
+
+def numbers(columns: Mapping[str, Iterable[float]]) -> Table:
+    """Columns of numbers in SI by their heads, for other programs."""
+    return Table("", [Column(head, write=exact) for head in columns], list(zip(*columns.values())))
 
 
 #: what rich is told of the styles of terminals

@@ -5,8 +5,8 @@ Everything fits 80 columns and says the same without colour.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -15,7 +15,6 @@ from solidgear.judge.open_record import OpenNumbers
 from solidgear.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
 from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.report import open_words, reading, words
-from solidgear.report.border import as_record
 from solidgear.report.matrices import block
 from solidgear.report.table import MARK, Column, Table, text, word
 from solidgear.report.units import SI, Units, in_ascii, units_named
@@ -23,52 +22,21 @@ from solidgear.report.units import SI, Units, in_ascii, units_named
 if TYPE_CHECKING:
     import numpy as np
 
-#: tells something of a model by its key
-Tell = Callable[[str], Any]
+    from solidgear.solve.modes import Mode
+
 NOT_RESOLVED = "n.r."
 #: figures of a coupling that is next to nothing
 WEAK = 3
 #: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
-#: heads of the columns of numbers in the final table, and their units in SI
-COLUMNS = {
-    "K_zz": "N/m",
-    "C_zz": "m/N",
-    "fb1": "Hz",
-    "dC_zz": "",
-    "dfb1": "",
-    "bar C": "",
-    "DOFs": "",
-    "time": "s",
-}
 
 
-def final_table(
-    found: Record | Mapping[str, Any], units: str | Units | None = None
-) -> RenderableType:
+def final_table(record: Record) -> RenderableType:
     """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, error
-    bar, size, time.
-
-    Parameters
-    ----------
-    found : Record or mapping
-        What a run found; missing parts show as a dash.
-    units : str or Units, optional
-        ``engineering``, ``si`` or ``us``; by default what the record was shown in.
-
-    Returns
-    -------
-    rich renderable
-        A table of at most 80 columns, and below it what its marks mean and why a model must not be
-        trusted.
-
-    Raises
-    ------
-    SolidgearError
-        For plain data that is no record of this version, or unknown units.
+    bar, size, time, in at most 80 columns; missing parts show as a dash. Below it what the marks
+    mean and why a model must not be trusted.
     """
-    record = as_record(found)
-    chosen = units_named(units or record.shown_in)
+    chosen = units_named(record.shown_in)
     table = Table("", _columns(record, chosen), list(record.models), style="narrow")
     unresolved = any(NOT_RESOLVED in row for row in table.rows)
     notes = [*_notes(record, unresolved), *_further_points(record, chosen)]
@@ -80,32 +48,39 @@ def _columns(record: Record, units: Units) -> list[Column]:
     """Columns of the final table, which tell of a model by its key."""
     models = record.models
 
-    def entry(name: Quantity) -> Tell:
-        return lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
+    def entry(name: Quantity) -> Column:
+        head = f"{name}\n{units.unit(name.unit)}"
+        return Column(
+            head, lambda key: units.number(reading.value_of(models[key], name), name.unit, 4)
+        )
+
+    def apart(head: str, name: Quantity) -> Column:
+        return Column(head, lambda key: _against_reference(record, key, name))
 
     def bar(key: str) -> float | None:
         found = models[key].band
         return found.compliance if found else None
 
-    tells: dict[str, tuple[Tell, Callable[[Any], str]]] = {
-        "K_zz": (entry(K_ZZ), str),
-        "C_zz": (entry(C_ZZ), str),
-        "fb1": (lambda key: reading.first_frequency(models[key], "bending"), words.hertz),
-        "dC_zz": (lambda key: _against_reference(record, key, C_ZZ), str),
-        "dfb1": (lambda key: _against_reference(record, key, FIRST_BENDING), str),
-        "bar C": (bar, words.bar_percent),
-        "DOFs": (lambda key: models[key].dofs, words.count),
-        "time": (lambda key: reading.answer_seconds(models[key]), words.seconds),
-    }
     return [
         word("model", lambda key: reading.heading(record, key)[:10]),
         Column("valid", lambda key: VALID[reading.validity(models[key])], kind=MARK),
-        *(Column(_head(name, si, units), *tells[name]) for name, si in COLUMNS.items()),
+        entry(K_ZZ),
+        entry(C_ZZ),
+        Column(
+            f"fb1\n{units.unit('Hz')}",
+            lambda key: reading.first_frequency(models[key], "bending"),
+            words.hertz,
+        ),
+        apart("dC_zz", C_ZZ),
+        apart("dfb1", FIRST_BENDING),
+        Column("bar\nC", bar, words.bar_percent),
+        Column("DOFs", lambda key: models[key].dofs, words.count),
+        Column(
+            f"time\n{units.unit('s')}",
+            lambda key: reading.answer_seconds(models[key]),
+            words.seconds,
+        ),
     ]
-
-
-def _head(name: str, si: str, units: Units) -> str:
-    return f"{name}\n{units.unit(si)}" if si else name.replace(" ", "\n")
 
 
 def _notes(record: Record, unresolved: bool) -> list[str]:
@@ -166,11 +141,10 @@ def _against_reference(record: Record, key: str, quantity: str) -> str:
     return words.percent(row.relative) if reading.is_resolved(row) else NOT_RESOLVED
 
 
-def closing_lines(found: Record | Mapping[str, Any]) -> list[str]:
+def closing_lines(record: Record) -> list[str]:
     """Lines below a verdict: cautions, modes that were counted, seconds and peak memory (plain
     text).
     """
-    record = as_record(found)
     lines = [f"caution: {w}" for w in record.warnings]
     if told := reading.left_open(record):
         lines.append(told)
@@ -194,9 +168,8 @@ def _memory(record: Record) -> str:
     return peak
 
 
-def verdict_text(found: Record | Mapping[str, Any]) -> str:
+def verdict_text(record: Record) -> str:
     """The verdict in plain words, one statement a line (plain text: print it without markup)."""
-    record = as_record(found)
     verdict = record.verdict
     if verdict == VerdictRecord():
         return "No verdict: the run did not get that far."
@@ -219,20 +192,8 @@ def matrix_table(
     title: str = "",
     sizes: Sequence[Sequence[float]] | None = None,
 ) -> Table:
-    """A 6x6 with its units; free components (None or NaN) show as a dash.
-
-    Parameters
-    ----------
-    matrix : (6, 6) array_like
-        SI, order x y z thx thy thz.
-    kind : {'stiffness', 'compliance'}
-    units : str or Units
-        To show it in.
-    title : str
-        By default the kind.
-    sizes : two lists of six numbers, optional
-        Diagonal entries beside which a coupling may be next to nothing, of rows and of columns; by
-        default those of the matrix.
+    """A 6x6 with its units, titled by its kind; free components (None or NaN) show as a dash. See
+    :func:`solidgear.report.matrices.block`.
     """
     chosen = units_named(units)
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
@@ -243,7 +204,7 @@ def matrix_table(
 
 
 def modes_table(
-    modes: Sequence[ModeRecord | Mapping[str, Any]],
+    modes: Sequence[ModeRecord | Mode],
     bars: Mapping[str, float] | None = None,
     open_: OpenNumbers | None = None,
 ) -> Table:
@@ -267,4 +228,4 @@ def modes_table(
     if open_ is not None:
         columns += open_words.columns(open_, lambda mode: mode.name)
         note = open_words.remark(open_)
-    return Table("", columns, list(map(ModeRecord.model_validate, modes)), note)
+    return Table("", columns, modes, note)

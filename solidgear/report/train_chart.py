@@ -9,7 +9,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.report.panel import Axis, Panel, Series, log_ticks, read_places, readout
+from solidgear.report.panel import (
+    Axis,
+    Panel,
+    Series,
+    curve,
+    lines_legend,
+    log_ticks,
+    read_places,
+    readout,
+)
 from solidgear.report.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.report.train_tables import turned
 from solidgear.report.units import ENGINEERING, Units, plain
@@ -44,16 +53,12 @@ def response_chart(
 
     Parameters
     ----------
-    responses : sequence of TrainResponse
-        By their labels; the peaks of the first are named.
     teeth : int or None
         Of the pinion, for the upper axis in rpm; None where the responses do not share them.
     band : float or None
         Drawn around the first where there are others, dB.
     marks : mapping of str to float
         Where a model leaves the band, Hz, by label.
-    width : float
-        px.
     """
     last = responses[0].frequency_hz[-1]
     # where models differ is the upper end; below half the first departure they are one line
@@ -73,7 +78,7 @@ def response_chart(
         height = 340.0 if top else 200.0
         ends = _ends([s[r.frequency_hz >= first] for r, s in zip(responses, sizes)])
         panel = Panel(
-            _hertz("" if top else words, (first, last)),
+            Axis("" if top else words, (first, last), log=True),
             Axis(f"{what} in {unit}", _with_room(ends, height) if top else ends, log=True),
             height,
             series=models,
@@ -103,20 +108,9 @@ def columns_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart | None:
-    """Amplitudes of several columns over frequency, a panel each, the responses over one another;
-    None without any.
-
-    Parameters
-    ----------
-    responses : sequence of TrainResponse
-        By their labels; a column that one does not have is left out there.
-    columns : sequence of (str, str)
-        Name in the responses, with its unit, and what its panel is called; those that never move
-        are left out.
-    teeth : int or None
-        As of :func:`response_chart`.
-    width : float
-        px.
+    """Amplitudes of several columns over frequency, a panel each, the responses over one another,
+    where they have them; None without any. Columns are names in the responses, with their units,
+    and what panels are called; those that never move are left out.
     """
     ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
     models, panels = _models(responses, PAIR), []
@@ -130,7 +124,7 @@ def columns_chart(
         low, high = _ends(sizes)
         unit = units.unit(si)
         panel = Panel(
-            _hertz("mesh frequency in Hz" if k >= len(moving) - beside else "", ends),
+            Axis("mesh frequency in Hz" if k >= len(moving) - beside else "", ends, log=True),
             Axis(unit, (max(low, high / DEEPEST), high), log=True),
             140.0,
             title,
@@ -164,23 +158,15 @@ def receptance_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Amplitude and phase of a receptance over frequency, the peaks of the first model named.
-
-    Parameters
-    ----------
-    found : sequence of TrainReceptance
-        Of the same two ends.
-    teeth : float
-        In one turn of the shaft that speeds are told of, for the upper axis in rpm.
-    width : float
-        px.
+    """Amplitude and phase of receptances between the same two ends over frequency, the peaks of the
+    first model named; `teeth` as of a response.
     """
     unit, models = units.unit(found[0].unit), _models(found)
     sizes = [units.values(np.abs(one.value), one.unit) for one in found]
     phases = [np.degrees(np.angle(one.value)) for one in found]
     ends = found[0].frequency_hz[0], found[0].frequency_hz[-1]
     amplitude = Panel(
-        _hertz("", ends),
+        Axis("", ends, log=True),
         Axis(f"receptance in {unit}", _with_room(_ends(sizes), 360.0), log=True),
         360.0,
         series=models,
@@ -189,7 +175,7 @@ def receptance_chart(
     )
     turns = {float(v): str(v) for v in (-180, -90, 0, 90, 180)}
     phase = Panel(
-        _hertz("frequency in Hz", ends),
+        Axis("frequency in Hz", ends, log=True),
         Axis("phase in degrees", (-185.0, 185.0), ticks=turns),
         150.0,
         series=models,
@@ -226,12 +212,7 @@ def _models(found: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str,
 
 
 def _legend(width: float) -> dict[str, Any]:
-    columns = 3 if width > NARROW else 1
-    return {"orient": "top", "columns": columns, "symbolType": "stroke", "symbolStrokeWidth": 3}
-
-
-def _hertz(title: str, ends: tuple[float, float]) -> Axis:
-    return Axis(title, ends, log=True)
+    return lines_legend(3 if width > NARROW else 1)
 
 
 def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
@@ -266,19 +247,20 @@ def _curves(
 ) -> None:
     """Curves, the first in front, and what is to be read along them; broken where one jumps."""
     first, last = panel.x.ends
-    for k, curve in reversed(list(enumerate(curves))):
-        seen = np.flatnonzero((curve.hz >= first) & (curve.hz <= last))
-        x, y = curve.hz[seen], curve.y[seen]
+    for k, one in reversed(list(enumerate(curves))):
+        seen = np.flatnonzero((one.hz >= first) & (one.hz <= last))
+        x, y = one.hz[seen], one.y[seen]
         turns = np.cumsum(np.abs(np.diff(y, prepend=y[0])) > jump)
-        places = zip(x.tolist(), y.tolist(), turns.tolist())
-        rows = [{"x": a, "y": b, "detail": part, "name": curve.name} for a, b, part in places]
+        rows = curve(x, y, name=one.name)
+        for row, part in zip(rows, turns.tolist()):
+            row["detail"] = part
         panel.draw({"type": "line", "strokeWidth": 1.8 if k == 0 else 1.1}, rows)
         read = []
         for i in read_places(x, y, int(width / APART), log=True):
-            facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in curve.read]
-            words = _words(curve.name, float(x[i]), teeth, *facts)
+            facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in one.read]
+            words = _words(one.name, float(x[i]), teeth, *facts)
             read.append({"x": x[i], "y": y[i], "readout": words})
-        panel.read(read, panel.series[curve.name].colour)
+        panel.read(read, panel.series[one.name].colour)
 
 
 def _figure(what: str, value: float) -> str:

@@ -16,7 +16,7 @@ from solidgear.report.measured_chart import measured_chart
 from solidgear.report.order_chart import order_chart
 from solidgear.report.plot import Make
 from solidgear.report.sheet_files import write_files
-from solidgear.report.table import Column, Table
+from solidgear.report.table import Column, Table, exact, numbers
 from solidgear.report.train_chart import columns_chart, receptance_chart, response_chart
 from solidgear.report.units import ENGINEERING, Units, units_named
 
@@ -91,31 +91,20 @@ def write_receptance(
     train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
 ) -> list[Path]:
-    """``receptance.csv`` of the first model, ``receptance.png``, ``receptance.svg`` of all,
-    ``receptance.json`` with the peaks and what else is told, and the page ``receptance.html``.
-
-    Parameters
-    ----------
-    found : sequence of TrainReceptance
-        Of the same two ends.
-    teeth : float
-        Of the mesh in one turn of the shaft that speeds are told of.
-    train : mapping
-        What is known of the train, as plain data.
-    units : str or Units
-        Of chart and page; all else is SI.
+    """``receptance.csv`` of the first model and ``receptance.json`` with the peaks and what else is
+    told in SI, ``receptance.png``, ``receptance.svg`` and the page ``receptance.html`` of all in
+    `units`. `train` is what is known of the train as plain data.
     """
     first, shown = found[0], units_named(units)
     unit, value = first.unit, first.value
-    table = _numbers(
-        first.frequency_hz,
-        teeth,
+    table = numbers(
         {
+            **places(first.frequency_hz, teeth),
             f"amplitude [{unit}]": np.abs(value),
             "phase [deg]": np.degrees(np.angle(value)),
             f"real part [{unit}]": value.real,
             f"imaginary part [{unit}]": value.imag,
-        },
+        }
     )
     charts: dict[str, Make] = {"receptance": partial(receptance_chart, found, title, teeth, shown)}
     data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
@@ -143,12 +132,12 @@ def _plain(one: Any) -> dict[str, Any]:
 
 def over_frequency(response: Any, teeth: float) -> Table:
     """Amplitude and phase of every column over frequency; the unit stands in brackets."""
-    columns = {}
+    columns = places(response.frequency_hz, teeth)
     for name, value in response.columns.items():
         what, _, unit = name.partition(" [")
         columns[f"{what} [{unit}"] = np.abs(value)
         columns[f"{what} phase [deg]"] = np.degrees(np.angle(value))
-    return _numbers(response.frequency_hz, teeth, columns)
+    return numbers(columns)
 
 
 def crossings(orders: Any, of: str = "pinion") -> Table:
@@ -156,21 +145,13 @@ def crossings(orders: Any, of: str = "pinion") -> Table:
     columns = [
         Column("order", lambda c: c.line),
         Column("mode", lambda c: c.mode),
-        Column("frequency [Hz]", lambda c: c.frequency_hz, figures),
-        Column(f"{of} speed [rpm]", lambda c: c.rpm, figures),
-        Column("mesh force [N]", lambda c: c.force, figures),
+        Column("frequency [Hz]", lambda c: c.frequency_hz, exact),
+        Column(f"{of} speed [rpm]", lambda c: c.rpm, exact),
+        Column("mesh force [N]", lambda c: c.force, exact),
     ]
     return Table("", columns, orders.crossings)
 
 
-def _numbers(hz: np.ndarray, teeth: float, columns: Mapping[str, np.ndarray]) -> Table:
-    """Columns over frequency and speed."""
-    speed = f"{train_tables.turned(teeth)} speed [rpm]"
-    there = {"frequency [Hz]": hz, speed: 60 * hz / teeth, **columns}
-    rows = np.column_stack(list(there.values())).tolist()
-    return Table("", [Column(head, write=figures) for head in there], rows)
-
-
-def figures(value: float) -> str:
-    """A number for other programs."""
-    return f"{value:.9g}"
+def places(hz: np.ndarray, teeth: float) -> dict[str, np.ndarray]:
+    """Columns of frequency and speed."""
+    return {"frequency [Hz]": hz, f"{train_tables.turned(teeth)} speed [rpm]": 60 * hz / teeth}

@@ -14,7 +14,7 @@ from solidgear.machine.whole_file import whole
 from solidgear.report import input_tables, train_tables
 from solidgear.report.folder import begun
 from solidgear.report.order_chart import order_chart
-from solidgear.report.page_parts import data_uri, template
+from solidgear.report.page_parts import Contents, data_uri, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.run_tables import pairs_of
 from solidgear.report.sheet_files import write_charts, write_json
@@ -46,8 +46,6 @@ def write_train(
         To draw, the judge's first.
     marks : mapping of str to float
         Where a model leaves its band, Hz.
-    orders : OrderMap
-        Of the judge.
     draw : callable, optional
         Draws into the folder; gives ``pictures``, files by what they show, and ``left_out``,
         sentences on what could not be drawn.
@@ -55,16 +53,6 @@ def write_train(
         Of tables and charts; results.json and the other tables are SI.
     viewer : str
         HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
-
-    Returns
-    -------
-    Path
-        Of the page.
-
-    Raises
-    ------
-    SolidgearError
-        If the folder cannot be written.
     """
     verdict, train = results["verdict"], results["train"]
     driven = train["title"]
@@ -118,6 +106,8 @@ def _page(
     two = len(train["shafts"]) == 2
     chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train["shafts"])
     return template("train.html").render(
+        contents=Contents(),
+        title=train["title"],
         train=train,
         count="two shafts" if two else f"{len(train['shafts'])} shafts",
         mixed="every mix of models" if two else "mixes of models",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from solidgear.machine.whole_file import write_page
-from solidgear.report.page_parts import template
+from solidgear.report.page_parts import Contents, template
 from solidgear.report.plot import Make, page_svg
 from solidgear.report.table import Table
 
@@ -107,26 +107,9 @@ def write_sheet(
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
 ) -> Path:
-    """Write a page that needs no network and no other file.
-
-    Parameters
-    ----------
-    title, lead : str
-        What is shown, and with which models.
-    tables : iterable of Table
-    charts : mapping of str to callable, optional
-        A chart each, by a name that begins with one of ``WORDS``.
-    viewer : str
-        HTML that shows mode shapes, taken as it is: none of it may come from a file unescaped.
-    verdict : sequence of str
-        Conclusions, which come first.
-    sections : sequence of Section
-        After all else but the notes.
-
-    Raises
-    ------
-    SolidgearError
-        If the file cannot be written.
+    """Write a page that needs no network and no other file: conclusions, cautions, charts with
+    names that begin with one of ``WORDS``, HTML of mode shapes, tables, sections, notes. The HTML
+    is taken as it is: none of it may come from a file unescaped.
     """
     from markupsafe import Markup
 
@@ -135,6 +118,7 @@ def write_sheet(
         for s in sections
     ]
     page = template("train_sheet.html").render(
+        contents=Contents(),
         title=title,
         lead=lead,
         tables=[table for table in tables if table],

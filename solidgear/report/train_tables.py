@@ -275,22 +275,8 @@ def peaks(
     units: Units = ENGINEERING,
     of: str = "",
 ) -> Table:
-    """Peaks of what a train does over frequency, for pages and for terminals.
-
-    Parameters
-    ----------
-    found : sequence of (float, float, str)
-        Frequency, Hz, size and mode.
-    what : str
-        What has them, such as ``mesh force``.
-    si : str
-        Unit of their sizes.
-    teeth : float
-        Of the mesh in one turn of the shaft that speeds are told of.
-    units : Units, optional
-        To show them in.
-    of : str, optional
-        The model.
+    """Peaks (Hz, size, mode) of what a train does over frequency, such as ``mesh force`` in its SI
+    unit, for pages and for terminals.
     """
     units = units.fitting([size for _, size, _ in found], si)
     columns = [

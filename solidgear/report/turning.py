@@ -111,20 +111,8 @@ def turned(
     title: str = "",
     like: Sequence[Turned] = (),
 ) -> Turned:
-    """Surface and mode shapes of a body for :func:`solidgear.report.viewer.viewer_fragment`.
-
-    Parameters
-    ----------
-    modes : ModeSet or iterable of Mode
-    title : str, optional
-        The body's model by default.
-    like : sequence of Turned, optional
-        Models beside it: a shape takes the sign of theirs of the same name.
-
-    Raises
-    ------
-    SolidgearError
-        For a body that carries no geometry, modes of another body, or none that is elastic.
+    """Surface and elastic mode shapes of a body, titled by its model; a shape takes the sign of the
+    one of the same name of a model that it is `like`.
     """
     chosen: Any = getattr(modes, "modes", modes)
     elastic = [mode for mode in chosen if mode.frequency_hz > 0]
@@ -139,24 +127,9 @@ def together(
     members: Sequence[Member],
     like: Sequence[Turned] = (),
 ) -> Turned:
-    """Several bodies that move in the same modes, each in its place.
-
-    Parameters
-    ----------
-    modes : sequence of (str, float)
-        Name and frequency, Hz, of elastic modes.
-    like : sequence of Turned, optional
-        The same bodies by other models: a shape takes the sign of theirs of the same name.
-
-    Returns
-    -------
-    Turned
-        The first body, with the others along.
-
-    Raises
-    ------
-    SolidgearError
-        For a body that carries no geometry, or no mode at all.
+    """Several bodies that move in the same elastic modes (name, Hz), each in its place: the first,
+    with the others along. A shape takes the sign of the one of the same name of models that they
+    are `like`.
     """
     if not modes:
         raise SolidgearError(f"the model {title} has no elastic mode to draw")
@@ -188,15 +161,11 @@ def _moved(body: Body, vectors: Sequence[Any], mesh: Mesh) -> np.ndarray:
 
 
 def symmetric(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Of the shapes that a pair spans, that symmetric about the plane of y and z.
+    """Of the shapes that a pair of the same modal mass spans, that symmetric about the plane of y
+    and z.
 
     On that plane a symmetric shape has no motion along x, so the combination with the least of it
     nearby is taken.
-
-    Parameters
-    ----------
-    points, one, other : (n, 3) ndarray
-        Points, and the displacements of two shapes of the same modal mass.
     """
     x, z = points[:, 0] ** 2, points[:, 2] ** 2
     near = np.divide(z, x + z, out=np.zeros_like(z), where=x + z > 0) ** 8

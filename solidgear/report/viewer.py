@@ -120,22 +120,9 @@ def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
 
 
 def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "") -> str:
-    """Markup, style, script and data of a viewer, to be put into a page.
-
-    Parameters
-    ----------
-    models : sequence of Turned
-        The first two are shown side by side; further ones can be chosen. Those that would take the
-        data past ``BUDGET`` are left out, but never the first.
-    still : str, optional
-        Data URI of a picture to show in print and where the viewer cannot run.
-    first : str, optional
-        Name of the mode to open with; first bending by default.
-
-    Returns
-    -------
-    str
-        HTML between two comments, by which :func:`fragment_of` finds it again.
+    """Markup, style, script and data of a viewer, between two comments by which :func:`fragment_of`
+    finds it in a page. Models past ``BUDGET`` are left out, but never the first; `still` is the
+    data URI of a picture for print and where the viewer cannot run, `first` the mode to open with.
     """
     from markupsafe import Markup
 

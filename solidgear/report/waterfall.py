@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from solidgear.report.panel import Axis, Panel
+from solidgear.report.panel import Axis, Panel, curve
 
 #: dB below the largest line at which spectra begin, and how high one is over the distance of two
 DEEP, TALL = 50.0, 1.8
@@ -23,20 +23,8 @@ def waterfall(
     highest: float,
     title: str = "",
 ) -> Panel:
-    """Spectra over frequency and speed.
-
-    Parameters
-    ----------
-    rpm : (n,) ndarray
-        Ascending, evenly apart.
-    hertz, size : (n, k) ndarray
-        Of lines at each speed, in any unit.
-    orders : mapping of str to float
-        Of lines that are drawn, by their names, of the shaft.
-    shaft : str
-        Whose speed it is.
-    highest : float
-        Frequency that is shown, Hz.
+    """Spectra, a row each, over frequency and ascending speeds that are evenly apart, with lines of
+    orders of the shaft by their names, up to the highest frequency that is shown.
     """
     step = float(rpm[1] - rpm[0]) if len(rpm) > 1 else float(rpm[0])
     tall = TALL * step
@@ -58,6 +46,5 @@ def waterfall(
     heights = rpm[:, None] + tall * np.maximum(1 + level / DEEP, 0.0)
     for x, y in zip(hertz, heights):
         here = (x > 0) & (x < highest)
-        rows = [{"x": a, "y": b} for a, b in zip(x[here].tolist(), y[here].tolist())]
-        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, rows)
+        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, curve(x[here], y[here]))
     return panel

@@ -6,11 +6,6 @@ import math
 from collections.abc import Iterable
 from typing import Any, TypeGuard
 
-#: kind -> unit of the blocks (translation, translation), (mixed), (rotation, rotation)
-BLOCK_UNITS = {
-    "stiffness": ("N/m", "N/rad", "N m/rad"),
-    "compliance": ("m/N", "rad/N", "rad/(N m)"),
-}
 #: for what is not there
 DASH = "–"
 

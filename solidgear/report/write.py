@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
@@ -11,19 +10,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SolidgearError
-from solidgear.machine.whole_file import whole
 from solidgear.report.folder import begun, prepare
 from solidgear.report.html import drawn_charts, write_report
 from solidgear.report.outputs import OUTPUTS
 from solidgear.report.page_parts import data_uri
 from solidgear.report.reading import model_name
 from solidgear.report.render import Drawing, RenderJob, render_modes
+from solidgear.report.sheet_files import write_json
 from solidgear.report.turning import Turned, turned
 from solidgear.report.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.judge.record import Record
+    from solidgear.judge.solution import Solution
     from solidgear.report.render import RenderResult
     from solidgear.solve.modes import ModeSet
     from solidgear.studies.comparison import Comparison
@@ -57,10 +57,10 @@ def write_all(
             *(f"mode_{m}.png" for m in shapes if renders),
             *([TURNED] if shapes and renders else []),
         ]
-        _write_json(folder / "results.json", record)
+        write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
             progress("renders")
-        jobs = _jobs(comparison, folder) if renders else {}
+        jobs = _jobs(record, shapes, folder) if renders else {}
         # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
         with Drawing(jobs.values()) as drawing:
             for model, solution in shapes.items():
@@ -71,29 +71,24 @@ def write_all(
             drawn = drawn_charts(record, folder)
             _note(record, jobs, drawing.results())
         if renders and shapes:
-            _try(record, "viewer of mode shapes", _write_turned, comparison, folder)
+            _try(record, "viewer of mode shapes", _write_turned, record, shapes, folder)
         record.files = [
             name for name in record.files if name == "report.html" or (folder / name).exists()
         ]
-        _write_json(folder / "results.json", record)
+        write_json(folder / "results.json", record.as_dict())
         write_report(record, folder, drawn=drawn)
     return folder
 
 
-def _write_json(path: Path, record: Record) -> None:
-    text = json.dumps(record.as_dict(), indent=1, allow_nan=False)
-    with whole(path) as partial:
-        partial.write_text(text + "\n", encoding="utf-8")
-
-
-def _try(record: Record, what: str, action: Callable[..., object], *arguments: Any) -> None:
-    """Run something the numbers do not depend on; a failure becomes a warning."""
+def _try(record: Record, what: str, action: Callable[..., Any], *arguments: Any) -> Any:
+    """Result of something the numbers do not depend on; a failure becomes a warning, and None."""
     try:
-        action(*arguments)
+        return action(*arguments)
     except OSError:
         raise
     except Exception as error:
         _leave_out(record, f"{what} left out: {error}")
+        return None
 
 
 def _leave_out(record: Record, sentence: str) -> None:
@@ -101,30 +96,19 @@ def _leave_out(record: Record, sentence: str) -> None:
     record.warnings.append(sentence)
 
 
-def _job(body, modes, name: str, path: Path, model: str):
-    mode = modes.named(name)
-    if mode is None:
-        have = ", ".join(m.name for m in modes.modes)
-        raise SolidgearError(f"mode {name!r}: the {model} has none of that name; it has {have}")
-    title = f"{model}: {mode.name}, {mode.frequency_hz:.1f} Hz"
-    return RenderJob(body.surface(mode.vectors[0]), title, path)
-
-
-def _jobs(comparison: Comparison, folder: Path) -> dict[str, RenderJob]:
+def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str, RenderJob]:
     """The pictures to be drawn, by model."""
-    record = comparison.record
     jobs: dict[str, RenderJob] = {}
-    for model, solution in (comparison.solutions if record.complete else {}).items():
+    for model, solution in shapes.items():
         name = _drawn_mode(solution.modes)
         if name is None:
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-
-        def add(model=model, solution=solution, name=name, path=path) -> None:
-            jobs[model] = _job(solution.body, solution.modes, name, path, model_name(record, model))
-
-        _try(record, f"render of {model}", add)
+        drawn = Drawn(solution.body, solution.modes, model_name(record, model))
+        job = _try(record, f"render of {model}", drawn.job, name, path)
+        if job is not None:
+            jobs[model] = job
     return jobs
 
 
@@ -140,11 +124,11 @@ def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) 
         _leave_out(record, f"render of {', '.join(models)} left out: {reason}")
 
 
-def _write_turned(comparison: Comparison, folder: Path) -> None:
+def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> None:
     """The page of mode shapes, the most detailed models first."""
-    record, still = comparison.record, ""
+    still = ""
     models: list[Turned] = []
-    for key, solution in reversed(comparison.solutions.items()):
+    for key, solution in reversed(shapes.items()):
         if solution.body.geometry is None or _drawn_mode(solution.modes) is None:
             continue
         models.append(turned(solution.body, solution.modes, model_name(record, key), models))
@@ -165,18 +149,41 @@ def _drawn_mode(modes: ModeSet) -> str | None:
     return None
 
 
-def render_mode(
-    body: Body, modes: ModeSet, name: str, path: str | os.PathLike, model: str = ""
-) -> Path:
-    """Draw one mode of one body; `model` is what the picture calls it.
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A body, its modes, and what it is called in a picture or page."""
+
+    body: Body
+    modes: ModeSet
+    title: str
+
+    def job(self, name: str, path: Path) -> RenderJob:
+        """A picture of the mode of that name.
+
+        Raises
+        ------
+        SolidgearError
+            If there is none.
+        """
+        mode = self.modes.named(name)
+        if mode is None:
+            have = ", ".join(m.name for m in self.modes.modes)
+            raise SolidgearError(
+                f"mode {name!r}: the {self.title} has none of that name; it has {have}"
+            )
+        title = f"{self.title}: {mode.name}, {mode.frequency_hz:.1f} Hz"
+        return RenderJob(self.body.surface(mode.vectors[0]), title, path)
+
+
+def render_mode(drawn: Drawn, name: str, path: Path) -> Path:
+    """Draw one mode of one body.
 
     Raises
     ------
     SolidgearError
         If there is no such mode, or nothing can be drawn here (the sentence says what mends it).
     """
-    path = Path(path)
-    job = _job(body, modes, name, path, model or body.fidelity)
+    job = drawn.job(name, path)
     prepare(path.parent)
     try:
         (done,) = render_modes([job])
@@ -190,55 +197,19 @@ def render_mode(
     return done.path
 
 
-@dataclass(frozen=True, eq=False)
-class Drawn:
-    """A body, its modes, and what it is called in a page."""
-
-    body: Body
-    modes: ModeSet
-    title: str
-
-
-def turn_modes(
-    drawn: Sequence[Drawn], path: str | os.PathLike, title: str, name: str
-) -> tuple[Path, str]:
-    """Write a page in which all modes can be turned.
-
-    Parameters
-    ----------
-    drawn : sequence of Drawn
-        Models, side by side.
-    path : path
-        Of the page.
-    title : str
-        Of the page.
-    name : str
-        The mode that it opens with, and of the picture of the first model for print.
-
-    Returns
-    -------
-    path : Path
-    said : str
-        Why there is no picture for print; empty if there is one.
-
-    Raises
-    ------
-    SolidgearError
-        If there is no such mode, or the page cannot be written.
+def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tuple[Path, str]:
+    """Write a page in which all modes of models side by side can be turned, opened with the named
+    one, and with a picture of it by the first model for print; why there is no such picture, if so.
     """
-    path = Path(path)
     prepare(path.parent)
     models: list[Turned] = []
     for one in drawn:
-        _job(one.body, one.modes, name, path, one.title)
+        one.job(name, path)
         models.append(turned(one.body, one.modes, one.title, models))
     still, said = "", ""
     with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
         try:
-            first = drawn[0]
-            picture = render_mode(
-                first.body, first.modes, name, Path(folder) / "mode.png", first.title
-            )
+            picture = render_mode(drawn[0], name, Path(folder) / "mode.png")
             still = data_uri("mode", picture) or ""
         except SolidgearError as error:
             said = f"no picture for print in {path.name}: {error}"
