@@ -25,7 +25,6 @@ from solidgear.models.beam.element import (
     surface,
 )
 from solidgear.models.beam.shoulder import Hinge, hinges
-from solidgear.models.options import BEAM_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 
@@ -77,8 +76,7 @@ def beam(
     Raises
     ------
     SolidgearError
-        For an option out of its range, Cowper's coefficient on a hollow shaft, or Euler elements
-        below ``SHORTEST`` of the shaft.
+        For Cowper's coefficient on a hollow shaft, or Euler elements below ``SHORTEST`` of the shaft.
 
     Examples
     --------
@@ -88,18 +86,6 @@ def beam(
     >>> body.mesh["elements"], [block.components for block in body.blocks]
     (30, [(2, 3), (0, 5), (1,), (4,)])
     """
-    checked(
-        "timoshenko" if shear else "euler",
-        {
-            "head": head,
-            "mass": mass,
-            "kappa": kappa,
-            "elements": elements,
-            "shoulder": shoulder,
-            "attachments": attachments,
-        },
-        BEAM_OPTIONS,
-    )
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError(
             "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"

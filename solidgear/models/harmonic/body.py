@@ -19,13 +19,13 @@ from solidgear.body.surface import Surface
 from solidgear.kernel.assembly import unknowns
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.grading import Grading
-from solidgear.meshing.layout import Layout, layout
+from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import Cut, Meridian, cut_meridian, drawn_across, meridian
 from solidgear.models.harmonic.blocks import _Work
 from solidgear.models.harmonic.circumferential import Families
 from solidgear.models.harmonic.drawing import surface
 from solidgear.models.limits import countable
-from solidgear.models.options import HARMONIC_OPTIONS, checked
+from solidgear.models.options import HARMONIC_OPTIONS, thick_enough
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
@@ -113,42 +113,29 @@ def harmonic(
     Raises
     ------
     SolidgearError
-        For an unknown order or attachment, or a cut where the mesh has no corner.
+        For layers thinner than digits, cells without end, or a cut where the mesh has no corner.
     """
-    grading = {
-        "layers": layers,
-        "edge_layers": edge_layers,
-        "ratio": ratio,
-        "relative_size": relative_size,
-        "size": size,
-        "refinement": refinement,
-    }
-    given = checked(
-        "harmonic",
-        {
-            "order": order,
-            **grading,
-            "attachments": attachments,
-            "families": families,
-            "ovalising": ovalising,
-            "cuts": cuts,
-            "across": across,
-            "plain": plain,
-        },
-        HARMONIC_OPTIONS,
-    )
-    attachments, ovalising = given["attachments"], given["ovalising"]
-    families = given["families"]
+    thick_enough("harmonic", {"layers": layers, "ratio": ratio})
     # chamfers in shoulders as cones, to whose ends layers lead
     scene = coned(scene)
-    plan = harmonic_layout(scene, attachments, **grading, plain=plain)
+    countable("harmonic", scene, size or relative_size * scene.outline.least_radius, refinement)
+    grading = Grading(
+        layers=layers,
+        edge_layers=edge_layers,
+        ratio=ratio,
+        relative_size=relative_size,
+        size=size,
+        refinement=refinement,
+        plain=plain,
+    )
+    plan = layout(scene, grading, attachments)
     assemblable(plan.cells, (order + 1) ** 2)
     uncut = flat = meridian(scene, plan)
     parent = np.arange(flat.cells.shape[1])
-    if given["across"]:
-        uncut = flat = drawn_across(flat, given["across"])
-    if given["cuts"]:
-        flat, parent = cut_meridian(uncut, given["cuts"])
+    if across:
+        uncut = flat = drawn_across(flat, across)
+    if cuts:
+        flat, parent = cut_meridian(uncut, cuts)
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = _element(order)
     dofs = unknowns(mesh, element)
@@ -174,7 +161,7 @@ def harmonic(
         "ratio": ratio,
         "relative_size": relative_size,
         "refinement": refinement,
-        "cuts": len(given["cuts"]),
+        "cuts": len(cuts),
         "plain": plain,
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,
@@ -194,44 +181,6 @@ def harmonic(
         facts,
         HarmonicMesh(mesh, element, dofs, flat, uncut, parent),
         further,
-    )
-
-
-def harmonic_layout(
-    scene,
-    attachments=None,
-    *,
-    layers,
-    edge_layers,
-    ratio,
-    relative_size,
-    size,
-    refinement,
-    plain=False,
-) -> Layout:
-    """Mesh lines of :func:`harmonic`, before anything is meshed; parameters as there.
-
-    Those of the shaft as it is given, which has no chamfers in its shoulders there.
-    """
-    countable(
-        "harmonic",
-        scene,
-        size or relative_size * scene.outline.least_radius,
-        refinement,
-    )
-    return layout(
-        scene,
-        Grading(
-            layers,
-            edge_layers,
-            None,
-            ratio,
-            relative_size,
-            size,
-            refinement=refinement,
-            plain=plain,
-        ),
-        attachments,
     )
 
 

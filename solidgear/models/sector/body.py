@@ -27,7 +27,6 @@ from solidgear.meshing.sector import (
     sectors_of,
 )
 from solidgear.models.kinds import CYCLIC
-from solidgear.models.options import SECTOR_OPTIONS, checked
 from solidgear.models.sector.cyclic import cyclic_blocks
 from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
@@ -96,8 +95,6 @@ def sector(
         faces; MeshError where meshing fails.
     """
     own = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    given = {**own, "ovalising": ovalising, "attachments": attachments, "half": half}
-    attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
     wanted = [*attached_stations(scene.stations, attachments)]
     features = cyclic_features(scene)
     ends = (scene.port.lo, scene.port.hi) if material_port else ()

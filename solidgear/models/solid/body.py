@@ -18,7 +18,7 @@ from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.quality import check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.kinds import BODIES, CYCLIC, PARTS
-from solidgear.models.options import SOLID_OPTIONS, checked
+from solidgear.models.options import thick_enough
 from solidgear.models.solid.block import free_block, mirrored, seat_facets
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.mesh import _isoparametric
@@ -90,7 +90,7 @@ def solid(
     Raises
     ------
     SolidgearError
-        Unknown element or attachment; MeshError where meshing fails or an element is inverted.
+        Layers thinner than digits, or cells around that do not fit; MeshError where meshing fails or an element is inverted.
     """
     grading = {
         "relative_size": relative_size,
@@ -102,11 +102,7 @@ def solid(
         "around": around,
         "refinement": refinement,
     }
-    attachments = checked(
-        "solid",
-        {"element": element, **grading, "graded_size": graded_size, "attachments": attachments},
-        SOLID_OPTIONS,
-    )["attachments"]
+    thick_enough("solid", grading)
     if element.startswith("hex") and around % 4:
         raise SolidgearError(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
