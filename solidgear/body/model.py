@@ -95,7 +95,7 @@ class Block:
     y : (n,) ndarray
         Axial position of each unknown; NaN for unknowns that are not point values.
     ports : (n_ports * len(components), n) sparse
-        Port motions as linear functions of the unknowns, port by port.
+        Port motions as linear functions of the unknowns, port by port; nothing before it has any.
     mirror : (int, tuple of float), optional
         Index of the block this one repeats in the other plane, and the sign of each component
         there.
@@ -119,7 +119,7 @@ class Block:
     mass: sp.csr_matrix | ScalarMass
     rigid: np.ndarray
     y: np.ndarray
-    ports: sp.csr_matrix
+    ports: sp.csr_matrix = field(default_factory=lambda: sp.csr_matrix((0, 0)))
     mirror: tuple[int, tuple[float, ...]] | None = None
     planar: bool = True
     border: int = 0

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.beam.drawing import BeamLine
 from solidgear.models.beam.element import (
     Elements,
@@ -132,28 +132,25 @@ def on_nodes(
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
     shape = {name: part[2] for name, part in made.items()}
     rows = [port_rows(station, how, elements, shape, at, size) for station, how in wanted]
-    stacked = {name: sp.csr_matrix(np.vstack([r[name] for r in rows])) for name in size}
-    rigid = [(i, s) for i, (s, a) in enumerate(wanted) if a == "rigid"]
 
-    def tied(block: Block, per_node: int) -> Block:
-        masks = [_seat_mask(s, nodes, per_node, block.size) for _, s in rigid]
-        return tie_rigidly(block, [(i, s.y, mask) for (i, s), mask in zip(rigid, masks)])
+    def block(
+        name: str, components: tuple[int, ...], family: str, rigid, y, per_node: int
+    ) -> Block:
+        ports = []
+        for (station, how), row in zip(wanted, rows):
+            if how == "rigid":
+                mask = _seat_mask(station, nodes, per_node, size[family])
+                ports.append(Attached(station.y, held=mask))
+            else:
+                ports.append(Attached(station.y, row[family]))
+        return with_ports(Block(name, components, k[family], m[family], rigid, y), ports)
 
-    bending = tied(
-        Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, stacked["bending"]), 2
-    )
+    bending = block("bending_z", (2, 3), "bending", lift, y2, 2)
     blocks = (
         bending,
         bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        tied(
-            Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, stacked["axial"]), 1
-        ),
-        tied(
-            Block(
-                "torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, stacked["torsion"]
-            ),
-            1,
-        ),
+        block("axial", (1,), "axial", one[:, None], nodes, 1),
+        block("torsion", (4,), "torsion", one[:, None], nodes, 1),
     )
     facts = {
         "element": "timoshenko" if shear else "euler",

@@ -20,7 +20,7 @@ from solidgear.body import Block
 from solidgear.body.sections import Sections, through
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import Pattern, batches, reference, tabulate
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.kernel.cell_shapes import Shapes
 from solidgear.models.harmonic.sections import AXIAL, BENDING, TORSION, from_cells
 
@@ -182,31 +182,34 @@ class _Work:
             rigid[:, 2, 1] = -self.place[0]
         rigid = rigid.reshape(self.n * c, -1)[keep]
         k, m = k[keep][:, keep], m[keep][:, keep]
+        seats = [
+            self._seat_unknowns(station, c)[keep] if attachment == "rigid" else None
+            for station, attachment in wanted
+        ]
         if not components:
-            return self._held(
-                Block(name, (), k, m, rigid, y, sp.csr_matrix((0, k.shape[0]))), wanted, c, keep
-            )
-        rows, ties = [], []
-        for i, (station, attachment) in enumerate(wanted):
-            if attachment == "rigid":
-                cells = self._seat_cells(station)
-                seat = np.zeros((self.n, c), bool)
-                seat[self._edge_unknowns(cells, 0, 1.0)] = True
-                ties.append((i, station.y, seat.ravel()[keep]))
-                rows.append(np.zeros((len(components), k.shape[0])))
-            else:
-                rows.append(self._mean(n, station, attachment)[:, keep])
-        ports = sp.csr_matrix(np.vstack(rows))
+            return self._held(with_ports(Block(name, (), k, m, rigid, y), ()), seats)
+        ports = [
+            Attached(station.y, held=seat)
+            if seat is not None
+            else Attached(station.y, self._mean(n, station, attachment)[:, keep])
+            for seat, (station, attachment) in zip(seats, wanted)
+        ]
         sections = self._sections(BENDING if n else AXIAL, c, keep)
-        return tie_rigidly(Block(name, components, k, m, rigid, y, ports, sections=sections), ties)
+        return with_ports(Block(name, components, k, m, rigid, y, sections=sections), ports)
 
-    def _held(self, block: Block, wanted, c: int, keep: np.ndarray) -> Block:
+    def _seat_unknowns(self, station, c: int) -> np.ndarray:
+        """Mask of the unknowns on a seat, so many at each node."""
+        seat = np.zeros((self.n, c), bool)
+        seat[self._edge_unknowns(self._seat_cells(station), 0, 1.0)] = True
+        return seat.ravel()
+
+    def _held(self, block: Block, seats) -> Block:
         """A block of waves that no motion of a port goes with: rigid seats stand still in it."""
-        still = np.zeros((self.n, c), bool)
-        for station, attachment in wanted:
-            if attachment == "rigid":
-                still[self._edge_unknowns(self._seat_cells(station), 0, 1.0)] = True
-        free = np.flatnonzero(~still.ravel()[keep])
+        still = np.zeros(block.size, bool)
+        for seat in seats:
+            if seat is not None:
+                still |= seat
+        free = np.flatnonzero(~still)
         if len(free) == block.size:
             return block
         to = sp.identity(block.size, format="csc")[:, free].tocsr()
@@ -244,24 +247,18 @@ class _Work:
             heavy.add(part, material.density * w @ _products(t))
         k, m = stiffness.matrix(), heavy.matrix()
         rigid = self.point.astype(float)[:, None]
-        rows, ties = [], []
-        for i, (station, attachment) in enumerate(wanted):
+        ports = []
+        for station, attachment in wanted:
             if attachment == "rigid":
-                seat = np.zeros(self.n, bool)
-                seat[self._edge_unknowns(self._seat_cells(station), 0, 1.0)] = True
-                ties.append((i, station.y, seat))
-                rows.append(np.zeros((1, self.n)))
+                ports.append(Attached(station.y, held=self._seat_unknowns(station, 1)))
             else:
                 value, r, _, weight, dofs, *_ = self.surface(station, attachment)
                 row = np.zeros(self.n)
                 w = weight * r**3
                 np.add.at(row, dofs.T, np.einsum("bq,eq->eb", value, w))
-                rows.append(row[None] / w.sum())
+                ports.append(Attached(station.y, row[None] / w.sum()))
         sections = self._sections(TORSION, 1, np.ones(self.n, bool))
-        block = Block(
-            "torsion", (4,), k, m, rigid, self.y, sp.csr_matrix(np.vstack(rows)), sections=sections
-        )
-        return tie_rigidly(block, ties)
+        return with_ports(Block("torsion", (4,), k, m, rigid, self.y, sections=sections), ports)
 
     def _sections(self, parts, unknowns: int, keep: np.ndarray) -> Sections:
         """Section motions of a block of which ``keep`` are the unknowns left."""

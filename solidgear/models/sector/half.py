@@ -21,7 +21,7 @@ mirrors it (Thomas 1979 solves the pair at once).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ import scipy.sparse as sp
 from solidgear.body import Block
 from solidgear.body.surface import Surface
 from solidgear.frames import rotation
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.meshing.sector import MATCH, SectorMesh
 from solidgear.models.sector.cyclic import ROUNDING
 from solidgear.models.sector.mesh import PieceSolid
@@ -189,16 +189,15 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
     # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
     energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
     stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
-    rows, ties = [np.zeros((0, t.shape[1]))], []
-    for i, (station, held, gram, loads) in enumerate(seats):
+    ports = []
+    for station, held, gram, loads in seats:
         if held is not None:
-            ties.append((i, station.y, np.isin(node, held)))
-            rows.append(np.zeros((len(components), t.shape[1])))
+            ports.append(Attached(station.y, held=np.isin(node, held)))
             continue
         own = gram[np.ix_(components, components)]
         motion = np.linalg.solve(own, energy * (t.T @ _in_parts(loads, components)).T)
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
-        rows.append(motion)
+        ports.append(Attached(station.y, motion))
     block = Block(
         name,
         components,
@@ -206,13 +205,10 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
         mass.tocsr(),
         t.T @ _in_parts(rigid, components) if components else np.zeros((t.shape[1], 0)),
         mesh.nodes[1, node],
-        sp.csr_matrix(np.vstack(rows)),
-        None,
-        False,
+        planar=False,
         expand=t.tocsr(),
     )
-    tied = tie_rigidly(block, ties)
-    return replace(tied, expand=(t @ tied.expand).tocsr()) if ties else block
+    return with_ports(block, ports)
 
 
 def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:

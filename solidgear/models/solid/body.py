@@ -9,23 +9,21 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from solidgear.body import Body, Port, Reflection
+from solidgear.body import Body, Reflection
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.quality import check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.kinds import BODIES, CYCLIC, PARTS
 from solidgear.models.options import thick_enough
-from solidgear.models.solid.block import free_block, mirrored, seat_facets
+from solidgear.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.solid.part import part_body
 from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.models.solid.rectangular import block_body
-from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.shaft import named, resolved, without_axis
@@ -140,29 +138,14 @@ def solid(
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)
     facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
-    block, ties = free_block(body_mesh, scene, wanted, facets)
-    block = replace(block, reflections=reflections)
+    block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
     facts = {
-        "element": element,
-        "elements": int(body_mesh.dofs.shape[1]),
-        "nodes": int(body_mesh.nodes.shape[1]),
+        **mesh_facts(body_mesh, quality),
         "refinement": refinement,
-        "volume": quality.volume,
-        "min_jacobian_ratio": quality.min_ratio,
-        "representative_size": float((quality.volume / body_mesh.dofs.shape[1]) ** (1 / 3)),
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,
     }
-    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    return Body(
-        "solid",
-        (tie_rigidly(block, ties),),
-        ports,
-        elastic_scale(scene),
-        scene.length,
-        facts,
-        body_mesh,
-    )
+    return body_of(scene, wanted, (block,), facts, body_mesh)
 
 
 def _hexes(scene, wanted, grading):

@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from solidgear.body import Block
 from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.solid.block import Facets, rigid_motions
 from solidgear.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.models.solid.mesh import SolidMesh
@@ -54,15 +54,14 @@ def half_blocks(
     blocks = []
     for (name, own), held in zip(PARTS[axis], (across, ~across)):
         free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
-        rows, ties = [], []
-        for i, ((station, _), found, seat) in enumerate(zip(wanted, facets, seats)):
+        ports = []
+        for (station, _), found, seat in zip(wanted, facets, seats):
             if seat is None:
                 mask = np.zeros((n, 3), bool)
                 mask[mesh.facet_unknowns(found)] = True
-                ties.append((i, station.y, mask.ravel()[free]))
-                rows.append(sp.csr_matrix((len(own), len(free))))
+                ports.append(Attached(station.y, held=mask.ravel()[free]))
             else:
-                rows.append(rigid_part(*seat, own)[:, free])
+                ports.append(Attached(station.y, rigid_part(*seat, own)[:, free]))
         block = Block(
             name,
             own,
@@ -70,16 +69,10 @@ def half_blocks(
             (2 * m[free][:, free]).tocsr(),
             rigid[free][:, list(own)],
             y[free],
-            sp.vstack(rows).tocsr(),
-            None,
-            False,
+            planar=False,
             expand=_into(3 * n, free),
         )
-        tied = tie_rigidly(block, ties)
-        if ties:
-            assert tied.expand is not None  # of the ties
-            object.__setattr__(tied, "expand", (block.expand @ tied.expand).tocsr())
-        blocks.append(tied)
+        blocks.append(with_ports(block, ports))
     return blocks[0], blocks[1]
 
 
