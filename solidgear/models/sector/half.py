@@ -35,7 +35,7 @@ from solidgear.meshing.sector import MATCH, SectorMesh
 from solidgear.models.sector.cyclic import ROUNDING
 from solidgear.models.sector.mesh import PieceSolid
 from solidgear.models.solid.block import rigid_motions
-from solidgear.models.solid.drawing import solid_surface
+from solidgear.models.solid.drawing import copied, solid_surface
 from solidgear.models.solid.matrices import _matrices, weighed
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 
@@ -236,33 +236,17 @@ class HalfSectorSolid(PieceSolid):
             )
             parts.append((name, a, b))
         rest = solid_surface(self, None)
-        size, points, displacement = len(rest.points), [], []
+        copies = []
         for k in range(half.count):
             angle = k * half.angle + half.turn
-            turn = rotation(1, angle)[:3, :3].T
-            for side in (1.0, -1.0):
-                local = np.zeros((size, 3))
+            turn = rotation(1, angle)[:3, :3]
+            for side, image in ((1.0, np.eye(3)), (-1.0, np.diag(_MIRROR))):
+                local = np.zeros(rest.points.shape)
                 for name, a, b in parts:
                     of_a, of_b = _phases(name, angle)
                     local += of_a * a + side * of_b * b
-                flip = _MIRROR if side < 0 else np.ones(3)
-                points.append((rest.points * flip) @ turn)
-                displacement.append((local * flip) @ turn)
-        shift = size * np.arange(2 * half.count)[:, None, None]
-
-        def every(cells: np.ndarray) -> np.ndarray:
-            copies = (cells + shift).copy()
-            # images in the mirror turn round
-            copies[1::2] = copies[1::2, :, ::-1]
-            return copies.reshape(-1, cells.shape[1])
-
-        return Surface(
-            np.vstack(points),
-            np.vstack(displacement),
-            every(rest.faces),
-            every(rest.triangles),
-            every(rest.lines),
-        )
+                copies.append((turn @ image, local))
+        return copied(rest, copies)
 
 
 def _real_and_not(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -51,6 +51,22 @@ def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:
     return Surface(rest.points, moved, rest.quads, rest.triangles, rest.lines)
 
 
+def copied(rest: Surface, copies: Iterable[tuple[np.ndarray, np.ndarray]]) -> Surface:
+    """Copies of a surface by orthogonal maps (3, 3), each with the displacements (n, 3) of its points
+    before it is mapped; faces of an image in a mirror turn round.
+    """
+    points, moved, faces, triangles, lines = [], [], [], [], []
+    for k, (to, displacement) in enumerate(copies):
+        around = slice(None, None, 1 if np.linalg.det(to) > 0 else -1)
+        shift = k * len(rest.points)
+        points.append(rest.points @ to.T)
+        moved.append(displacement @ to.T)
+        faces.append(shift + rest.faces[:, around])
+        triangles.append(shift + rest.triangles[:, around])
+        lines.append(shift + rest.lines)
+    return Surface(*(np.vstack(every) for every in (points, moved, faces, triangles, lines)))
+
+
 def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray) -> np.ndarray:
     """A field of the nodes at all points of all faces."""
     return np.concatenate(

@@ -18,6 +18,7 @@ from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
 from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.solid.block import Facets, rigid_motions
+from solidgear.models.solid.drawing import copied
 from solidgear.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.models.solid.mesh import SolidMesh
 
@@ -98,14 +99,8 @@ class HalfDrawing:
         """Both halves, the second as a mirror image of the first."""
         first, second = self._halves(moved)
         here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
-        count = len(here.points)
-        return Surface(
-            np.vstack([here.points, image.points * self._flip]),
-            np.vstack([here.displacement, image.displacement * self._flip]),
-            np.vstack([here.faces, count + image.faces[:, ::-1]]),
-            np.vstack([here.triangles, count + image.triangles[:, ::-1]]),
-            np.vstack([here.lines, count + image.lines]),
-        )
+        mirror = np.diag(self._flip)
+        return copied(here, [(np.eye(3), here.displacement), (mirror, image.displacement)])
 
     def _halves(self, moved: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Unknowns of the half, and of the other one before it is turned over."""
