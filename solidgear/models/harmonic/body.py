@@ -7,56 +7,22 @@ The unknowns and the matrices of one harmonic are in
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from skfem import ElementQuad1, ElementQuad2, MeshQuad1
-from skfem.element import ElementQuadP
 
 from solidgear.body import Body, Port
-from solidgear.body.surface import Surface
-from solidgear.kernel.assembly import unknowns
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import layout
-from solidgear.meshing.meridian import Cut, Meridian, cut_meridian, drawn_across, meridian
-from solidgear.models.harmonic.blocks import _Work
+from solidgear.meshing.meridian import Cut, cut_meridian, drawn_across, meridian
+from solidgear.models.harmonic.blocks import Work
 from solidgear.models.harmonic.circumferential import Families
-from solidgear.models.harmonic.drawing import surface
+from solidgear.models.harmonic.mesh import harmonic_mesh
 from solidgear.models.limits import countable
 from solidgear.models.options import HARMONIC_OPTIONS, thick_enough
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
-
-
-@dataclass(frozen=True)
-class HarmonicMesh:
-    """The mesh of a meridian, with the unknowns of one component of the displacement; the same before
-    cells were cut towards corners, and the cell there of every cell.
-    """
-
-    mesh: MeshQuad1
-    element: object
-    dofs: np.ndarray
-    meridian: Meridian
-    uncut: Meridian
-    parent: np.ndarray
-
-    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """The outline of the meridian turned around the axis."""
-        return surface(self, moved)
-
-    def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
-        """(3 k, n) displacements of some points of the surface by the unknowns of a block."""
-        from solidgear.models.harmonic.drawing import rows  # start-up: of responses alone
-
-        return rows(self, name, chosen)
-
-    def volume(self) -> None:
-        """None: the mesh is that of a meridian."""
-        return None
 
 
 def harmonic(
@@ -136,22 +102,20 @@ def harmonic(
         uncut = flat = drawn_across(flat, across)
     if cuts:
         flat, parent = cut_meridian(uncut, cuts)
-    mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
-    element = _element(order)
-    dofs = unknowns(mesh, element)
-    work = _Work(scene, mesh, element, dofs, flat, order)
+    mesh = harmonic_mesh(flat, order, uncut, parent)
+    work = Work(scene, mesh)
     wanted = [*attached_stations(scene.stations, attachments)]
     ports = [Port(station.name, station.y, attachment) for station, attachment in wanted]
     chosen = families or HARMONIC_OPTIONS["families"].choices
     blocks = []
     if "bending" in chosen:
-        bending = work.bending_block("bending_z", (2, 3), 1, wanted)
+        bending = work.block("bending_z", (2, 3), wanted)
         blocks += [bending, bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))]
     if "axial" in chosen:
-        blocks.append(work.bending_block("axial", (1,), 0, wanted))
+        blocks.append(work.block("axial", (1,), wanted))
     if "torsion" in chosen:
-        blocks.append(work.torsion_block(wanted))
-    blocks += [work.bending_block(f"ovalising_{n}", (), n, wanted) for n in ovalising]
+        blocks.append(work.block("torsion", (4,), wanted))
+    blocks += [work.block(f"ovalising_{n}", (), wanted) for n in ovalising]
     facts = {
         "element": f"Q{order}",
         "order": order,
@@ -168,9 +132,7 @@ def harmonic(
     }
     further = Families(
         scene,
-        lambda n: _Work(scene, mesh, element, dofs, flat, order).bending_block(
-            f"ovalising_{n}", (), n, wanted
-        ),
+        lambda n: Work(scene, mesh).block(f"ovalising_{n}", (), wanted),
     )
     return Body(
         "harmonic",
@@ -179,17 +141,9 @@ def harmonic(
         elastic_scale(scene),
         scene.length,
         facts,
-        HarmonicMesh(mesh, element, dofs, flat, uncut, parent),
+        mesh,
         further,
     )
-
-
-def _element(order):
-    if order == 1:
-        return ElementQuad1()
-    if order == 2:
-        return ElementQuad2()
-    return ElementQuadP(order)
 
 
 logging.getLogger("skfem").setLevel(logging.ERROR)
