@@ -49,24 +49,11 @@ def with_ports(block: Block, ports: Iterable[Attached]) -> Block:
 def tie_rigidly(
     block: Block, ties: Sequence[tuple[int, float | Sequence[float], np.ndarray]]
 ) -> Block:
-    """Let surfaces of a block move as rigid bodies.
+    """Let surfaces of a block move as rigid bodies: of each the index of its port, its place (y on the
+    axis, or a point, m), and the (n,) mask of its unknowns.
 
-    Parameters
-    ----------
-    ties : list of (port index, place, mask)
-        Port whose motion the surface takes, its y on the axis or its point (m), and the (n,) mask of
-        unknowns on the surface.
-
-    Returns
-    -------
-    Block
-        With the unknowns on each surface replaced by the motion of its port, through
-        ``u = T u_reduced``, so ``T'KT`` and ``T'MT``; the same block when there are no ties.
-
-    Raises
-    ------
-    SolidgearError
-        If two surfaces share unknowns, which would make them one rigid body.
+    These are replaced by the motion of the port, through ``u = T u_reduced``, so ``T'KT`` and
+    ``T'MT``. SolidgearError if two surfaces share unknowns, which would make them one rigid body.
     """
     if not ties:
         return block

@@ -45,7 +45,7 @@ from solidgear.reduction.superelement import (
     reduced_motions,
 )
 from solidgear.solve.factor import Factor
-from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.shifted import factors
 
@@ -167,14 +167,7 @@ def residual_block(
         # Displacements by inertia relief, less their part in U; a load that drives none of U needs
         # half as many corrections of the shifted factor.
         load = load - heavy @ (u.T @ load)
-        _, field, _ = elastic_fields(
-            factor.solve,
-            block.mass.__matmul__,
-            block.stiffness.__matmul__,
-            block.rigid,
-            load,
-            FINE,
-        )
+        _, field, _ = relieved_fields(block, factor.solve, load, FINE)
         return field - u @ (heavy.T @ field)
 
     moments, fields = residual_fields(inverse, block.mass, rows, steps)

@@ -124,13 +124,7 @@ def _reduced(family: Body, rows: np.ndarray, kept: int):
 
 
 def own_waves(part: Superelement) -> dict[int, np.ndarray]:
-    """Coordinates of every harmonic n >= 2 of a superelement.
-
-    Returns
-    -------
-    dict of int to (k,) ndarray of int
-        By n, cosine and sine together; empty for a part without any.
-    """
+    """Coordinates of every harmonic n >= 2 of a superelement, by n, cosine and sine together."""
     cuts = np.cumsum([0] + [len(block.value) for block in part.blocks])
     out: dict[int, np.ndarray] = {}
     for block, start, end in zip(part.blocks, cuts, cuts[1:]):
@@ -141,14 +135,8 @@ def own_waves(part: Superelement) -> dict[int, np.ndarray]:
 
 
 def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> float:
-    """Compliance of a port by the harmonics n >= 2 under a constant force, m/N.
-
-    Parameters
-    ----------
-    name : str
-        Of the port.
-    direction : (3,) ndarray
-        Of the force, unit.
+    """Compliance of a port by the harmonics n >= 2 under a constant force in a direction (3,),
+    m/N.
     """
     own = np.concatenate([np.zeros(0, int), *own_waves(part).values()])
     moved = np.asarray(direction) @ part.ports[name].rows[:3, own]

@@ -65,13 +65,7 @@ class Part:
         return 2 if repeats(self.blocks[0]) else 1 + len(self.twins)
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
-        """Eigenpairs of the group and of its twins.
-
-        Parameters
-        ----------
-        found : list of Raw
-            Of the group.
-        """
+        """Eigenpairs of the group, and of its twins."""
         out = []
         for r in found:
             vectors = {self.first + b: v for b, v in r.vectors.items()}
@@ -109,21 +103,10 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest of
-    all reach.
-
-    Parameters
-    ----------
-    spring : (6 m, 6 m) ndarray
-        From :func:`~solidgear.solve.supported.decoupled`.
-    n : int
-        Number of shapes wanted in all.
-    method : {None, 'lanczos', 'arpack', 'dense'}
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`~solidgear.solve.eigen.lowest`.
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest `n`
+    shapes of all reach; `spring` (6 m, 6 m) is that of
+    :func:`~solidgear.solve.coupling.decoupled`. SolidgearError as
+    :func:`~solidgear.solve.eigen.lowest`.
     """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
@@ -157,19 +140,8 @@ def solved_parts(
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
-    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed.
-
-    Parameters
-    ----------
-    parts : list of Part
-        Solved.
-    highest : float
-        rad^2/s^2.
-
-    Returns
-    -------
-    float
-        rad^2/s^2.
+    """Highest eigenvalue that is used, rad^2/s^2: that of the last of ``n`` shapes of solved
+    parts, or the highest allowed.
     """
     values = sorted(v for part in parts for v in part.values())
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
@@ -178,20 +150,9 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
 def further_parts(
     body: Body, parts: list[Part], n: int, highest: float, method: str | None
 ) -> tuple[list[Part], list[Uncounted]]:
-    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes.
-
-    Parameters
-    ----------
-    parts : list of Part
-        The body's own, solved.
-    highest : float
-        Largest eigenvalue wanted, rad^2/s^2.
-
-    Returns
-    -------
-    found : list of Part
-    left : list of Uncounted
-        The families that begin above, in ascending order of n.
+    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes, below
+    the largest eigenvalue wanted, rad^2/s^2; and those that begin above, in ascending order of
+    waves. `parts` are the body's own, solved.
     """
     have = {waves_of(b) for p in parts for b in p.blocks}
     limit = reach_of(parts, n, highest)
@@ -238,25 +199,11 @@ def _hz(value: float) -> float:
 
 
 def complete(part: Part, reach: float, method: str | None) -> dict:
-    """Count the modes of a part, and search again with more vectors where one was missed.
+    """Count the modes of a solved part up to the highest eigenvalue that is used, rad^2/s^2, and search
+    again with more vectors where one was missed.
 
-    Parameters
-    ----------
-    part : Part
-        Solved; it keeps the verdict.
-    reach : float
-        Highest eigenvalue that is used, rad^2/s^2.
-    method : {None, 'lanczos', 'arpack', 'dense'}
-
-    Returns
-    -------
-    dict
-        ``checked``, with ``below_hz``, ``modes`` and ``backend``, or with ``why`` not.
-
-    Raises
-    ------
-    SolidgearError
-        If modes are still missing.
+    The verdict, which the part keeps, is ``checked``, with ``below_hz``, ``modes`` and ``backend``,
+    or with ``why`` not. SolidgearError if modes are still missing.
     """
     supported, n = part.supported, part.ask
     seen = count_below(supported, part.solved, reach)
@@ -296,12 +243,8 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """Everything that was solved, lowest number of waves last among single families.
-
-    Returns
-    -------
-    list of (str, int or None, bool)
-        Family, waves around the axis (None for all), and whether it was counted.
+    """Family, waves around the axis (None for all), and whether it was counted, of everything that
+    was solved; the lowest number of waves last among single families.
     """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
@@ -317,17 +260,9 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
 def family_rows(
     parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
 ) -> list[dict]:
-    """Families that were solved and counted, and those that were left alone.
-
-    Parameters
-    ----------
-    found : list of (str, float, int)
-        Family, frequency (Hz) and number of shapes of every mode.
-
-    Returns
-    -------
-    list of dict
-        ``families`` of the evidence of :class:`~solidgear.solve.modes.ModeSet`.
+    """Families that were solved and counted, and those that were left alone, as in the evidence of
+    :class:`~solidgear.solve.modes.ModeSet`; of every mode found its family, frequency (Hz) and
+    number of shapes.
     """
     checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
     below = min((verdict["below_hz"] for verdict in checked), default=np.inf)

@@ -13,6 +13,8 @@ from collections.abc import Callable
 import numpy as np
 import scipy.linalg as sla
 
+from solidgear.body import Block
+
 Linear = Callable[[np.ndarray], np.ndarray]
 
 
@@ -95,16 +97,16 @@ def elastic_fields(
     missing = 0.0
     for count in range(most):
         z = relieved(left)
-        fresh = _columns(left, z)
-        step = z + step * _ratio(fresh, size)
+        fresh = columns(left, z)
+        step = z + step * ratio(fresh, size)
         size = fresh
         pull = stiffness(step)
-        along = _ratio(size, _columns(step, pull))
+        along = ratio(size, columns(step, pull))
         u = u + step * along
         left = left - pull * along
         gain = along * size
         energy = energy + gain
-        share = float(_ratio(np.abs(gain), energy).max(initial=0.0))
+        share = float(ratio(np.abs(gain), energy).max(initial=0.0))
         # What is still missing shrinks by a constant factor from step to step; rounding shows as
         # gains that do not.
         missing = share if count == 0 else share * share / last
@@ -114,10 +116,25 @@ def elastic_fields(
     return load, u, min(missing, 1.0)
 
 
-def _columns(a, b) -> np.ndarray:
+def relieved_fields(
+    block: Block, solve: Linear, load: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """The same of a free block, by the solution with its factor."""
+    return elastic_fields(
+        solve,
+        block.mass.__matmul__,
+        block.stiffness.__matmul__,
+        block.rigid,
+        load,
+        tolerance,
+    )
+
+
+def columns(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Products of columns with each other."""
     return np.einsum("ij,ij->j", a, b)
 
 
-def _ratio(a, b) -> np.ndarray:
+def ratio(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """``a / b``, and zero where nothing is left to divide by."""
     return np.divide(a, b, out=np.zeros_like(a), where=b > 0)

@@ -291,16 +291,11 @@ class Supported:
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """(r, k) stretch ``L'u`` of the springs, the root of their energy.
+        """(r, k) stretch ``L'u`` of the springs, the root of their energy, of (n, k) displacements under
+        loads ``(K + springs + shift M) u``, roughly.
 
-        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
-        comes from the load instead.
-
-        Parameters
-        ----------
-        u : (n, k) ndarray
-        loads : (n, k) ndarray
-            ``(K + springs + shift M) u``, roughly.
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it comes
+        from the load instead.
         """
         out = self.load.T @ u
         if self.load.shape[1]:

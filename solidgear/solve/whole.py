@@ -9,12 +9,8 @@ from solidgear.solve.groups import Part
 
 
 def whole_to(parts: list[Part]) -> dict[int, float]:
-    """Eigenvalues up to which the families of every block are whole, by the block's index, rad^2/s^2.
-
-    Parameters
-    ----------
-    parts : list of Part
-        Solved; those that share a family of motion with another one are as whole as both.
+    """Eigenvalues up to which the families of every block are whole, by its index, rad^2/s^2;
+    solved parts that share a family of motion with another one are as whole as both.
     """
     ends: dict[str, float] = {}
     for part in parts:

@@ -158,12 +158,8 @@ class Section:
         self.polar = 2 * self.rotary
 
     def soften(self, bend: np.ndarray, stretch: np.ndarray, twist: np.ndarray) -> None:
-        """Add compliance, spread evenly over the length; shear and inertia stay.
-
-        Parameters
-        ----------
-        bend, stretch, twist : (e,) ndarray
-            rad/(N m), m/N and rad/(N m).
+        """Add compliances (e,), rad/(N m), m/N and rad/(N m), spread evenly over the length; shear and
+        inertia stay.
         """
         self.bend = 1 / (1 / self.bend + (bend / self.length)[:, None])
         self.stretch = 1 / (1 / self.stretch + (stretch / self.length)[:, None])

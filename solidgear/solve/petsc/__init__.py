@@ -219,12 +219,8 @@ def needed_mb(unknowns: float, entries: float, factoring: Factoring) -> float:
 
 
 def plan_on_ranks(block: Block, matrix: sp.csr_matrix, factoring: Factoring) -> Planned:
-    """The factor of a block by an engine of its own, which has no analysis apart.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Its shifted stiffness.
+    """The factor of the shifted stiffness of a block by an engine of its own, which has no
+    analysis apart.
     """
     name = "mumps" if factoring.engine == "petsc" else "gamg-cg"
     nodal = isinstance(block.mass, ScalarMass)
