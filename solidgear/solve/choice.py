@@ -24,11 +24,6 @@ USUAL = Factoring()
 FORCED = "asked for"
 
 
-def pardiso_missing() -> str:
-    """Empty if PARDISO can be used, else the reason why not."""
-    return missing("pardiso")
-
-
 def choice(
     unknowns: int,
     entries: int,
@@ -65,7 +60,7 @@ def choice(
             raise FactorError(
                 f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
             )
-        why = _missing(backend)
+        why = missing(backend)
         if why:
             raise FactorError(f"back end {backend} was asked for but {why}")
         if backend not in _able(factoring):
@@ -82,7 +77,7 @@ def choice(
         return "superlu", f"{unknowns} unknowns are not above {SMALL}"
     absent = []
     for name in (name for name in FASTEST if name in _able(factoring)):
-        why = _missing(name)
+        why = missing(name)
         if not why:
             break
         absent.append(f"{why}; {INSTALL[name]}")
@@ -104,12 +99,8 @@ def _able(factoring: Factoring) -> tuple[str, ...]:
 def _out_of_core(factoring: Factoring) -> tuple[str, str]:
     absent = []
     for name in _able(factoring):
-        why = _missing(name)
+        why = missing(name)
         if not why:
             return name, "it keeps its factor in files"
         absent.append(f"{why}: {INSTALL[name]}")
     raise FactorError(f"no back end here makes a factor in {factoring.words}: {'; '.join(absent)}")
-
-
-def _missing(name):
-    return pardiso_missing() if name == "pardiso" else missing(name)
