@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 
@@ -83,6 +83,14 @@ def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Points from 0 to 1 and weights of Gauss's rule."""
     x, w = np.polynomial.legendre.leggauss(count)
     return (x + 1) / 2, w / 2
+
+
+@lru_cache(maxsize=32)
+def gauss_box(count: int, dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points (dimension, n) from 0 to 1 and weights of the product of so many of Gauss's rules."""
+    x, w = gauss(count)
+    points = np.array([g.ravel() for g in np.meshgrid(*(x,) * dimension, indexing="ij")])
+    return points, reduce(np.multiply.outer, (w,) * dimension).ravel()
 
 
 @lru_cache(maxsize=32)

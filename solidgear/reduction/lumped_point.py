@@ -9,9 +9,10 @@ import numpy as np
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
+from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
-from solidgear.solve.supported import Supported, decoupled, groups
+from solidgear.solve.supported import Supported
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding

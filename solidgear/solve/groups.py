@@ -14,9 +14,10 @@ import numpy as np
 
 from solidgear.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.errors import SolidgearError
+from solidgear.solve.coupling import groups
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
-from solidgear.solve.families import family_of, repeats, waves_of
-from solidgear.solve.supported import Supported, groups
+from solidgear.solve.families import FAMILIES, family_of, repeats, waves_of
+from solidgear.solve.supported import Supported
 
 # validation/stability/circumferential_families.py: no family of its random shafts began below the
 # closed form over 1.5, nor below a light mesh's over 1.5.
@@ -315,3 +316,26 @@ def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool
         if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
             return False
     return True
+
+
+def whole_to(parts: list[Part]) -> dict[int, float]:
+    """Eigenvalues up to which the families of every block are whole, by its index, rad^2/s^2;
+    solved parts that share a family of motion with another one are as whole as both.
+    """
+    ends: dict[str, float] = {}
+    for part in parts:
+        last = part.solved.elastic[-1].value if part.solved.elastic else 0.0
+        for family in _motions(part):
+            ends[family] = min(last, ends.get(family, np.inf))
+    return {
+        index: min(ends[family] for family in _motions(part))
+        for part in parts
+        for index in (*(part.first + b for b in part.supported.group), *part.twins)
+    }
+
+
+def _motions(part: Part) -> set[str]:
+    """Families of motion that a part may show; of an ovalising block its name."""
+    moved = {c for block in part.blocks for c in block.components}
+    own = {name for name, components in FAMILIES.items() if moved & set(components)}
+    return own or {block.name for block in part.blocks}

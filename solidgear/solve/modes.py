@@ -19,6 +19,7 @@ from solidgear.body.mode_names import BENDING, ModeName, meant, numbered
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
+from solidgear.solve.coupling import decoupled
 from solidgear.solve.eigen import Raw
 from solidgear.solve.groups import (
     Part,
@@ -27,12 +28,11 @@ from solidgear.solve.groups import (
     further_parts,
     reach_of,
     solved_parts,
+    whole_to,
 )
 from solidgear.solve.naming import Names, Projection
 from solidgear.solve.shifted import SHIFT, factors
 from solidgear.solve.soundness import sound
-from solidgear.solve.supported import decoupled
-from solidgear.solve.whole import whole_to
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding

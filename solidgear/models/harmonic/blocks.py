@@ -23,6 +23,7 @@ from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import Pattern, Tabulated, batches, tabulate
 from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.kernel.cell_shapes import Shapes
+from solidgear.kernel.lobatto import gauss, gauss_box
 from solidgear.models.harmonic.families import TORSION, Family, family_of
 from solidgear.models.harmonic.mesh import HarmonicMesh
 from solidgear.models.harmonic.sections import PARTS, from_cells
@@ -58,11 +59,8 @@ class Work:
     def __init__(self, scene: Shaft, geometry: HarmonicMesh):
         self.scene, self.geometry, self.order = scene, geometry, geometry.order
         self.flat, self.dofs, self.element = geometry.meridian, geometry.dofs, geometry.element
-        x, w = np.polynomial.legendre.leggauss(self.order + 2)
-        self.g, self.gw = (x + 1) / 2, w / 2
-        a, b = np.meshgrid(self.g, self.g, indexing="ij")
-        self.points = np.array([a.ravel(), b.ravel()])
-        self.weights = np.outer(self.gw, self.gw).ravel()
+        self.g, self.gw = gauss(self.order + 2)
+        self.points, self.weights = gauss_box(self.order + 2, 2)
         self.pattern = Pattern(self.dofs)
         self.n = self.pattern.n
         self.shapes = Shapes(self.flat, self.element)

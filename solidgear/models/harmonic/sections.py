@@ -12,6 +12,7 @@ import scipy.sparse as sp
 from solidgear.body.sections import Sections, hats
 from solidgear.kernel.assembly import batches
 from solidgear.kernel.cell_shapes import Shapes
+from solidgear.kernel.lobatto import gauss
 from solidgear.models.harmonic.families import TORSION
 
 
@@ -50,8 +51,7 @@ def from_cells(
     numbered together.
     """
     n = int(dofs.max()) + 1
-    x, w = np.polynomial.legendre.leggauss(order + 2)
-    x, w = (x + 1) / 2, w / 2
+    x, w = gauss(order + 2)
     flat = shapes.flat
     reach = np.ptp(flat.points[1][flat.cells], axis=0)
 

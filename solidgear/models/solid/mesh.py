@@ -16,6 +16,7 @@ from skfem.refdom import RefTet, RefTri
 from solidgear.body.surface import Surface, Volume
 from solidgear.elements import ELEMENTS
 from solidgear.kernel.assembly import reference, tabulate, unknowns
+from solidgear.kernel.lobatto import gauss_box
 from solidgear.models.solid.drawing import outline, solid_surface
 
 if TYPE_CHECKING:
@@ -182,9 +183,7 @@ def _facet_rule(refdom):
     """Quadrature on a facet in two local coordinates."""
     if refdom is RefTet:
         return get_quadrature(RefTri, 6)
-    x, w = np.polynomial.legendre.leggauss(4)
-    x, w = (x + 1) / 2, w / 2
-    return np.array([g.ravel() for g in np.meshgrid(x, x, indexing="ij")]), np.outer(w, w).ravel()
+    return gauss_box(4, 2)
 
 
 def _pieces(refdom):
