@@ -62,12 +62,7 @@ class Cell:
 
 
 def condensed(cell: Cell, inner: np.ndarray) -> Cell:
-    """A cell without some of its unknowns, which no other cell has.
-
-    Parameters
-    ----------
-    inner : (n,) ndarray of bool
-    """
+    """A cell without some of its unknowns, told by a mask, which no other cell has."""
     if not inner.any():
         return cell
     outer = ~inner

@@ -128,24 +128,8 @@ def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray
 
 
 def filled(gmsh, refusal: str, report=lambda fraction, message: None):
-    """Curved tetrahedra in everything that is drawn.
-
-    Parameters
-    ----------
-    gmsh : module
-        With a model and its sizes.
-    refusal : str
-        What is said where it cannot be done; the mesher's own words take the place of ``{}``.
-    report : callable, optional
-        ``report(fraction, message)``.
-
-    Returns
-    -------
-    MeshTet2
-
-    Raises
-    ------
-    MeshError
+    """Curved tetrahedra in everything that is drawn in a model with its sizes; `refusal` is the
+    MeshError where it cannot be done, in which the mesher's own words take the place of ``{}``.
     """
     try:
         for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):

@@ -141,22 +141,10 @@ def residual_block(
     size: np.ndarray,
     steps: int,
 ) -> tuple[np.ndarray, np.ndarray, Truncation]:
-    """Eigenvalues, mass-normalised shapes and truncation of one block.
-
-    Parameters
-    ----------
-    factor : Factor
-        Of the block, shifted.
-    free : FreeShapes
-        The modes to keep.
-    cut : float
-        Eigenvalue below which there are no others, rad^2/s^2.
-    rows : (q, n) sparse
-        Motions that springs may act on.
-    size : (q,) ndarray
-        Flexibilities beside which one is rounding.
-    steps : int
-        Krylov steps.
+    """Eigenvalues, mass-normalised shapes and truncation of one block: of the modes to keep, below an
+    eigenvalue (rad^2/s^2) under which there are no others, and of so many Krylov steps on the fields
+    of the rows (q, n) that springs may act on. `size` (q,) are flexibilities beside which one is
+    rounding.
     """
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):

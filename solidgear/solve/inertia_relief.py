@@ -19,21 +19,9 @@ Linear = Callable[[np.ndarray], np.ndarray]
 
 
 def inertia_relief(solve: Linear, mass: Linear, rigid: np.ndarray) -> tuple[Linear, Linear]:
-    """Two functions for a free body: loads balanced by its own inertia, and their elastic
-    displacements.
-
-    Parameters
-    ----------
-    solve, mass : callable
-        ``(K + sigma M)^-1 f`` and ``M u``.
-    rigid : (n, r) ndarray
-        Rigid motions.
-
-    Returns
-    -------
-    balanced, relieved : callable
-        The load less the inertia forces of the rigid acceleration it causes; the solution less its
-        rigid part in the mass norm.
+    """Two functions for a free body, by ``(K + sigma M)^-1 f``, ``M u`` and its rigid motions (n, r): the
+    load less the inertia forces of the rigid acceleration it causes; and its displacements less their
+    rigid part in the mass norm.
     """
     heavy = mass(rigid)
     gram = sla.cho_factor(rigid.T @ heavy)
