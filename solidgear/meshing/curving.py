@@ -11,7 +11,7 @@ import numpy as np
 from skfem import Mesh, MeshTet2
 
 from solidgear.meshing.edge_places import edge_places
-from solidgear.meshing.quality import element_ratios, element_volumes
+from solidgear.meshing.quality import element_ratios, element_volumes, outward
 
 M = TypeVar("M", bound=Mesh)
 #: below this min/max det J the edges of an element are straightened
@@ -87,10 +87,7 @@ def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
     faces, give none.
     """
     facets = mesh.boundary_facets()
-    a, b, c = (mesh.p[:, corner] for corner in mesh.facets[:, facets])
-    normal = np.cross((b - a).T, (c - a).T).T / 2
-    inside = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
-    normal *= np.sign(((a - inside) * normal).sum(axis=0))
+    normal = outward(mesh, facets) / 2
     sides = mesh.facets[[[0, 1, 0], [1, 2, 2]]][:, :, facets]
     gain, least = np.zeros(curve.shape[1]), np.full(curve.shape[1], np.inf)
     depth = np.maximum(np.linalg.norm(curve, axis=0), 1e-300)

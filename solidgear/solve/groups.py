@@ -17,7 +17,7 @@ from solidgear.errors import SolidgearError
 from solidgear.solve.coupling import groups
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.solve.families import FAMILIES, family_of, repeats, waves_of
-from solidgear.solve.supported import Supported
+from solidgear.solve.supported import EPS, Supported
 
 # validation/stability/circumferential_families.py: no family of its random shafts began below the
 # closed form over 1.5, nor below a light mesh's over 1.5.
@@ -26,7 +26,7 @@ LIGHT = 1.5
 MOST_WAVES = 100
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
-EPS, DOUBT = float(np.finfo(float).eps), 0.01
+DOUBT = 0.01
 
 
 @dataclass

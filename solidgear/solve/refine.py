@@ -17,14 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.solve.inertia_relief import columns
-from solidgear.solve.supported import ROUNDED, Supported
+from solidgear.solve.supported import EPS, ROUNDED, Supported
 
 #: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft
 #: springs.
 SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
 ENOUGH, STEPS = 1e-9, 8
-EPS = float(np.finfo(float).eps)
 #: Rounding of an energy from which on it is worth products in extended precision, where the
 #: processor has it.
 COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS

@@ -71,15 +71,10 @@ def half_blocks(
             rigid[free][:, list(own)],
             y[free],
             planar=False,
-            expand=_into(3 * n, free),
+            expand=sp.identity(3 * n, format="csc")[:, free].tocsr(),
         )
         blocks.append(with_ports(block, ports))
     return blocks[0], blocks[1]
-
-
-def _into(size: int, free: np.ndarray) -> sp.csr_matrix:
-    ones = np.ones(len(free))
-    return sp.csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -87,6 +87,14 @@ class SolidMesh:
         for p in np.unique(place):
             yield p, elements[place == p]
 
+    def on_facet(self, place: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Reference points of an element by two coordinates (2, q) in one of its facets, and the sides
+        of the facet along which these run.
+        """
+        corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
+        s, t = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
+        return corners[:, :1] + np.outer(s, at[0]) + np.outer(t, at[1]), s, t
+
     def tabulate(self, points, elements):
         """Tabulate basis and geometry on some elements."""
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
@@ -108,10 +116,7 @@ class SolidMesh:
             _facet_rule(self.mesh.refdom) if within is None else _pieces(self.mesh.refdom)
         )
         for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            s = corners[:, 1] - corners[:, 0]
-            t = corners[:, -1] - corners[:, 0]
-            points = corners[:, :1] + np.outer(s, ref[0]) + np.outer(t, ref[1])
+            points, s, t = self.on_facet(place, ref)
             tab = self.tabulate(points, elements)
             area = np.linalg.norm(np.cross(tab.tangent @ s, tab.tangent @ t), axis=2) * weights
             if within is not None:
@@ -135,12 +140,7 @@ class SolidMesh:
         ref, _ = _facet_rule(self.mesh.refdom)
         found = []
         for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            points = (
-                corners[:, :1]
-                + np.outer(corners[:, 1] - corners[:, 0], ref[0])
-                + np.outer(corners[:, -1] - corners[:, 0], ref[1])
-            )
+            points, _, _ = self.on_facet(place, ref)
             alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-9
             found.append(self.dofs[alive][:, elements].ravel())
         return np.unique(np.concatenate(found))

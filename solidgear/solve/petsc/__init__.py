@@ -27,13 +27,13 @@ from solidgear.body.mass import ScalarMass
 from solidgear.factoring import Factoring
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.backends.memory_law import MB, law
+from solidgear.solve.choice import FORCED
 from solidgear.solve.factor import Planned
 from solidgear.solve.factored import Factor
 from solidgear.solve.schur import bordered, definite_corner
 
 WORKER = Path(__file__).parent / "worker.py"
 INSTALL = "apt-get install python3-petsc4py-real python3-slepc4py-real openmpi-bin"
-FORCED = "asked for"
 PROBE = "import worker; worker.libraries()"
 
 
