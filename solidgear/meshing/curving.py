@@ -8,7 +8,7 @@ from copy import copy
 from typing import TypeVar
 
 import numpy as np
-from skfem import Mesh, MeshTet2
+from skfem import Mesh, MeshTet1, MeshTet2
 
 from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.quality import element_ratios, element_volumes, outward
@@ -33,6 +33,33 @@ def with_nodes(mesh: M, doflocs: np.ndarray) -> M:
     moved.doflocs = np.ascontiguousarray(doflocs)
     vars(moved).pop("_cached_mapping", None)  # it knows where nodes were
     return moved
+
+
+def with_middles(mesh: M, edges: np.ndarray, middles: np.ndarray) -> M:
+    """A second-order mesh with its middle nodes at some places (3, k), m, each on the edge between two
+    vertices (2, k).
+    """
+    doflocs = mesh.doflocs.copy()
+    doflocs[:, mesh.dofs.edge_dofs[0]] = middles[:, edge_places(edges, mesh.edges)]
+    return with_nodes(mesh, doflocs)
+
+
+def ten_nodes(
+    points: np.ndarray, corners: np.ndarray, edges: np.ndarray, middles: np.ndarray
+) -> MeshTet2:
+    """Ten-node tetrahedra by (4, ne) corners among points (3, n), m, of which only theirs are kept,
+    with middle nodes as for :func:`with_middles`.
+    """
+    used, small = np.unique(corners, return_inverse=True)
+    straight = MeshTet1(
+        np.ascontiguousarray(points[:, used]),
+        np.ascontiguousarray(small.reshape(corners.shape).astype(np.int32)),
+    )
+    place = np.full(points.shape[1], -1)
+    place[used] = np.arange(len(used))
+    known = place[edges]
+    among = (known >= 0).all(axis=0)
+    return with_middles(MeshTet2.from_mesh(straight), known[:, among], middles[:, among])
 
 
 def relaxed(mesh: MeshTet2) -> MeshTet2:

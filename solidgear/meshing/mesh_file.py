@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
+from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1
 
 from solidgear.errors import listed, nearest, show
-from solidgear.meshing.curving import with_nodes
+from solidgear.meshing.curving import ten_nodes, with_middles, with_nodes
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS, Group
-from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes, outward
 
@@ -222,14 +221,20 @@ def _pitted(found: FileMesh, deck: Deck) -> Iterator[str]:
 
 
 def _tets(points, cells) -> Mesh:
-    used, small = np.unique(cells[:4], return_inverse=True)
-    corners = small.reshape(4, -1)
-    mesh = MeshTet1(
-        np.ascontiguousarray(points[:, used]), np.ascontiguousarray(corners.astype(np.int32))
+    if len(cells) == 10:
+        return ten_nodes(points, cells[:4], *_middles(points, cells, _TET_EDGES))
+    used, small = np.unique(cells, return_inverse=True)
+    return MeshTet1(
+        np.ascontiguousarray(points[:, used]),
+        np.ascontiguousarray(small.reshape(4, -1).astype(np.int32)),
     )
-    if len(cells) == 4:
-        return mesh
-    return _with_middles(MeshTet2.from_mesh(mesh), corners, _TET_EDGES, points[:, cells[4:]])
+
+
+def _middles(points, cells, edges) -> tuple[np.ndarray, np.ndarray]:
+    """Ends (2, k) and middle nodes (3, k) of all edges, edge by edge."""
+    ends = np.moveaxis(cells[np.array(edges)], 1, 0).reshape(2, -1)
+    count = cells.shape[0] - len(edges)
+    return ends, points[:, cells[count:]].reshape(3, -1)
 
 
 def _hexes(points, cells) -> Mesh:
@@ -245,18 +250,10 @@ def _hexes(points, cells) -> Mesh:
     )
     if len(cells) == 8:
         return mesh
-    curved = _with_middles(MeshHex2.from_mesh(mesh), corners, _HEX_EDGES, points[:, cells[8:20]])
-    return _serendipity(curved)
-
-
-def _with_middles(mesh: Any, corners, edges, middles) -> Any:
-    """A second-order mesh with its middle nodes where the file has them."""
-    pairs = corners[np.array(edges)]  # (edge, 2, ne)
-    at = edge_places(np.moveaxis(pairs, 1, 0).reshape(2, -1), mesh.edges)
-    doflocs = mesh.doflocs.copy()
-    # nodes are listed cell by cell for each edge
-    doflocs[:, mesh.dofs.edge_dofs[0]] = middles.reshape(3, -1)[:, at]
-    return with_nodes(mesh, doflocs)
+    ends, middles = _middles(points, cells, _HEX_EDGES)
+    return _serendipity(
+        with_middles(MeshHex2.from_mesh(mesh), np.searchsorted(used, ends), middles)
+    )
 
 
 def _serendipity(mesh: Any) -> Any:
