@@ -44,34 +44,13 @@ def beam(
     shoulder: bool = False,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
-    """Free beam model of a scene.
+    """Free beam model of a scene, in four blocks (axial, torsion and the two bending planes); options as
+    in :data:`~solidgear.models.options.BEAM_OPTIONS`.
 
-    Parameters
-    ----------
-    scene : Scene
-    shear : bool
-        Timoshenko if True, Euler-Bernoulli if False.
-    rotary_inertia : bool
-        Whether sections carry rotary inertia in bending.
-    head : {'cone', 'mean'}
-        Follow the taper of conical segments, or replace each by the cylinder of its mean radii.
-    mass : {'consistent', 'lumped'}
-    kappa : {'hutchinson', 'cowper'}
-        Shear coefficient; Cowper's for comparison with older work, solid sections only.
-    elements : int, optional
-        Least number of elements along the shaft; by default eight to a diameter.
-    shoulder : bool
-        Whether steps of the outer radius are as soft as in the solid
-        (:mod:`solidgear.models.beam.shoulder`), where a plain beam fills the thick part with stress at
-        once.
-    attachments : tuple of str, optional
-        Attachments to build for every station, the first being the default one; by default those of
-        the scene.
-
-    Returns
-    -------
-    Body
-        Four blocks (axial, torsion and the two bending planes).
+    Cowper's shear coefficient is for comparison with older work, on solid sections only. There are
+    eight elements to a diameter unless more are asked for. With ``shoulder`` steps of the outer radius
+    are as soft as in the solid (:mod:`solidgear.models.beam.shoulder`), where a plain beam fills the
+    thick part with stress at once.
 
     Raises
     ------

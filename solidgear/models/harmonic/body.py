@@ -42,39 +42,16 @@ def harmonic(
     across: tuple[tuple[float, float], ...] = (),
     plain: bool = False,
 ) -> Body:
-    """Free harmonic solid of a scene.
+    """Free harmonic solid of a scene; options as in
+    :data:`~solidgear.models.options.HARMONIC_OPTIONS`.
 
-    Parameters
-    ----------
-    scene : Scene
-    order : int
-        Polynomial order of the quadrilaterals, 1 to 12.  The defaults are the reference setting, good to 1e-4 on the
-        overhung pinion; order 8 with 4 layers and 2 edge layers gives about 1e-6.
-    layers, edge_layers, ratio : int, int, float
-        Geometric layers towards shoulders (also the ends of rigid seats) and towards the ends of
-        averaged seats, and the size of each relative to the last.
-    relative_size : float
-        Cell size away from them in local outer radii (in a thin wall beside them, in decay lengths
-        of the shell).
-    size : float, optional
-        The same for the whole shaft, m.
-    refinement : float
-        Multiplies the number of cells for convergence studies.
-    attachments : tuple of str, optional
-        Attachments to build for every station, the first being the default one; by
-        default what the scene says.
-    families : tuple of str, optional
-        Which of bending, axial and torsion to build; all by default. A body without one of them
-        knows nothing of its motions, and must be given supports that do not couple it
-        (:meth:`solidgear.body.Supports.on`).
-    ovalising : tuple of int
-        Further harmonics n >= 2 to build at once; they carry no port motion.  Others are built when modes need them.
-    cuts : tuple of (float, float, int)
-        y and r of corners of the mesh, m, and how often all cells around each are cut towards it.
-    across : tuple of (float, float)
-        y and r of points on sides of cells, m, through which lines are drawn before that.
-    plain : bool
-        Whether the mesh to be cut has one cell a band and strip, however narrow seats and discs are.
+    The defaults are the reference setting, good to 1e-4 on the overhung pinion; order 8 with 4 layers
+    and 2 edge layers gives about 1e-6. Sizes of cells count in local outer radii, in a thin wall
+    beside shoulders and seats in decay lengths of the shell. A body without one of the families
+    bending, axial and torsion knows nothing of its motions, and must be given supports that do not
+    couple it (:meth:`solidgear.body.Supports.on`). Ovalising harmonics carry no port motion; those
+    that are not built at once are built when modes need them. Lines across are drawn before cells are
+    cut.
 
     Raises
     ------

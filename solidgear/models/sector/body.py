@@ -56,29 +56,16 @@ def sector(
     count: int | None = None,
     half: bool = True,
 ) -> Body:
-    """Free body of a shaft that repeats itself around the axis, from one sector of it.
+    """Free body of a shaft that repeats itself around the axis, from one sector of it; options as in
+    :data:`~solidgear.models.options.SECTOR_OPTIONS`, and `count` sectors around, by default as many
+    as features have in common.
 
     Teeth are resolved, also those that the scene smears for other models, unless the scene resolves
-    other features: then the segment of revolution stands for smeared ones here too.
-
-    Parameters
-    ----------
-    scene : Scene
-        With teeth, splines or bolt circles, and no feature of another kind.
-    size, graded_size, refinement
-        As for tetrahedra of :func:`solidgear.models.solid.body.solid`.
-    material_port : bool
-        The lumped point follows the mean motion of the material between the ends of its span, not
-        that of its surface. Of teeth that converges more quickly.
-    ovalising : tuple of int
-        Further harmonic indices to build, from 2 to less than half the sectors.
-    attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one.
-    count : int, optional
-        Sectors around; by default as many as features have in common.
-    half : bool
-        Solve half a sector where its features are even about a plane: straight teeth, and holes
-        that lie evenly with them. The whole sector then has the same elements and their images.
+    other features: then the segment of revolution stands for smeared ones here too. The mean motion
+    of the material between the ends of its span converges more quickly, of teeth, than that of the
+    surface of the lumped point. Ovalising harmonics are below half the sectors. Half a sector is
+    solved where features are even about a plane, as straight teeth are, and holes that lie evenly
+    with them: the whole sector then has the same elements and their images.
 
     Returns
     -------

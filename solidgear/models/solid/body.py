@@ -46,49 +46,21 @@ def solid(
     half: bool = True,
     coarser: int = 0,
 ) -> Body:
-    """Free 3D solid of a scene.
+    """Free 3D solid of a scene: one block with all six components, or, of a part with features and a
+    mirror plane, two, of the motions that are symmetric about it and of the others; options as in
+    :data:`~solidgear.models.options.SOLID_OPTIONS`.
 
-    Parameters
-    ----------
-    scene : Scene
-    element : str
-        One of :data:`solidgear.elements.ELEMENTS`: hexahedra on a structured O-grid, tetrahedra from gmsh.
-    relative_size : float
-        Size of hexahedra away from singular edges in local outer radii.
-    size : float, optional
-        Element size away from singular edges, m; by default ``relative_size`` (hexahedra) or a
-        third of the largest outer radius (tetrahedra).
-    layers, edge_layers, radial_layers, ratio
-        Geometric grading of hexahedra: layers towards shoulders and towards seat ends along the shaft, towards
-        surfaces across it, and the size of each relative to the last.  The defaults give 1.4e-3 in
-        stiffness at 37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k
-        come of 1, 2 and 3 layers of both kinds, none at seat ends and 8 cells around.
-    around : int
-        Elements around the circumference (tetrahedra: at least 16).
-    graded_size : float, optional
-        Size of tetrahedra at shoulders and seat ends, m; a quarter of ``size`` by default, ``size``
-        for a uniform mesh.
-    refinement : float
-        Multiplies the number of cells in every direction, for convergence studies.
-    attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one; by default what the
-        scene says.
-    half : bool
-        For a scene with features that share a mirror plane: solve two half models. A part from a
-        file is solved whole.
-    coarser : int
-        Of a part with several mesh files, how many come after the one that is solved.
-
-    Returns
-    -------
-    Body
-        One block with all six components; of a part with features and a mirror plane two, of the
-        motions that are symmetric about it and of the others.
+    Hexahedra are as large away from singular edges as ``relative_size`` says, tetrahedra a third of
+    the largest outer radius, unless ``size`` is given, and at shoulders and seat ends a quarter of
+    that; there are at least 16 of these around. The defaults of hexahedra give 1.4e-3 in stiffness at
+    37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k come of 1, 2 and 3
+    layers of both kinds, none at seat ends and 8 cells around. A part from a file is solved whole.
 
     Raises
     ------
     SolidgearError
-        Layers thinner than digits, or cells around that do not fit; MeshError where meshing fails or an element is inverted.
+        Layers thinner than digits, or cells around that do not fit; MeshError where meshing fails or
+        an element is inverted.
     """
     grading = {
         "relative_size": relative_size,
