@@ -80,21 +80,12 @@ def featured_mesh(
     half: bool = True,
     edges: bool = False,
 ) -> FeaturedMesh:
-    """Mesh a shaft with features.
+    """Mesh a shaft with keyways, flats and cross holes, and beside them teeth, splines and bolt circles,
+    with which there are no halves; half of it where features have a mirror plane, if wanted.
 
-    Parameters
-    ----------
-    features : tuple
-        Keyways, flats and cross holes, and beside them teeth, splines and bolt circles, with which
-        there are no halves.
-    planes, circles, size, graded_size, around
-        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
-    refinement : float
-        Divides the sizes at features; those above are given refined.
-    half : bool
-        Whether to draw half of the shaft where features have a mirror plane.
-    edges : bool
-        Whether elements are smaller at the re-entrant edges of features and at holes.
+    Sizes are those of :func:`solidgear.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
+    divides the sizes at features, and with ``edges`` elements are smaller at the re-entrant edges of
+    features and at holes.
 
     Raises
     ------

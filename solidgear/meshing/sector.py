@@ -101,18 +101,11 @@ def sector_mesh(
     refinement: float,
     count: int | None = None,
 ) -> SectorMesh:
-    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs
-    through its middle.
+    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs through
+    its middle; there are as many around as the features say, unless told.
 
-    Parameters
-    ----------
-    features : tuple of Teeth, Spline or BoltCircle
-    planes, circles, size, graded_size, around
-        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
-    refinement : float
-        Divides the sizes at features; those above are given refined.
-    count : int, optional
-        Sectors around; by default as many as the features say.
+    Sizes are those of :func:`solidgear.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
+    divides the sizes at features.
 
     Raises
     ------

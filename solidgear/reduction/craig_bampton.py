@@ -166,20 +166,9 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
 
 
 class _Held:
-    """Loads on the ports of a free block that move them as told.
-
-    ``F f + P a = motion`` and ``P'f = resultant``: loads f move the ports by the flexibility F, and
-    the block swings by a.
-
-    Parameters
-    ----------
-    flexibility : (q, q) ndarray
-    swing : (q, r) ndarray
-        P, rigid motions of the ports.
-    size : (q,) ndarray
-        Units in which motions of ports are alike.
-    names : list of str
-        For the message.
+    """Loads on the ports of a free block that move them as told, ``F f + P a = motion`` and ``P'f =
+    resultant``: loads f move the ports by the flexibility F (q, q), and the block swings by a along the
+    rigid motions P (q, r) of the ports, which are alike in units of `size` (q,).
 
     Attributes
     ----------

@@ -18,26 +18,11 @@ if TYPE_CHECKING:
 def modal_receptance(
     body: Body, supports: Holding, port: str, found: ModeSet
 ) -> Callable[[float], float]:
-    """Receptance z/F_z at a port by modal superposition with the static remainder.
+    """Receptance z/F_z (m/N) at a port of a body on its supports, by the frequency in rad/s: modal
+    superposition of its modes there, with the static remainder.
 
     The static part of the modes left out is exact, so the error is of the order of (omega /
     omega_left_out)^4.
-
-    Parameters
-    ----------
-    supports : Scene, Supports or iterable of bearings
-    found : ModeSet
-        Modes of the body on these supports.
-
-    Returns
-    -------
-    callable
-        omega (rad/s) to m/N.
-
-    Raises
-    ------
-    SolidgearError
-        If the body lacks the port.
 
     Examples
     --------

@@ -46,15 +46,13 @@ def with_waves(
     kept: int = KEPT,
     fields: Mapping[int, np.ndarray] | None = None,
 ) -> Superelement:
-    """A superelement with harmonics n >= 2, and a port that feels them.
+    """A superelement with harmonics n >= 2 of the body that it was made of, and a port that feels them.
 
     Harmonics that it has already are taken as they are: patches at whatever angles have their fields
     in common and each a port of its own.
 
     Parameters
     ----------
-    body : Body
-        Of which it was made, with further harmonics.
     at : str
         Port of the part that carries the new one rigidly.
     offset : (3,) ndarray

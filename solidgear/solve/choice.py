@@ -31,23 +31,9 @@ def choice(
     planar: bool = False,
     factoring: Factoring = USUAL,
 ) -> tuple[str, str]:
-    """The back end that will factor a matrix.
-
-    Parameters
-    ----------
-    unknowns, entries : int
-        Rows of the matrix, and what is in them.
-    backend, planar, factoring
-        As for :func:`solidgear.solve.factor.factorise`.
-
-    Returns
-    -------
-    name, reason : str
-
-    Raises
-    ------
-    FactorError
-        If the one asked for is unknown, not there, or cannot do it.
+    """The back end that will factor a matrix of so many rows and entries, and the reason; otherwise
+    parameters as for :func:`solidgear.solve.factor.factorise`. FactorError if the one asked for is
+    unknown, not there, or cannot do it.
 
     Examples
     --------

@@ -110,17 +110,8 @@ class PatchMotion:
         return out / area
 
     def rows(self, n: int) -> np.ndarray:
-        """Mean radial, tangential and axial motion: of the even part, the odd one, the even one.
-
-        Parameters
-        ----------
-        n : int
-            Waves around the axis, 1 or more.
-
-        Returns
-        -------
-        (3, m) ndarray
-            On the unknowns of the block of n waves (p, q, w).
+        """Mean radial, tangential and axial motion (3, m), of the even part, the odd one, the even one, on
+        the unknowns (p, q, w) of the block of n >= 1 waves.
         """
         half = n * self.patch.arc / 2
         # u_r = p + q, u_t = p - q, u_y = w

@@ -155,24 +155,12 @@ def cyclic_blocks(
     parts_of: Callable[[Any, str], Any],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
-    """Blocks of a whole part from the mesh of one sector.
+    """Blocks of a whole part from the mesh of one sector: ``cyclic_0`` (components 1, 4), ``cyclic_1``
+    (0, 2, 3, 5), and ``cyclic_h`` without ports for further harmonics from 2 on.
 
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of the sector.
-    wanted : sequence of (station, attachment)
-    parts_of : callable
-        ``parts_of(station, attachment)``: pieces of the surface, or of the material, whose mean
-        motion is that of the station (:meth:`SolidMesh.over_facets`), and the nodes that a rigid
-        seat holds, None for any other.
-    harmonics : sequence of int
-        Further indices, from 2 on.
-
-    Returns
-    -------
-    tuple of Block
-        ``cyclic_0`` (components 1, 4), ``cyclic_1`` (0, 2, 3, 5), and ``cyclic_h`` without ports.
+    ``parts_of(station, attachment)`` gives pieces of the surface, or of the material, whose mean
+    motion is that of the station (:meth:`SolidMesh.over_facets`), and the nodes that a rigid seat
+    holds, None for any other.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m, n = m.tocsr(), mesh.nodes.shape[1]
