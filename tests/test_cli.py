@@ -13,7 +13,7 @@ import pytest
 
 from solidgear.judge import climb
 from solidgear.ladder.registry import LADDER
-from solidgear.solve.choice import pardiso_missing
+from solidgear.solve.backends import missing
 from tests.command import strict
 
 ROOT = Path(__file__).parent.parent
@@ -379,8 +379,8 @@ def test_help_lists_the_commands(run):
 def test_backends_give_the_same_stiffness(run, monkeypatch):
     found = {}
     for backend in ("superlu", "pardiso"):
-        if backend == "pardiso" and pardiso_missing():
-            pytest.skip(pardiso_missing())
+        if backend == "pardiso" and missing(backend):
+            pytest.skip(missing(backend))
         monkeypatch.setenv("SOLIDGEAR_BACKEND", backend)
         record = strict(run("stiffness", SCENE, *FIXED, "--json").out)
         assert record["evidence"]["backend"] == backend

@@ -14,8 +14,9 @@ from solidgear.body import as_supports
 from solidgear.scene import STEEL, Material, Scene, Segment
 from solidgear.solve import eigen
 from solidgear.solve import groups as parts
+from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.eigen import count_below, lowest
-from solidgear.solve.supported import Supported, decoupled, groups
+from solidgear.solve.supported import Supported
 
 ROOT = Path(__file__).parent.parent
 

@@ -11,8 +11,9 @@ from skfem import Basis
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.scene import STEEL, Port, Scene, Segment
+from solidgear.solve.coupling import decoupled
 from solidgear.solve.eigen import lowest
-from solidgear.solve.supported import Supported, decoupled
+from solidgear.solve.supported import Supported
 from tests.dense import mass_matrix
 from validation.manual.exact import Tube, beam_frequencies
 from validation.manual.exact_waves import bending_wave

@@ -178,7 +178,6 @@ def test_dropped_couplings_change_less_than_their_bound(overhung):
         ("euler", {}),
         ("timoshenko", {}),
         ("harmonic", {"order": 4}),
-        ("solid", {"element": "hex20", "refinement": 0.5}),
     ],
 )
 def test_free_cylinder_has_six_rigid_modes(fidelity, options):

@@ -305,12 +305,6 @@ def test_who_holds_what():
         sg.build(shaft(TEETH, BOLTS), "sector")
 
 
-def test_the_size_is_counted_on_the_mesh():
-    for scene in (PARTS["straight"], PARTS["bolts"]):
-        made = sg.build(scene, "sector", refinement=0.6).size
-        assert LADDER["sector"].size(scene, {"refinement": 0.6}).unknowns == made
-
-
 BAD = {
     "count = 14 ": ("count = 2 ", "greater than or equal to 3"),
     "addendum = 1.0": ("addendum = 9", "between 0 and 3 modules"),

@@ -230,10 +230,10 @@ from solidgear.machine.threads import pin
 pin()
 import solidgear as sg
 from solidgear.machine.memory import one_run
-from solidgear.solve.choice import pardiso_missing
+from solidgear.solve.backends import missing
 path, model, options = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
 scene = sg.load(path)
-pardiso_missing()
+missing("pardiso")
 sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
 import solidgear.models.harmonic.body, solidgear.models.solid.body
 with one_run() as run:

@@ -56,19 +56,7 @@ class Port:
 
 
 def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarray:
-    """Places of some components of some ports in a vector of six per port.
-
-    Parameters
-    ----------
-    ports : iterable of int
-        Indices of ports.
-    components : sequence of int
-        0 to 5.
-
-    Returns
-    -------
-    (len(ports) * len(components),) ndarray of int
-        Port by port.
+    """Places of some components (0 to 5) of some ports in a vector of six per port, port by port.
 
     Examples
     --------
@@ -95,7 +83,7 @@ class Block:
     y : (n,) ndarray
         Axial position of each unknown; NaN for unknowns that are not point values.
     ports : (n_ports * len(components), n) sparse
-        Port motions as linear functions of the unknowns, port by port.
+        Port motions as linear functions of the unknowns, port by port; nothing before it has any.
     mirror : (int, tuple of float), optional
         Index of the block this one repeats in the other plane, and the sign of each component
         there.
@@ -119,7 +107,7 @@ class Block:
     mass: sp.csr_matrix | ScalarMass
     rigid: np.ndarray
     y: np.ndarray
-    ports: sp.csr_matrix
+    ports: sp.csr_matrix = field(default_factory=lambda: sp.csr_matrix((0, 0)))
     mirror: tuple[int, tuple[float, ...]] | None = None
     planar: bool = True
     border: int = 0
@@ -130,19 +118,10 @@ class Block:
     def mirrored(
         self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]
     ) -> Block:
-        """The same block in the other bending plane.
+        """The same block in the other bending plane, with its own components, and a sign for each.
 
-        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on
-        the components.
-
-        Parameters
-        ----------
-        components : tuple of int
-            Of the new block.
-        index : int
-            Place of this block in its body.
-        signs : tuple of float
-            One per component.
+        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on the
+        components. `index` is the place of this block in its body.
         """
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
@@ -163,20 +142,9 @@ class Block:
         return self.stiffness.shape[0]
 
     def section_loads(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Loads and Gram matrix that give the section motions of shapes, by
-        :mod:`solidgear.body.sections`.
-
-        Parameters
-        ----------
-        stations : (s,) ndarray
-            Axial positions, ascending, m; the first and the last at the ends of the shaft.
-
-        Returns
-        -------
-        loads : (n, s * c) ndarray
-        gram : (s * c, s * c) ndarray
-        columns : (s * c,) ndarray of int
-            Index ``6 * station + component`` of every column.
+        """Loads (n, s c) and Gram matrix (s c, s c) that give the section motions of shapes at ascending
+        stations (s,), m, from end to end of the shaft, by :mod:`solidgear.body.sections`; and the index
+        ``6 * station + component`` of every column.
         """
         columns = [6 * s + c for s in range(len(stations)) for c in self.components]
         loads, gram = (
@@ -352,17 +320,17 @@ class Body(Displayed):
         return np.vstack([shift((p.x, p.y, p.z)) for p in self.ports])
 
     def rows(self, block: Block) -> np.ndarray:
-        """Places of a block's port rows among the ``6 * n_ports`` port components.
-
-        Parameters
-        ----------
-        block : Block
-
-        Returns
-        -------
-        (n_ports * len(block.components),) ndarray of int
-        """
+        """Places of a block's port rows among the ``6 * n_ports`` port components."""
         return component_rows(range(len(self.ports)), block.components)
+
+    def port_motions(self, vectors: Mapping[int, np.ndarray]) -> np.ndarray:
+        """(6 * n_ports,) motions of all ports in a shape, by block index."""
+        out = np.zeros(6 * len(self.ports))
+        for index, vector in vectors.items():
+            block = self.block(index)
+            if block.components:
+                out[self.rows(block)] += block.ports @ vector
+        return out
 
     def mass_matrix(self) -> np.ndarray:
         """Rigid-body mass matrix about the origin of the scene.

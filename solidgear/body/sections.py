@@ -22,18 +22,7 @@ Sections = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
-    """Hat functions at some places.
-
-    Parameters
-    ----------
-    y : (p,) ndarray
-        m, not beyond the outer stations.
-    stations : (s,) ndarray
-        Ascending, m.
-
-    Returns
-    -------
-    (p, s) sparse
+    """(p, s) hat functions of ascending stations at some places (p,), m, not beyond the outer ones.
 
     Examples
     --------
@@ -54,23 +43,9 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
 def from_points(
     mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]
 ) -> Sections:
-    """Sections of a body whose unknowns are values at points, closer to each other than the
-    stations.
-
-    Parameters
-    ----------
-    mass : (n, n) sparse or ScalarMass
-        kg.
-    rigid : (n, c) ndarray
-        Rigid motions about the origin, one column per component.
-    y : (n,) ndarray
-        Axial position of each unknown, m; NaN for one that is no value at a point, which then takes
-        no part in the fields.
-
-    Returns
-    -------
-    callable
-        :data:`Sections`.
+    """Sections of a body whose unknowns are values at points ``y`` (m), closer to each other than
+    the stations; one with NaN is no value at a point and takes no part in the fields. `rigid` (n,
+    c) are rigid motions about the origin.
     """
     known = ~np.isnan(y)
     place = np.where(known, y, 0.0)
@@ -95,19 +70,7 @@ def from_points(
 
 
 def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
-    """Sections in fewer unknowns v, where ``u = reduction v``.
-
-    Parameters
-    ----------
-    sections : callable
-        :data:`Sections` of u.
-    reduction : (n, m) sparse
-
-    Returns
-    -------
-    callable
-        :data:`Sections` of v.
-    """
+    """Sections in fewer unknowns v, where ``u = reduction v``, from those of u."""
 
     def reduced(stations):
         loads, gram = sections(stations)
@@ -117,20 +80,7 @@ def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
 
 
 def signed(sections: Sections, signs: tuple[float, ...]) -> Sections:
-    """Sections with the sign of components changed, as in the other bending plane.
-
-    Parameters
-    ----------
-    sections : callable
-        :data:`Sections`.
-    signs : tuple of float
-        One per component.
-
-    Returns
-    -------
-    callable
-        :data:`Sections`.
-    """
+    """Sections with the sign of components changed, as in the other bending plane."""
 
     def other(stations):
         loads, gram = sections(stations)

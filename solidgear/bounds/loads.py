@@ -72,7 +72,7 @@ class LoadedPieces:
 
     def __init__(self, space: RicherSpace, block: Block, loading: Loading):
         self.space, self.loading = space, loading
-        self.family = family = family_of(block)
+        self.family = family = family_of(block.name)
         self.k = loading.fields.shape[1]
         self.motions = len(block.components)
         self.local = self._strained(space.coefficients(block, family, loading.fields))
@@ -116,7 +116,7 @@ class LoadedPieces:
         segments = space.flat.segment[space.pieces.parent]
         bent = space.bent[space.pieces.parent]
         for index, segment in enumerate(space.scene.segments):
-            law = self.family.stiffness(segment.material)
+            law = self.family.stiffness(segment.material).reshape(3 * c, 3 * c)
             for curved in (False, True):
                 those = np.flatnonzero((segments == index) & (bent == curved))
                 for part in batches(those, each * 4e6 / BATCH):

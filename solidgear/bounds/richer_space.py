@@ -18,11 +18,11 @@ from solidgear.kernel.lobatto import at_nodes, products
 from solidgear.meshing.cells import ENDS
 from solidgear.meshing.corner_layers import cut_towards
 from solidgear.meshing.meridian import CUT_RATIO, Meridian, on_side
-from solidgear.models.harmonic.blocks import _Work
+from solidgear.models.harmonic.blocks import Work
 from solidgear.models.harmonic.families import Family
 
 if TYPE_CHECKING:
-    from solidgear.models.harmonic.body import HarmonicMesh
+    from solidgear.models.harmonic.mesh import HarmonicMesh
     from solidgear.scene import Scene
 
 #: orders above that of the mesh, and cuts towards singular corners (one where only a load jumps)
@@ -69,11 +69,9 @@ class RicherSpace:
         self.scene, self.body = scene, body
         geometry: HarmonicMesh = body.geometry  # type: ignore[assignment]
         self.flat = geometry.meridian
-        self.order = int(body.mesh["order"])
+        self.order = geometry.order
         self.rich = self.order + EXTRA
-        self._work = _Work(
-            scene, geometry.mesh, geometry.element, geometry.dofs, self.flat, self.order
-        )
+        self._work = Work(scene, geometry)
         self._to_products()
         self.corners = singular_vertices(scene, body.ports, self.flat, self._corner_tangents())
         cuts = {
@@ -119,12 +117,9 @@ class RicherSpace:
     def coefficients(self, block: Block, family: Family, u: np.ndarray) -> np.ndarray:
         """(ne, (order + 1)^2, c, k) coefficients of (n, k) displacements of a block, in products."""
         u = u if block.expand is None else block.expand @ u
-        count, c = self._work.n, family.count
-        every = np.zeros((count * c, u.shape[1]))
-        keep = self._work.free_unknowns(family.waves) if family.waves >= 0 else slice(None)
-        every[keep] = u
-        cells = self._up @ every.reshape(count, -1)[self._work.dofs.T]
-        return cells.reshape(*cells.shape[:2], c, -1)
+        every = self._work.geometry.whole(family, u)
+        cells = self._up @ every.reshape(len(every), -1)[self._work.dofs.T]
+        return cells.reshape(*cells.shape[:2], family.count, -1)
 
     def places(self, cells: np.ndarray, at: np.ndarray) -> np.ndarray:
         """(m, q, 2) places of (q, 2) reference points of cells that are all straight or all curved,
@@ -162,7 +157,7 @@ class RicherSpace:
             if port.attachment == "section":
                 cells, side = self._plane(station.y)
             else:
-                cells, side = self._work._seat_cells(station), 1
+                cells, side = self._work.seat_cells(station), 1
             self.carrying.append(self._on_side(cells, side))
             if port.attachment == "rigid":
                 self.tied[index] = self._functions(self.carrying[-1])

@@ -15,8 +15,8 @@ from solidgear.body.mode_names import ModeName
 from solidgear.judge.singular_places import singular_places
 from solidgear.judge.solving import ENOUGH, Numbers
 from solidgear.quantity import Quantity
+from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.families import FAMILIES
-from solidgear.solve.supported import decoupled, groups
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene

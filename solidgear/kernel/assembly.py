@@ -56,16 +56,7 @@ class Tabulated:
         return self.jac.transpose(2, 3, 0, 1)
 
     def gradient(self, factor: np.ndarray) -> np.ndarray:
-        """Gradients in physical coordinates, times a factor.
-
-        Parameters
-        ----------
-        factor : (ne, nq) ndarray
-
-        Returns
-        -------
-        (ne, dim, nb, nq) ndarray
-        """
+        """(ne, dim, nb, nq) gradients in physical coordinates, times a factor (ne, nq)."""
         to = self.inverse * factor
         dim = len(to)
         out = np.empty((to.shape[2], dim, *self.value.shape))
@@ -77,18 +68,7 @@ class Tabulated:
 
 
 def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values and reference gradients of a scikit-fem element.
-
-    Parameters
-    ----------
-    element : scikit-fem element
-    points : (dim, nq) ndarray
-        Reference points.
-
-    Returns
-    -------
-    value : (nb, nq) ndarray
-    gradient : (nb, dim, nq) ndarray
+    """Values (nb, nq) and reference gradients (nb, dim, nq) of an element at points (dim, nq).
 
     Examples
     --------
@@ -111,16 +91,8 @@ def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 class Tabulation:
-    """Basis functions at reference points, to be mapped to elements a batch at a time.
-
-    Parameters
-    ----------
-    geometry : scikit-fem element
-        Of the mapping; for an isoparametric element the element itself.
-    element : scikit-fem element
-        Of the unknowns.
-    points : (dim, nq) ndarray
-        Reference points.
+    """Basis functions of an element at reference points (dim, nq), to be mapped to elements a batch at
+    a time; `geometry` is the element of the mapping, of an isoparametric one itself.
     """
 
     def __init__(self, geometry: Element, element: Element, points: np.ndarray):
@@ -130,13 +102,7 @@ class Tabulation:
         )
 
     def on(self, nodes: np.ndarray) -> Tabulated:
-        """Tabulate on some elements.
-
-        Parameters
-        ----------
-        nodes : (dim, nn, ne) ndarray
-            Of the mapping, m.
-        """
+        """Tabulate on some elements, by the nodes (dim, nn, ne) of their mapping, m."""
         nn, dim, nq = self._dshape.shape
         nodes = np.ascontiguousarray(nodes.transpose(0, 2, 1))
         jac = (
@@ -151,34 +117,12 @@ class Tabulation:
 def tabulate(
     geometry: Element, nodes: np.ndarray, element: Element, points: np.ndarray
 ) -> Tabulated:
-    """Tabulate basis functions once; see :class:`Tabulation`.
-
-    Parameters
-    ----------
-    geometry : scikit-fem element
-        Of the mapping.
-    nodes : (dim, nn, ne) ndarray
-        Of the mapping, m.
-    element : scikit-fem element
-        Of the unknowns.
-    points : (dim, nq) ndarray
-        Reference points.
-    """
+    """Basis functions tabulated once; parameters as for :class:`Tabulation`."""
     return Tabulation(geometry, element, points).on(nodes)
 
 
 def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Inverses and determinants of small matrices, by cofactors.
-
-    Parameters
-    ----------
-    jac : (d, d, ...) ndarray
-        d = 2 or 3.
-
-    Returns
-    -------
-    inverse : (d, d, ...) ndarray
-    det : (...) ndarray
+    """Inverses and determinants of (d, d, ...) matrices, d = 2 or 3, by cofactors.
 
     Examples
     --------
@@ -203,21 +147,9 @@ def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Elements whose nodes are an affine image of the reference nodes, and the constant Jacobians.
-
-    Parameters
-    ----------
-    element : scikit-fem element
-        With a node for every unknown.
-    nodes : (dim, nb, ne) ndarray
-
-    Returns
-    -------
-    mask : (ne,) ndarray of bool
-        False where nodes are off by more than ``STRAIGHT`` of the smallest extent of the element.
-    jac : (dim, dim, ne) ndarray
-        Derivative of position (first axis) along reference coordinates (second), in the
-        least-squares sense.
+    """Mask (ne,) of elements whose nodes (dim, nb, ne), one for every unknown, are an affine image of
+    the reference nodes to ``STRAIGHT`` of their smallest extent, and the constant Jacobians (dim,
+    dim, ne) in the least-squares sense, position first.
     """
     dim, _, ne = nodes.shape
     affine = np.column_stack([element.doflocs, np.ones(len(element.doflocs))])
@@ -231,17 +163,7 @@ def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
-    """Scalar numbering of unknowns, scikit-fem's own.
-
-    Parameters
-    ----------
-    mesh : scikit-fem mesh
-    element : scikit-fem element
-
-    Returns
-    -------
-    (nb, ne) ndarray of int
-    """
+    """(nb, ne) numbering of scalar unknowns, scikit-fem's own."""
     return np.asarray(Dofs(mesh, element).element_dofs)
 
 
@@ -301,13 +223,7 @@ class Pattern:
         self.indptr = np.searchsorted(starts, entries.indptr).astype(np.int32)
 
     def sum(self, components: int = 1) -> Sum:
-        """An empty matrix on this pattern.
-
-        Parameters
-        ----------
-        components : int
-            Unknowns of a node, numbered together.
-        """
+        """An empty matrix on this pattern, of so many unknowns of a node, numbered together."""
         return Sum(self, components)
 
 
@@ -321,13 +237,8 @@ class Sum:
         self.data = np.zeros(entries)
 
     def add(self, elements: slice | np.ndarray, values: np.ndarray) -> None:
-        """Add element matrices.
-
-        Parameters
-        ----------
-        elements : slice or (m,) ndarray of int
-        values : (c, c, m, nb, nb) ndarray
-            Component of row and column first; for one component (m, nb, nb) will do.
+        """Add element matrices (c, c, m, nb, nb), component of row and column first; of one
+        component (m, nb, nb) will do.
         """
         c = self.c
         at = self.pattern.place[elements].ravel() * np.intp(c * c)
@@ -335,13 +246,7 @@ class Sum:
             np.add.at(self.data[k:], at, plane)
 
     def matrix(self) -> sp.csr_matrix:
-        """The assembled matrix.
-
-        Returns
-        -------
-        (n c, n c) sparse
-            Unknowns grouped by node.
-        """
+        """The assembled (n c, n c) matrix, its unknowns grouped by node."""
         p, c = self.pattern, self.c
         if c == 1:
             return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
@@ -351,17 +256,8 @@ class Sum:
 
 
 def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
-    """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``.
-
-    Parameters
-    ----------
-    elements : (m,) ndarray of int
-    bytes_each : float
-        Work memory of one element.
-
-    Returns
-    -------
-    list of ndarray
+    """A list of elements cut into pieces whose work arrays, of so many bytes an element, stay
+    within ``BATCH_BYTES``.
     """
     step = max(1, int(BATCH_BYTES / bytes_each))
     return [elements[i : i + step] for i in range(0, len(elements), step)]

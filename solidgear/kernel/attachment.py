@@ -1,8 +1,12 @@
-"""Rigid (kinematic) attachment: seat unknowns replaced by the six motions of a port."""
+"""Ports of a block: rows of mean motions, and rigid (kinematic) attachment, where seat unknowns are
+replaced by the six motions of a port.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,27 +17,43 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import on_axis, shift
 
 
+class Attached(NamedTuple):
+    """A port of a block.
+
+    Attributes
+    ----------
+    place : float or (float, float, float)
+        Its y on the axis, or its point, m.
+    rows : (c, n) ndarray or sparse, optional
+        Its motion.
+    held : (n,) ndarray of bool, optional
+        In place of that, the unknowns that move with it as one rigid piece.
+    """
+
+    place: float | Sequence[float]
+    rows: np.ndarray | sp.spmatrix | None = None
+    held: np.ndarray | None = None
+
+
+def with_ports(block: Block, ports: Iterable[Attached]) -> Block:
+    """A block that has no ports yet, with all of them in their order."""
+    nothing = sp.csr_matrix((len(block.components), block.size))
+    rows, ties = [nothing[:0]], []
+    for index, port in enumerate(ports):
+        rows.append(nothing if port.rows is None else sp.csr_matrix(port.rows))
+        if port.held is not None:
+            ties.append((index, port.place, port.held))
+    return tie_rigidly(replace(block, ports=sp.vstack(rows).tocsr()), ties)
+
+
 def tie_rigidly(
     block: Block, ties: Sequence[tuple[int, float | Sequence[float], np.ndarray]]
 ) -> Block:
-    """Let surfaces of a block move as rigid bodies.
+    """Let surfaces of a block move as rigid bodies: of each the index of its port, its place (y on the
+    axis, or a point, m), and the (n,) mask of its unknowns.
 
-    Parameters
-    ----------
-    ties : list of (port index, place, mask)
-        Port whose motion the surface takes, its y on the axis or its point (m), and the (n,) mask of
-        unknowns on the surface.
-
-    Returns
-    -------
-    Block
-        With the unknowns on each surface replaced by the motion of its port, through
-        ``u = T u_reduced``, so ``T'KT`` and ``T'MT``; the same block when there are no ties.
-
-    Raises
-    ------
-    SolidgearError
-        If two surfaces share unknowns, which would make them one rigid body.
+    These are replaced by the motion of the port, through ``u = T u_reduced``, so ``T'KT`` and
+    ``T'MT``. SolidgearError if two surfaces share unknowns, which would make them one rigid body.
     """
     if not ties:
         return block
@@ -77,7 +97,7 @@ def tie_rigidly(
         sp.hstack([ports, extra + follow]).tocsr(),
         planar=block.planar,
         border=c * len(ties),
-        expand=t,
+        expand=t if block.expand is None else (block.expand @ t).tocsr(),
         sections=through(
             block.sections or from_points(block.mass, block.rigid, block.y, block.components), t
         ),

@@ -14,6 +14,7 @@ import numpy as np
 from skfem import Element, ElementQuad1
 
 from solidgear.kernel.assembly import Tabulated, Tabulation, reference
+from solidgear.kernel.lobatto import gauss
 from solidgear.meshing.cells import ENDS, HIGH, LOW, OUT
 from solidgear.meshing.meridian import Meridian
 
@@ -119,8 +120,7 @@ class Shapes:
             return out
         out = np.zeros((2, len(reference(self.element, np.zeros((2, 1)))[0]), len(cells)))
         out[:, :4] = corner
-        x, w = np.polynomial.legendre.leggauss(24)
-        x, w = (x + 1) / 2, w / 2
+        x, w = gauss(24)
         for k, cell in enumerate(cells):
             edge = int(flat.arc[cell])
             a, b = (corner[:, end, k] for end in ENDS[edge])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 import numpy as np
 
@@ -39,18 +39,8 @@ def lobatto(order: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def products(order: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Functions of a quadrilateral and their gradients.
-
-    Parameters
-    ----------
-    at : (..., q, 2) ndarray
-        Reference points.
-
-    Returns
-    -------
-    value : (..., (order + 1)^2, q) ndarray
-        The first direction counts slowest.
-    slope : (2, ..., (order + 1)^2, q) ndarray
+    """Functions of a quadrilateral (..., (order + 1)^2, q) at reference points (..., q, 2), and their
+    gradients with the direction first; the first direction counts slowest.
     """
     a, da = lobatto(order, at[..., 0])
     b, db = lobatto(order, at[..., 1])
@@ -64,13 +54,8 @@ def products(order: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=32)
 def at_nodes(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points on which a product function is told apart from others, and the inverse of its values.
-
-    Returns
-    -------
-    points : ((order + 1)^2, 2) ndarray
-    inverse : ((order + 1)^2, (order + 1)^2) ndarray
-        Values at the points to coefficients.
+    """Points ((order + 1)^2, 2) on which a product function is told apart from others, and the matrix
+    from values there to coefficients.
     """
     x = (1 - np.cos(np.pi * np.arange(order + 1) / order)) / 2
     a, b = np.meshgrid(x, x, indexing="ij")
@@ -83,6 +68,14 @@ def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Points from 0 to 1 and weights of Gauss's rule."""
     x, w = np.polynomial.legendre.leggauss(count)
     return (x + 1) / 2, w / 2
+
+
+@lru_cache(maxsize=32)
+def gauss_box(count: int, dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points (dimension, n) from 0 to 1 and weights of the product of so many of Gauss's rules."""
+    x, w = gauss(count)
+    points = np.array([g.ravel() for g in np.meshgrid(*(x,) * dimension, indexing="ij")])
+    return points, reduce(np.multiply.outer, (w,) * dimension).ravel()
 
 
 @lru_cache(maxsize=32)

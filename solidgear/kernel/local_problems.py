@@ -62,12 +62,7 @@ class Cell:
 
 
 def condensed(cell: Cell, inner: np.ndarray) -> Cell:
-    """A cell without some of its unknowns, which no other cell has.
-
-    Parameters
-    ----------
-    inner : (n,) ndarray of bool
-    """
+    """A cell without some of its unknowns, told by a mask, which no other cell has."""
     if not inner.any():
         return cell
     outer = ~inner
@@ -86,17 +81,8 @@ def condensed(cell: Cell, inner: np.ndarray) -> Cell:
 
 
 def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
-    """Products of energy of the sum of all local solutions, cell by cell.
-
-    Parameters
-    ----------
-    rigid : (n, r) ndarray
-        Rigid motions in the unknowns of the richer space.
-
-    Returns
-    -------
-    (m, k, k) ndarray
-        Their sum over the cells is a bound of the errors.
+    """Products of energy (m, k, k) of the sum of all local solutions, cell by cell, of which the sum is a
+    bound of the errors; `rigid` (n, r) are rigid motions in the unknowns of the richer space.
 
     Examples
     --------
@@ -123,13 +109,8 @@ def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
 def merged(
     unknowns: Sequence[np.ndarray], numbered: np.ndarray
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Unknowns of several cells, each once, and where those of every cell stand among them.
-
-    Parameters
-    ----------
-    unknowns : sequence of (n,) ndarray of int
-    numbered : ndarray of int
-        Written over; as long as there are unknowns in all.
+    """Unknowns of several cells, each once, and where those of every cell stand among them; an array as
+    long as there are unknowns in all is written over.
 
     Examples
     --------

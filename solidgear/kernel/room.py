@@ -15,18 +15,9 @@ MOST_ENTRIES = 2_000_000_000
 
 
 def assemblable(elements: float, size: int) -> None:
-    """Refuse meshes whose matrices cannot be assembled; asked before a mesh with a bound of its
-    elements, and after it with their number.
-
-    Parameters
-    ----------
-    size : int
-        Rows of an element matrix of one component.
-
-    Raises
-    ------
-    NoRoom
-        With what they would take.
+    """Refuse (:class:`NoRoom`) meshes whose matrices cannot be assembled, by the rows of an
+    element matrix of one component; asked before a mesh with a bound of its elements, and after it
+    with their number.
     """
     entries = elements * size**2
     number = f"{elements:.0f}" if elements < 1e6 else f"{elements:.2g}"
@@ -42,10 +33,5 @@ def assemblable(elements: float, size: int) -> None:
 
 
 def assembled(entries: int, unknowns: int) -> None:
-    """Refuse a matrix of so many entries that will not fit into memory.
-
-    Raises
-    ------
-    NoRoom
-    """
+    """Refuse (:class:`NoRoom`) a matrix of so many entries that will not fit into memory."""
     require(PUT * entries / MB, f"matrices of {unknowns} unknowns")

@@ -7,20 +7,9 @@ from pathlib import Path
 
 
 def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
-    """Groups of this process, from its own up to the root, for each may carry the limit.
-
-    Parameters
-    ----------
-    root : path
-        Where ``proc`` and ``sys`` are looked for.
-    controller : str
-        ``cpu`` or ``memory``; version 1 has a tree for each.
-
-    Yields
-    ------
-    folder : Path
-    unified : bool
-        Whether it is of version 2.
+    """Groups of this process below a root, from its own up to the top, for each may carry the
+    limit of a controller (``cpu`` or ``memory``; version 1 has a tree for each), and whether they
+    are of version 2.
     """
     for line in text_of(root / "proc/self/cgroup").splitlines():
         _, kinds, path = line.split(":", 2)

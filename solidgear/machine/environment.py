@@ -11,12 +11,8 @@ from solidgear.machine.threads import usable_cores
 
 
 def environment() -> dict:
-    """Versions, processor and date, for results.json.
-
-    Returns
-    -------
-    dict
-        Versions are None for packages that are not there; ``cores`` are those this process may use.
+    """Versions (None of packages that are not there), processor, ``cores`` that this process may
+    use, and date, for results.json.
     """
     out: dict = {"python": platform.python_version()}
     for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pyvista", "pypardiso"):

@@ -28,19 +28,10 @@ from typing import Any, NoReturn
 
 
 def call(function: Callable, *arguments, **options) -> Any:
-    """Result of a function, or what it raises; Ctrl-C ends the wait for it.
+    """Result of a function, or what it raises; Ctrl-C, or whatever else a signal handler raises
+    meanwhile, ends the wait for it.
 
-    Parameters
-    ----------
-    function : callable
-        After Ctrl-C it may still be running: what it works on must not be used again.
-    *arguments, **options
-        Passed to it.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        Or whatever else a signal handler raises meanwhile.
+    After Ctrl-C the function may still be running: what it works on must not be used again.
 
     Examples
     --------
@@ -71,19 +62,7 @@ def abandoned() -> bool:
 
 def leave(code: int | str | None) -> NoReturn:
     """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it
-    cannot be waited for.
-
-    Libraries that run C code at exit would free what that call works on.
-
-    Parameters
-    ----------
-    code : int, str or None
-        As for ``sys.exit``.
-
-    Raises
-    ------
-    SystemExit
-        Where nothing is still running.
+    cannot be waited for, and libraries that run C code at exit would free what it works on.
     """
     if abandoned() and (code is None or isinstance(code, int)):
         for stream in (sys.stdout, sys.stderr):

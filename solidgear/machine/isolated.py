@@ -23,25 +23,14 @@ class IsolatedError(RuntimeError):
 
 
 def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
-    """Result of a function that is called in a process of its own, or what it raises.
-
-    Parameters
-    ----------
-    function : callable
-        Of a module that can be imported.
-    *arguments
-        Passed to it; they and its result can be pickled.
-    seconds : float
-        After which it is killed.
-    memory_mb : float
-        Address space it may take, where the system can limit it.
+    """Result of a function of a module that can be imported, called in a process of its own, or what it
+    raises; arguments and result can be pickled, and the address space that it may take is limited
+    where the system can do that.
 
     Raises
     ------
     IsolatedError
-        If the process ended without a result, or was killed after ``seconds``.
-    Exception
-        Whatever else the function raises.
+        If the process ended without a result, or was killed after so many seconds.
 
     Examples
     --------

@@ -44,20 +44,9 @@ def megabytes(amount: float) -> str:
 
 
 def require(need_mb: float, what: str, by: str = "", free: float | None = None) -> None:
-    """Refuse what does not fit, unless it is small.
-
-    Parameters
-    ----------
-    what : str
-        What needs it, such as ``120 unknowns``.
-    by : str
-        What factors them.
-    free : float, optional
-        MB, of what was free before a part of the need was taken; by default what is free now.
-
-    Raises
-    ------
-    NoRoom
+    """Refuse (:class:`NoRoom`) what does not fit into what is free now, or was before a part of
+    the need was taken, unless it is small; told is what needs it, such as ``120 unknowns``, and
+    what factors them.
     """
     free = available_mb() if free is None else free
     if free is not None and need_mb > max(free, SMALL_MB):
@@ -207,13 +196,7 @@ def expect(more_mb: float) -> None:
 
 
 def resident_mb() -> float | None:
-    """Resident memory of this process.
-
-    Returns
-    -------
-    float or None
-        MB of 2**20 bytes; None where the system does not show it.
-    """
+    """Resident memory of this process, MB of 2**20 bytes; None where the system does not show it."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[1])
     except OSError:

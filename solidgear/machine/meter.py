@@ -37,17 +37,7 @@ class Meter:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time a block of code.
-
-        Parameters
-        ----------
-        name : str
-            Stages of one name add up.
-
-        Yields
-        ------
-        None
-        """
+        """Time a block of code; stages of one name add up."""
         stop = threading.Event()
 
         def watch():
@@ -70,13 +60,7 @@ class Meter:
             watcher.join()
 
     def move(self, source: str, target: str, seconds: float) -> None:
-        """Book some seconds of one stage under another name.
-
-        Parameters
-        ----------
-        source, target : str
-            Stages.
-        """
+        """Book some seconds of one stage under another name."""
         self.seconds[source] = self.seconds.get(source, 0.0) - seconds
         self.seconds[target] = self.seconds.get(target, 0.0) + seconds
 

@@ -163,7 +163,7 @@ def rounded_layers(
     return max(found)
 
 
-def lines_with_blocks(
+def lines_along(
     scene: Shaft, grading: Grading, marks: Sequence[Mark], joints: Sequence[Joint]
 ) -> np.ndarray:
     """Mesh lines along the shaft, with the rows of blocks on either side of joints.

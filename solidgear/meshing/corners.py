@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.meshing.quality import outward
+
 if TYPE_CHECKING:
     from solidgear.scene.outline import Edge, Outline
     from solidgear.scene.shaft import Shaft
@@ -115,11 +117,9 @@ def is_notched(mesh: Any) -> bool:
     (False, True)
     """
     outside = mesh.boundary_facets()
-    corners = mesh.p[:, mesh.facets[:, outside]]  # (3, corner, facet)
-    middle = corners.mean(axis=1)
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0)
-    inside = mesh.p[:, mesh.t[:, mesh.f2t[0, outside]]].mean(axis=1) - middle
-    normal *= -np.sign(np.sum(normal * inside, axis=0)) / np.linalg.norm(normal, axis=0)
+    middle = mesh.p[:, mesh.facets[:, outside]].mean(axis=1)
+    normal = outward(mesh, outside)
+    normal /= np.linalg.norm(normal, axis=0)
     edge = mesh.f2e[:, outside]
     facet = np.broadcast_to(np.arange(len(outside)), edge.shape).ravel()
     order = np.argsort(edge.ravel(), kind="stable")

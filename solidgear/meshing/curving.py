@@ -8,10 +8,10 @@ from copy import copy
 from typing import TypeVar
 
 import numpy as np
-from skfem import Mesh, MeshTet2
+from skfem import Mesh, MeshTet1, MeshTet2
 
 from solidgear.meshing.edge_places import edge_places
-from solidgear.meshing.quality import element_ratios, element_volumes
+from solidgear.meshing.quality import element_ratios, element_volumes, outward
 
 M = TypeVar("M", bound=Mesh)
 #: below this min/max det J the edges of an element are straightened
@@ -33,6 +33,33 @@ def with_nodes(mesh: M, doflocs: np.ndarray) -> M:
     moved.doflocs = np.ascontiguousarray(doflocs)
     vars(moved).pop("_cached_mapping", None)  # it knows where nodes were
     return moved
+
+
+def with_middles(mesh: M, edges: np.ndarray, middles: np.ndarray) -> M:
+    """A second-order mesh with its middle nodes at some places (3, k), m, each on the edge between two
+    vertices (2, k).
+    """
+    doflocs = mesh.doflocs.copy()
+    doflocs[:, mesh.dofs.edge_dofs[0]] = middles[:, edge_places(edges, mesh.edges)]
+    return with_nodes(mesh, doflocs)
+
+
+def ten_nodes(
+    points: np.ndarray, corners: np.ndarray, edges: np.ndarray, middles: np.ndarray
+) -> MeshTet2:
+    """Ten-node tetrahedra by (4, ne) corners among points (3, n), m, of which only theirs are kept,
+    with middle nodes as for :func:`with_middles`.
+    """
+    used, small = np.unique(corners, return_inverse=True)
+    straight = MeshTet1(
+        np.ascontiguousarray(points[:, used]),
+        np.ascontiguousarray(small.reshape(corners.shape).astype(np.int32)),
+    )
+    place = np.full(points.shape[1], -1)
+    place[used] = np.arange(len(used))
+    known = place[edges]
+    among = (known >= 0).all(axis=0)
+    return with_middles(MeshTet2.from_mesh(straight), known[:, among], middles[:, among])
 
 
 def relaxed(mesh: MeshTet2) -> MeshTet2:
@@ -87,10 +114,7 @@ def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
     faces, give none.
     """
     facets = mesh.boundary_facets()
-    a, b, c = (mesh.p[:, corner] for corner in mesh.facets[:, facets])
-    normal = np.cross((b - a).T, (c - a).T).T / 2
-    inside = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1)
-    normal *= np.sign(((a - inside) * normal).sum(axis=0))
+    normal = outward(mesh, facets) / 2
     sides = mesh.facets[[[0, 1, 0], [1, 2, 2]]][:, :, facets]
     gain, least = np.zeros(curve.shape[1]), np.full(curve.shape[1], np.inf)
     depth = np.maximum(np.linalg.norm(curve, axis=0), 1e-300)

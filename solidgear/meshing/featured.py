@@ -13,11 +13,10 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from skfem import MeshTet1, MeshTet2
+from skfem import MeshTet2
 
-from solidgear.meshing.curving import with_nodes
+from solidgear.meshing.curving import ten_nodes
 from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
-from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
@@ -81,21 +80,12 @@ def featured_mesh(
     half: bool = True,
     edges: bool = False,
 ) -> FeaturedMesh:
-    """Mesh a shaft with features.
+    """Mesh a shaft with keyways, flats and cross holes, and beside them teeth, splines and bolt circles,
+    with which there are no halves; half of it where features have a mirror plane, if wanted.
 
-    Parameters
-    ----------
-    features : tuple
-        Keyways, flats and cross holes, and beside them teeth, splines and bolt circles, with which
-        there are no halves.
-    planes, circles, size, graded_size, around
-        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
-    refinement : float
-        Divides the sizes at features; those above are given refined.
-    half : bool
-        Whether to draw half of the shaft where features have a mirror plane.
-    edges : bool
-        Whether elements are smaller at the re-entrant edges of features and at holes.
+    Sizes are those of :func:`solidgear.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
+    divides the sizes at features, and with ``edges`` elements are smaller at the re-entrant edges of
+    features and at holes.
 
     Raises
     ------
@@ -189,14 +179,5 @@ def _cut(gmsh, features, radii) -> list[int]:
 
 def without(mesh: MeshTet2, keep: np.ndarray) -> MeshTet2:
     """The elements of a curved mesh that are kept, with the nodes in the middle of their edges."""
-    corners = mesh.t[:, keep]
-    used, small = np.unique(corners, return_inverse=True)
-    straight = MeshTet1(
-        np.ascontiguousarray(mesh.p[:, used]),
-        np.ascontiguousarray(small.reshape(corners.shape).astype(np.int32)),
-    )
-    part = MeshTet2.from_mesh(straight)
-    at = edge_places(mesh.edges, used[part.edges])
-    doflocs = part.doflocs.copy()
-    doflocs[:, part.dofs.edge_dofs[0]] = mesh.doflocs[:, mesh.dofs.edge_dofs[0][at]]
-    return with_nodes(part, doflocs)
+    middles = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
+    return ten_nodes(mesh.p, mesh.t[:, keep], mesh.edges, middles)

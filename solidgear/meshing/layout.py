@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.meshing.bands import Bands, first_of_run, radial_bands
-from solidgear.meshing.blocks import Joint
-from solidgear.meshing.corners import corner_layers
-from solidgear.meshing.grading import Grading
-from solidgear.meshing.marks import lines_along, marks_of, owners_of
+from solidgear.meshing.blocks import Joint, joints_of, lines_along, rounded_layers
+from solidgear.meshing.grading import Grading, joint_length
+from solidgear.meshing.marks import marks_of, owners_of
 from solidgear.meshing.rings import needs_of, ring_lines, runs_of
-from solidgear.meshing.rounded import rounded_layout
+from solidgear.meshing.strips import SIDES, Strips, split_bands, strip_of
 from solidgear.scene.outline import SURFACES
 
 if TYPE_CHECKING:
@@ -128,6 +127,11 @@ def layout(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None =
         section ties are lines of the mesh and graded, ends of rigid seats are graded like
         shoulders.
 
+    Raises
+    ------
+    SolidgearError
+        If a seat ends among the cells of a fillet or chamfer.
+
     Examples
     --------
     Every shoulder is a line of the mesh:
@@ -140,18 +144,29 @@ def layout(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None =
     """
     segments, outline = scene.segments, scene.outline
     marks = marks_of(scene, grading, attachments)
-    if outline.corners:
-        return Layout(*rounded_layout(scene, grading, attachments, marks))
-    y = lines_along(scene, grading, marks)
+    joints = joints_of(scene, grading, marks)
+    y = lines_along(scene, grading, marks, joints)
+    for joint in joints:
+        joint.line = int(np.abs(y - joint.y).argmin())
     bands, left, right = radial_bands(outline)
-    corners = {
-        (joint, surface): corner_layers(outline, joint, grading.across)
-        for joint in range(1, len(segments))
-        for surface in SURFACES
-    }
+    corners = {}
+    for k in range(1, len(segments)):
+        reach = grading.radial_reach * joint_length(segments, k - 1)
+        for surface in SURFACES:
+            corners[k, surface] = rounded_layers(
+                outline, k, [surface], grading.across, reach, grading.ratio
+            )
     needs = needs_of(scene, grading, attachments, bands, corners)
-    fractions = {
-        run.key: ring_lines(segments, grading, run, needs, max(run.thicknesses))
-        for run in runs_of(bands, left, right)
-    }
-    return Layout(y, owners_of(y, segments), bands, left, right, fractions)
+    strips: Strips = {}
+    fractions = {}
+    for run in runs_of(bands, left, right):
+        thickness = max(run.thicknesses)
+        for surface in SIDES:
+            strip = strip_of(joints, bands, run, surface)
+            if strip:
+                strips[(*run.key, surface)] = strip
+                thickness -= strip.depth
+        fractions[run.key] = ring_lines(segments, grading, run, needs, thickness)
+    if strips:
+        bands, left, right, fractions = split_bands(outline, bands, left, right, strips, fractions)
+    return Layout(y, owners_of(y, segments), bands, left, right, fractions, tuple(joints))

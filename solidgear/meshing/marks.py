@@ -53,14 +53,6 @@ def marks_of(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None
     return marks
 
 
-def lines_along(scene: Shaft, grading: Grading, marks: Sequence[Mark]) -> np.ndarray:
-    """Mesh lines from mark to mark, m."""
-    lines = [np.array([0.0])]
-    for a, b in zip(marks, marks[1:]):
-        lines.append(a.y + lines_between(scene, grading, a, b, b.y - a.y)[1:])
-    return np.concatenate(lines)
-
-
 def lines_between(scene: Shaft, grading: Grading, a: Mark, b: Mark, length: float) -> np.ndarray:
     """Lines from 0 to a length (m), graded towards the two marks beside it."""
     tol = SAME_PLACE * scene.length

@@ -106,23 +106,9 @@ def drawn_across(flat: Meridian, across: Sequence[tuple[float, float]]) -> Merid
 
 
 def cut_meridian(flat: Meridian, cuts: Sequence[Cut]) -> tuple[Meridian, np.ndarray]:
-    """A mesh whose cells are cut towards some of its vertices.
-
-    Parameters
-    ----------
-    cuts : sequence of (float, float, int)
-        y and r of a vertex, m, and how often all cells around it are cut.
-
-    Returns
-    -------
-    cut : Meridian
-    parent : (m,) ndarray of int
-        Cell of the uncut mesh that each of its cells lies in.
-
-    Raises
-    ------
-    SolidgearError
-        If no vertex is there.
+    """A mesh whose cells are cut towards some of its vertices, each told by y and r, m, and how often all
+    cells around it are cut; and the cell of the uncut mesh that each of its cells lies in.
+    SolidgearError if no vertex is there.
 
     Examples
     --------

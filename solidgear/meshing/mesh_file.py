@@ -9,15 +9,14 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
-from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1, MeshTet2
+from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1
 
 from solidgear.errors import listed, nearest, show
-from solidgear.meshing.curving import with_nodes
+from solidgear.meshing.curving import ten_nodes, with_middles, with_nodes
 from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS, Group
-from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.placing import Placing
-from solidgear.meshing.quality import MeshError, check_mesh, element_volumes
+from solidgear.meshing.quality import MeshError, check_mesh, element_volumes, outward
 
 #: groups that a sentence names
 TOLD = 12
@@ -167,20 +166,24 @@ def _sound(deck: Deck, points, corners: int) -> None:
         where = f"{deck.named(copy)}: " if deck.lines is not None else ""
         more = f", as an element of {groups[0]} too: its groups overlap" if groups else ""
         raise MeshError(f"{where}an element is there twice{more}")
-    n = points.shape[1]
-    first = np.repeat(cells[:1], corners - 1, axis=0).ravel()
-    joined = sp.coo_matrix((np.ones(len(first)), (first, cells[1:corners].ravel())), shape=(n, n))
-    _, label = connected_components(joined, directed=False)
-    pieces, count = np.unique(label[cells[0]], return_counts=True)
+    label = _labels(cells[:corners], points.shape[1])
+    pieces, count = np.unique(label, return_counts=True)
     if len(pieces) > 1:
         least = pieces[np.argmin(count)]
-        cell = int(np.flatnonzero(label[cells[0]] == least)[0])
+        cell = int(np.flatnonzero(label == least)[0])
         x, y, z = 1e3 * points[:, cells[:corners, cell]].mean(axis=1)
         at = f"({x:.4g}, {y:.4g}, {z:.4g}) mm"
         raise MeshError(
             f"falls into {len(pieces)} pieces that share no node, one near {at} in the scene: "
             "merge nodes at one place, or leave all but one piece out"
         )
+
+
+def _labels(cells: np.ndarray, nodes: int) -> np.ndarray:
+    """(n,) which piece each of some cells or faces (corners, n) belongs to, of all that share nodes."""
+    first = np.repeat(cells[:1], len(cells) - 1, axis=0).ravel()
+    joined = sp.coo_matrix((np.ones(len(first)), (first, cells[1:].ravel())), shape=(nodes, nodes))
+    return connected_components(joined, directed=False)[1][cells[0]]
 
 
 #: faces around a hole up to which it is one that elements are missing from, and none of the part
@@ -190,14 +193,11 @@ FEW_FACES = 12
 def _no_holes(found: FileMesh) -> None:
     """Refuse holes inside that a few lost elements leave."""
     points, faces = found.mesh.p, found.mesh.facets[:, found.mesh.boundary_facets()]
-    n = points.shape[1]
-    first = np.repeat(faces[:1], len(faces) - 1, axis=0).ravel()
-    joined = sp.coo_matrix((np.ones(len(first)), (first, faces[1:].ravel())), shape=(n, n))
-    _, label = connected_components(joined, directed=False)
-    holes, count = np.unique(label[faces[0]], return_counts=True)
+    label = _labels(faces, points.shape[1])
+    holes, count = np.unique(label, return_counts=True)
     for hole, faces_of_it in zip(holes, count):
         if len(holes) > 1 and faces_of_it <= FEW_FACES:
-            at = 1e3 * points[:, np.unique(faces[:, label[faces[0]] == hole])].mean(axis=1)
+            at = 1e3 * points[:, np.unique(faces[:, label == hole])].mean(axis=1)
             raise MeshError(
                 "has a hole of {} faces inside, near ({:.4g}, {:.4g}, {:.4g}) mm in the scene: an "
                 "element is missing there".format(faces_of_it, *at)
@@ -221,14 +221,20 @@ def _pitted(found: FileMesh, deck: Deck) -> Iterator[str]:
 
 
 def _tets(points, cells) -> Mesh:
-    used, small = np.unique(cells[:4], return_inverse=True)
-    corners = small.reshape(4, -1)
-    mesh = MeshTet1(
-        np.ascontiguousarray(points[:, used]), np.ascontiguousarray(corners.astype(np.int32))
+    if len(cells) == 10:
+        return ten_nodes(points, cells[:4], *_middles(points, cells, _TET_EDGES))
+    used, small = np.unique(cells, return_inverse=True)
+    return MeshTet1(
+        np.ascontiguousarray(points[:, used]),
+        np.ascontiguousarray(small.reshape(4, -1).astype(np.int32)),
     )
-    if len(cells) == 4:
-        return mesh
-    return _with_middles(MeshTet2.from_mesh(mesh), corners, _TET_EDGES, points[:, cells[4:]])
+
+
+def _middles(points, cells, edges) -> tuple[np.ndarray, np.ndarray]:
+    """Ends (2, k) and middle nodes (3, k) of all edges, edge by edge."""
+    ends = np.moveaxis(cells[np.array(edges)], 1, 0).reshape(2, -1)
+    count = cells.shape[0] - len(edges)
+    return ends, points[:, cells[count:]].reshape(3, -1)
 
 
 def _hexes(points, cells) -> Mesh:
@@ -244,18 +250,10 @@ def _hexes(points, cells) -> Mesh:
     )
     if len(cells) == 8:
         return mesh
-    curved = _with_middles(MeshHex2.from_mesh(mesh), corners, _HEX_EDGES, points[:, cells[8:20]])
-    return _serendipity(curved)
-
-
-def _with_middles(mesh: Any, corners, edges, middles) -> Any:
-    """A second-order mesh with its middle nodes where the file has them."""
-    pairs = corners[np.array(edges)]  # (edge, 2, ne)
-    at = edge_places(np.moveaxis(pairs, 1, 0).reshape(2, -1), mesh.edges)
-    doflocs = mesh.doflocs.copy()
-    # nodes are listed cell by cell for each edge
-    doflocs[:, mesh.dofs.edge_dofs[0]] = middles.reshape(3, -1)[:, at]
-    return with_nodes(mesh, doflocs)
+    ends, middles = _middles(points, cells, _HEX_EDGES)
+    return _serendipity(
+        with_middles(MeshHex2.from_mesh(mesh), np.searchsorted(used, ends), middles)
+    )
 
 
 def _serendipity(mesh: Any) -> Any:
@@ -349,13 +347,8 @@ def lost_elements(mesh: Any) -> np.ndarray:
     lost element leaves a rim.
     """
     p, outside = mesh.p, mesh.boundary_facets()
-    faces, inside = mesh.facets[:, outside], mesh.t[:, mesh.f2t[0, outside]]
-    ab, ac = p[:, faces[1]] - p[:, faces[0]], p[:, faces[2]] - p[:, faces[0]]
-    normal = np.cross(ab.T, ac.T).T
+    faces, normal = mesh.facets[:, outside], outward(mesh, outside)
     normal /= np.linalg.norm(normal, axis=0)
-    # away from the middle of the element behind
-    behind = p[:, inside].mean(axis=1) - p[:, faces[0]]
-    normal *= -np.sign((normal * behind).sum(axis=0))
     # every edge of the surface with the face on either side, and the corner across
     corners = np.array([(0, 1, 2), (0, 2, 1), (1, 2, 0)])
     pairs = np.sort(faces[corners[:, :2]], axis=1)

@@ -137,6 +137,16 @@ def element_volumes(mesh: Mesh) -> np.ndarray:
     return np.concatenate([_polynomials(mesh, part)[2] for part in _parts(mesh)])
 
 
+def outward(mesh: Mesh, facets: np.ndarray) -> np.ndarray:
+    """(3, k) normals of boundary facets by their first three corners, out of the material, as long as
+    the parallelogram of these is large, m^2.
+    """
+    a, b, c = (mesh.p[:, corner] for corner in mesh.facets[:3, facets])
+    normal = np.cross((b - a).T, (c - a).T).T
+    behind = mesh.p[:, mesh.t[:, mesh.f2t[0, facets]]].mean(axis=1) - a
+    return -np.sign((normal * behind).sum(axis=0)) * normal
+
+
 def _parts(mesh) -> list[slice]:
     """Elements in batches."""
     return [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]

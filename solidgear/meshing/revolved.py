@@ -35,18 +35,9 @@ def draw_revolved(
     start: float = 0.0,
     turn: float = 2.0 * pi,
 ) -> None:
-    """Draw the meridian with shared edges and turn it about y.
-
-    Parameters
-    ----------
-    gmsh : module
-    planes : sequence of float
-        Positions y of cross-sections to be made of element faces, m.
-    circles : sequence of float
-        Positions y at which the outer surface is split along a circle, m.
-    start, turn : float
-        Angle about y from +x towards -z at which the meridian is drawn, and by which it is turned,
-        rad.
+    """Draw the meridian with shared edges and turn it about y by an angle, from one from +x towards -z
+    on, rad. Cross-sections at ``planes`` are to be made of element faces, and the outer surface is
+    split along circles; both are places y, m.
     """
     occ = gmsh.model.occ
     tolerance = tolerance_of(outline.segments)

@@ -17,11 +17,10 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
-from skfem import MeshTet1, MeshTet2
+from skfem import MeshTet2
 
 from solidgear.frames import rotation
-from solidgear.meshing.curving import with_nodes
-from solidgear.meshing.edge_places import edge_places
+from solidgear.meshing.curving import ten_nodes, with_nodes
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.holes import Hole, hole_of, hole_places, hole_size
@@ -102,18 +101,11 @@ def sector_mesh(
     refinement: float,
     count: int | None = None,
 ) -> SectorMesh:
-    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs
-    through its middle.
+    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs through
+    its middle; there are as many around as the features say, unless told.
 
-    Parameters
-    ----------
-    features : tuple of Teeth, Spline or BoltCircle
-    planes, circles, size, graded_size, around
-        As for :func:`solidgear.meshing.tetrahedra.tetrahedra`.
-    refinement : float
-        Divides the sizes at features; those above are given refined.
-    count : int, optional
-        Sectors around; by default as many as the features say.
+    Sizes are those of :func:`solidgear.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
+    divides the sizes at features.
 
     Raises
     ------
@@ -293,9 +285,4 @@ def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total
         cells.append(name[t])
         ends.append(name[mesh.edges])
         middles.append(turn @ at)
-    straight = MeshTet1(points, np.ascontiguousarray(np.hstack(cells).astype(np.int32)))
-    whole = MeshTet2.from_mesh(straight)
-    found = edge_places(np.hstack(ends), whole.edges)
-    doflocs = whole.doflocs.copy()
-    doflocs[:, whole.dofs.edge_dofs[0]] = np.hstack(middles)[:, found]
-    return with_nodes(whole, doflocs)
+    return ten_nodes(points, np.hstack(cells), np.hstack(ends), np.hstack(middles))

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from skfem import MeshTet1, MeshTet2
+from skfem import MeshTet2
 
 from solidgear.machine.interruptible import call
-from solidgear.meshing.curving import relaxed, volume_preserved, with_nodes
-from solidgear.meshing.edge_places import edge_places
+from solidgear.meshing.curving import relaxed, ten_nodes, volume_preserved
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
@@ -128,24 +127,8 @@ def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray
 
 
 def filled(gmsh, refusal: str, report=lambda fraction, message: None):
-    """Curved tetrahedra in everything that is drawn.
-
-    Parameters
-    ----------
-    gmsh : module
-        With a model and its sizes.
-    refusal : str
-        What is said where it cannot be done; the mesher's own words take the place of ``{}``.
-    report : callable, optional
-        ``report(fraction, message)``.
-
-    Returns
-    -------
-    MeshTet2
-
-    Raises
-    ------
-    MeshError
+    """Curved tetrahedra in everything that is drawn in a model with its sizes; `refusal` is the
+    MeshError where it cannot be done, in which the mesher's own words take the place of ``{}``.
     """
     try:
         for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
@@ -236,19 +219,8 @@ def to_skfem(gmsh):
     position = np.empty((int(tags.max()) + 1, 3))
     position[tags] = coordinates.reshape(-1, 3)
     cells = nodes[0].reshape(-1, 10).astype(np.int64)
-
-    used, corners = np.unique(cells[:, :4], return_inverse=True)
-    corners = corners.reshape(-1, 4)
-    straight = MeshTet1(
-        np.ascontiguousarray(position[used].T), np.ascontiguousarray(corners.T.astype(np.int32))
-    )
-    mesh = MeshTet2.from_mesh(straight)
-
-    pairs = corners[:, _mid_node_corners(gmsh)]  # (element, 6, 2)
-    at = edge_places(pairs.reshape(-1, 2).T, mesh.edges)
-    doflocs = mesh.doflocs.copy()
-    doflocs[:, mesh.dofs.edge_dofs[0]] = position[cells[:, 4:].reshape(-1)[at]].T
-    return with_nodes(mesh, doflocs)
+    ends = cells[:, _mid_node_corners(gmsh)].reshape(-1, 2).T
+    return ten_nodes(position.T, cells[:, :4].T, ends, position[cells[:, 4:].reshape(-1)].T)
 
 
 def _mid_node_corners(gmsh):

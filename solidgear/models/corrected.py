@@ -71,26 +71,10 @@ def corrected(
     modes: int = KEPT,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
-    """Free body of a scene with features, by defect correction.
-
-    Parameters
-    ----------
-    scene : Scene
-        With features.
-    order, layers, edge_layers, harmonic_size
-        Of the harmonic solid: see :func:`solidgear.models.harmonic.body.harmonic`; the last is its
-        ``relative_size``.
-    refinement : float
-        Of the 3D mesh that both 3D solids share.
-    modes : int
-        Free elastic modes that the body keeps, twins counted twice.
-    attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one.
-
-    Returns
-    -------
-    Body
-        Two blocks where features have a mirror plane, one where there is none.
+    """Free body of a scene with features, by defect correction: two blocks where features have a mirror
+    plane, one where there is none; options as in
+    :data:`~solidgear.models.options.CORRECTED_OPTIONS`, of which the first four are those of the
+    harmonic solid, ``refinement`` that of the 3D mesh that both 3D solids share.
 
     Raises
     ------

@@ -18,10 +18,8 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from solidgear.body import Body
-from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.modes import modes
-from solidgear.solve.shifted import factors
-from solidgear.solve.statics import of_twin
+from solidgear.solve.statics import of_twin, port_fields
 
 #: stations by whose motions modes of two meshes are recognised
 STATIONS = 25
@@ -74,16 +72,7 @@ class Modal:
         return self.static - motions @ reached, self.inert - reached.T @ reached
 
     def without_modes(self, fields: np.ndarray, index: int, rows: np.ndarray) -> np.ndarray:
-        """Fields of unit port loads of a block, the modes taken out.
-
-        Parameters
-        ----------
-        fields : (n, q) ndarray
-        index : int
-            Of the block.
-        rows : (q,) ndarray of int
-            Port components of the loads.
-        """
+        """Fields (n, q) of unit loads on some port components of a block, the modes taken out."""
         for i, vector in enumerate(self.vectors):
             if index in vector:
                 reached = self.motions[rows, i] / self.value[i, i]
@@ -117,7 +106,7 @@ def modal(body: Body, count: int) -> Modal:
             vectors.append(vector)
             moved.append(motion.ravel())
             values.append(sum(v @ (body.blocks[b].stiffness @ v) for b, v in vector.items()))
-    motions = np.array([_port_motions(body, v) for v in vectors]).T
+    motions = np.array([body.port_motions(v) for v in vectors]).T
     sections = np.array(moved).T
     static, inert, fields = _static(body)
     return Modal(
@@ -134,41 +123,23 @@ def modal(body: Body, count: int) -> Modal:
     )
 
 
-def _port_motions(body: Body, vectors: dict[int, np.ndarray]) -> np.ndarray:
-    out = np.zeros(6 * len(body.ports))
-    for b, vector in vectors.items():
-        block = body.blocks[b]
-        out[body.rows(block)] += block.ports @ vector
-    return out
-
-
 def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
     """mu_0, mu_1 and the fields of unit port loads, rigid motions taken out."""
     n = 6 * len(body.ports)
     static, inert = np.zeros((2, n, n))
     fields: dict[int, np.ndarray] = {}
-    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
+    for index, u, work, _ in port_fields(body, 1e-20):
+        block = body.blocks[index]
         rows = np.ix_(body.rows(block), body.rows(block))
+        static[rows], inert[rows] = work, u.T @ (block.mass @ u)
+        fields[index] = u
+    for index, block in enumerate(body.blocks):
         if block.mirror is not None:
-            original, signs = block.mirror
+            rows = np.ix_(body.rows(block), body.rows(block))
             for matrix in (static, inert):
                 matrix[rows] = of_twin(body, block, matrix)
+            original, signs = block.mirror
             fields[index] = fields[original] * np.tile(signs, len(body.ports))
-            continue
-        load = block.ports.T.toarray()
-        load, u, _ = elastic_fields(
-            factor.solve,
-            block.mass.__matmul__,
-            block.stiffness.__matmul__,
-            block.rigid,
-            load,
-            1e-20,
-        )
-        # stationary at the solution (Clapeyron)
-        work = u.T @ load
-        static[rows] = work + work.T - u.T @ (block.stiffness @ u)
-        inert[rows] = u.T @ (block.mass @ u)
-        fields[index] = u
     return (static + static.T) / 2, (inert + inert.T) / 2, fields
 
 

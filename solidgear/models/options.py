@@ -248,12 +248,12 @@ def checked(model: str, options: Mapping[str, Any], known: Mapping[str, Option])
             if value is None and known[name].optional
             else _USABLE[known[name].kind](model, name, value, known[name])
         )
-    _thick_enough(model, out)
+    thick_enough(model, out)
     return out
 
 
-def _thick_enough(model: str, options: Mapping[str, Any]) -> None:
-    """Layers and ratio together."""
+def thick_enough(model: str, options: Mapping[str, Any]) -> None:
+    """Refuse layers and a ratio that together make a last layer too thin for its digits."""
     if "ratio" not in options:
         return
     for name in ("layers", "radial_layers"):

@@ -50,21 +50,10 @@ class CondensedShaft:
 def condensed_shaft(
     shaft: Superelement, supports: np.ndarray, held: tuple[str, ...], points: Sequence[str]
 ) -> CondensedShaft:
-    """Reduce a superelement on its supports to one port or a few.
+    """Reduce a superelement to a few of its ports, on supports of some stiffness (6 p, 6 p) that are on
+    the ports ``held``, in their order.
 
-    Parameters
-    ----------
-    supports : (6 p, 6 p) ndarray
-        Stiffness of all bearings together, in the order of ``held``.
-    held : tuple of str
-        Ports that the bearings are on.
-    points : sequence of str
-        The lumped points.
-
-    Raises
-    ------
-    SolidgearError
-        If the shapes are not determined, as where a shaft swings on one bearing.
+    SolidgearError if the shapes are not determined, as where a shaft swings on one bearing.
     """
     rows = np.vstack([np.zeros((0, shaft.size)), *(shaft.ports[name].rows for name in held)])
     value = shaft.value

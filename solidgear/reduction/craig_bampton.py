@@ -41,7 +41,7 @@ from solidgear.reduction.superelement import (
     port_rows,
     reduced_motions,
 )
-from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.modes import modes
 from solidgear.solve.shifted import factors
 
@@ -125,14 +125,7 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
     heavy = block.mass @ r
 
     def field(load):
-        return elastic_fields(
-            solve,
-            block.mass.__matmul__,
-            block.stiffness.__matmul__,
-            block.rigid,
-            load,
-            FINE,
-        )[1]
+        return relieved_fields(block, solve, load, FINE)[1]
 
     attachment = field(g.T)
     size = np.sqrt(ease(body)[body.rows(block)[port_rows(block, ports)]])
@@ -173,20 +166,9 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
 
 
 class _Held:
-    """Loads on the ports of a free block that move them as told.
-
-    ``F f + P a = motion`` and ``P'f = resultant``: loads f move the ports by the flexibility F, and
-    the block swings by a.
-
-    Parameters
-    ----------
-    flexibility : (q, q) ndarray
-    swing : (q, r) ndarray
-        P, rigid motions of the ports.
-    size : (q,) ndarray
-        Units in which motions of ports are alike.
-    names : list of str
-        For the message.
+    """Loads on the ports of a free block that move them as told, ``F f + P a = motion`` and ``P'f =
+    resultant``: loads f move the ports by the flexibility F (q, q), and the block swings by a along the
+    rigid motions P (q, r) of the ports, which are alike in units of `size` (q,).
 
     Attributes
     ----------

@@ -93,18 +93,8 @@ class Synthesis:
 def effective_masses(
     point: LumpedPoint, receptance: Callable[[float], float] | None = None
 ) -> dict[str, Synthesis]:
-    """All four lumped models of a first bending mode.
-
-    Parameters
-    ----------
-    receptance : callable, optional
-        ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N; without it
-        the band of validity stays None.
-
-    Returns
-    -------
-    dict of str to Synthesis
-        In the order of ``METHODS``.
+    """All four lumped models of a first bending mode, in the order of ``METHODS``; the band of
+    validity needs ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N.
     """
     out = {}
     out["old"] = _judge(

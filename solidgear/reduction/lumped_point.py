@@ -9,10 +9,10 @@ import numpy as np
 
 from solidgear.body import Body, as_supports
 from solidgear.errors import SolidgearError
-from solidgear.reduction.receptance import port_motion
+from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
-from solidgear.solve.supported import Supported, decoupled, groups
+from solidgear.solve.supported import Supported
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -54,23 +54,11 @@ class LumpedPoint:
 def lumped_point(
     body: Body, supports: Holding, port: str, found: ModeSet | None = None
 ) -> tuple[LumpedPoint, ModeSet]:
-    """Static stiffness, first bending motion and condensed mass of a body at its lumped point.
+    """Static stiffness, first bending motion and condensed mass of a body at its lumped point, with the
+    modes, which are solved if they are not given or have no first bending.
 
-    Parameters
-    ----------
-    supports : Scene, Supports or iterable of bearings
-    found : ModeSet, optional
-        Solved if not given, or without a first bending mode.
-
-    Returns
-    -------
-    point : LumpedPoint
-    found : ModeSet
-
-    Raises
-    ------
-    SolidgearError
-        Without a first bending mode or a static stiffness at the port (a body that nothing holds).
+    SolidgearError without a first bending mode or a static stiffness at the port (a body that nothing
+    holds).
     """
     supports = as_supports(supports)
     condensed = condense(body, supports, port)
@@ -114,7 +102,7 @@ def _first_in_plane(body: Body, found: ModeSet, index: int):
     for mode in (*found.modes, *found.beyond):
         if mode.family != "bending" or mode.frequency_hz == 0:
             continue
-        motions = np.array([port_motion(body, v, index) for v in mode.vectors])
+        motions = np.array([body.port_motions(v)[6 * index :][:6] for v in mode.vectors])
         size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
         z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
         if z >= 0.5 * x:

@@ -220,12 +220,8 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
 
 
 def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
-    """Rigid motions of a free block and some of its elastic modes, ready to be a basis.
-
-    Parameters
-    ----------
-    elastic : sequence of (n,) ndarray
-        Mode shapes of the free block, mass-normalised, in any order.
+    """Rigid motions of a free block and some of its elastic modes, mass-normalised and in any
+    order, ready to be a basis.
     """
     r = len(block.components)
     lower = (
@@ -244,23 +240,10 @@ def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
 def residual_fields(
     inverse: Callable[[np.ndarray], np.ndarray], mass: Mass, ports: sp.csr_matrix, steps: int
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Fields W_0 .. W_(steps) of some ports and their moments mu_0 .. mu_(2 steps + 2).
+    """Moments mu_0 .. mu_(2 J + 2) of some ports, even ones across a solve, odd ones as Gram matrices,
+    and the fields W_0 .. W_J (n, q) of their rows (q, n), after so many steps J.
 
-    Parameters
-    ----------
-    inverse : callable
-        H, the inverse of A (or of K) with U taken out.
-    mass : sparse or ScalarMass
-    ports : (q, n) sparse
-        Rows G.
-    steps : int
-        J.
-
-    Returns
-    -------
-    moments : list of (q, q) ndarray
-        Even ones across a solve, odd ones as Gram matrices.
-    fields : list of (n, q) ndarray
+    `inverse` is H, the inverse of A (or of K) with U taken out.
     """
     w = inverse(ports.T.toarray())
     out, fields = [ports @ w], [w]
@@ -275,20 +258,9 @@ def residual_fields(
 
 
 def residual_basis(mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Combinations of the fields W_0 .. W_J with unit energy, from their moments.
-
-    Parameters
-    ----------
-    mu : (2 J + 3, q, q) ndarray
-
-    Returns
-    -------
-    z : ((J + 1) q, w) ndarray
-        Coefficients; ``W z`` has unit Gram matrix in A (or K).
-    mass : (w, w) ndarray
-        Its Gram matrix in M.
-    beyond : (w, w) ndarray
-        Its Gram matrix in ``M H M``.
+    """Combinations z ((J + 1) q, w) of the fields W_0 .. W_J with unit energy, from their moments
+    (2 J + 3, q, q): ``W z`` has unit Gram matrix in A (or K); and its Gram matrices in M and in
+    ``M H M``.
     """
     steps = (len(mu) - 1) // 2
 

@@ -15,52 +15,14 @@ if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
 
-def port_motion(body: Body, vectors: dict[int, np.ndarray], index: int) -> np.ndarray:
-    """Motion of a port in a mode shape.
-
-    Parameters
-    ----------
-    vectors : dict of int to (n,) ndarray
-        Shape, by block index.
-    index : int
-        Of the port.
-
-    Returns
-    -------
-    (6,) ndarray
-    """
-    out = np.zeros(6)
-    for b, vector in vectors.items():
-        block = body.block(b)
-        n = len(block.components)
-        if n:
-            out[list(block.components)] += block.ports[index * n : (index + 1) * n] @ vector
-    return out
-
-
 def modal_receptance(
     body: Body, supports: Holding, port: str, found: ModeSet
 ) -> Callable[[float], float]:
-    """Receptance z/F_z at a port by modal superposition with the static remainder.
+    """Receptance z/F_z (m/N) at a port of a body on its supports, by the frequency in rad/s: modal
+    superposition of its modes there, with the static remainder.
 
     The static part of the modes left out is exact, so the error is of the order of (omega /
     omega_left_out)^4.
-
-    Parameters
-    ----------
-    supports : Scene, Supports or iterable of bearings
-    found : ModeSet
-        Modes of the body on these supports.
-
-    Returns
-    -------
-    callable
-        omega (rad/s) to m/N.
-
-    Raises
-    ------
-    SolidgearError
-        If the body lacks the port.
 
     Examples
     --------
@@ -80,7 +42,7 @@ def modal_receptance(
     for mode in (*found.modes, *found.beyond):
         if mode.frequency_hz > 0:
             w2 = (2 * np.pi * mode.frequency_hz) ** 2
-            pairs += [(w2, port_motion(body, v, index)[2] ** 2) for v in mode.vectors]
+            pairs += [(w2, body.port_motions(v)[6 * index + 2] ** 2) for v in mode.vectors]
     w2, strength = np.array(pairs).T
 
     def receptance(omega: float) -> float:

@@ -45,7 +45,7 @@ from solidgear.reduction.superelement import (
     reduced_motions,
 )
 from solidgear.solve.factor import Factor
-from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.shifted import factors
 
@@ -141,22 +141,10 @@ def residual_block(
     size: np.ndarray,
     steps: int,
 ) -> tuple[np.ndarray, np.ndarray, Truncation]:
-    """Eigenvalues, mass-normalised shapes and truncation of one block.
-
-    Parameters
-    ----------
-    factor : Factor
-        Of the block, shifted.
-    free : FreeShapes
-        The modes to keep.
-    cut : float
-        Eigenvalue below which there are no others, rad^2/s^2.
-    rows : (q, n) sparse
-        Motions that springs may act on.
-    size : (q,) ndarray
-        Flexibilities beside which one is rounding.
-    steps : int
-        Krylov steps.
+    """Eigenvalues, mass-normalised shapes and truncation of one block: of the modes to keep, below an
+    eigenvalue (rad^2/s^2) under which there are no others, and of so many Krylov steps on the fields
+    of the rows (q, n) that springs may act on. `size` (q,) are flexibilities beside which one is
+    rounding.
     """
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):
@@ -167,14 +155,7 @@ def residual_block(
         # Displacements by inertia relief, less their part in U; a load that drives none of U needs
         # half as many corrections of the shifted factor.
         load = load - heavy @ (u.T @ load)
-        _, field, _ = elastic_fields(
-            factor.solve,
-            block.mass.__matmul__,
-            block.stiffness.__matmul__,
-            block.rigid,
-            load,
-            FINE,
-        )
+        _, field, _ = relieved_fields(block, factor.solve, load, FINE)
         return field - u @ (heavy.T @ field)
 
     moments, fields = residual_fields(inverse, block.mass, rows, steps)

@@ -46,15 +46,13 @@ def with_waves(
     kept: int = KEPT,
     fields: Mapping[int, np.ndarray] | None = None,
 ) -> Superelement:
-    """A superelement with harmonics n >= 2, and a port that feels them.
+    """A superelement with harmonics n >= 2 of the body that it was made of, and a port that feels them.
 
     Harmonics that it has already are taken as they are: patches at whatever angles have their fields
     in common and each a port of its own.
 
     Parameters
     ----------
-    body : Body
-        Of which it was made, with further harmonics.
     at : str
         Port of the part that carries the new one rigidly.
     offset : (3,) ndarray
@@ -124,13 +122,7 @@ def _reduced(family: Body, rows: np.ndarray, kept: int):
 
 
 def own_waves(part: Superelement) -> dict[int, np.ndarray]:
-    """Coordinates of every harmonic n >= 2 of a superelement.
-
-    Returns
-    -------
-    dict of int to (k,) ndarray of int
-        By n, cosine and sine together; empty for a part without any.
-    """
+    """Coordinates of every harmonic n >= 2 of a superelement, by n, cosine and sine together."""
     cuts = np.cumsum([0] + [len(block.value) for block in part.blocks])
     out: dict[int, np.ndarray] = {}
     for block, start, end in zip(part.blocks, cuts, cuts[1:]):
@@ -141,14 +133,8 @@ def own_waves(part: Superelement) -> dict[int, np.ndarray]:
 
 
 def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> float:
-    """Compliance of a port by the harmonics n >= 2 under a constant force, m/N.
-
-    Parameters
-    ----------
-    name : str
-        Of the port.
-    direction : (3,) ndarray
-        Of the force, unit.
+    """Compliance of a port by the harmonics n >= 2 under a constant force in a direction (3,),
+    m/N.
     """
     own = np.concatenate([np.zeros(0, int), *own_waves(part).values()])
     moved = np.asarray(direction) @ part.ports[name].rows[:3, own]

@@ -80,12 +80,8 @@ def of_mode(body: Body, supports: Supports, mode: Mode) -> Form:
     there, omega = supports.rows(body), 2 * np.pi * mode.frequency_hz
     states = []
     for vectors in mode.vectors:
-        motions, weight = np.zeros(6 * len(body.ports)), 0.0
-        for index, u in vectors.items():
-            block = body.block(index)
-            weight += u @ (block.mass @ u)
-            if block.components:
-                motions[body.rows(block)] += block.ports @ u
+        motions = body.port_motions(vectors)
+        weight = sum(u @ (body.block(index).mass @ u) for index, u in vectors.items())
         held = motions[there]
         size = 1 / np.sqrt(weight + held @ supports.masses @ held)
         pull = supports.stiffness @ held - omega**2 * supports.masses @ held

@@ -24,11 +24,6 @@ USUAL = Factoring()
 FORCED = "asked for"
 
 
-def pardiso_missing() -> str:
-    """Empty if PARDISO can be used, else the reason why not."""
-    return missing("pardiso")
-
-
 def choice(
     unknowns: int,
     entries: int,
@@ -36,23 +31,9 @@ def choice(
     planar: bool = False,
     factoring: Factoring = USUAL,
 ) -> tuple[str, str]:
-    """The back end that will factor a matrix.
-
-    Parameters
-    ----------
-    unknowns, entries : int
-        Rows of the matrix, and what is in them.
-    backend, planar, factoring
-        As for :func:`solidgear.solve.factor.factorise`.
-
-    Returns
-    -------
-    name, reason : str
-
-    Raises
-    ------
-    FactorError
-        If the one asked for is unknown, not there, or cannot do it.
+    """The back end that will factor a matrix of so many rows and entries, and the reason; otherwise
+    parameters as for :func:`solidgear.solve.factor.factorise`. FactorError if the one asked for is
+    unknown, not there, or cannot do it.
 
     Examples
     --------
@@ -65,7 +46,7 @@ def choice(
             raise FactorError(
                 f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
             )
-        why = _missing(backend)
+        why = missing(backend)
         if why:
             raise FactorError(f"back end {backend} was asked for but {why}")
         if backend not in _able(factoring):
@@ -82,7 +63,7 @@ def choice(
         return "superlu", f"{unknowns} unknowns are not above {SMALL}"
     absent = []
     for name in (name for name in FASTEST if name in _able(factoring)):
-        why = _missing(name)
+        why = missing(name)
         if not why:
             break
         absent.append(f"{why}; {INSTALL[name]}")
@@ -104,12 +85,8 @@ def _able(factoring: Factoring) -> tuple[str, ...]:
 def _out_of_core(factoring: Factoring) -> tuple[str, str]:
     absent = []
     for name in _able(factoring):
-        why = _missing(name)
+        why = missing(name)
         if not why:
             return name, "it keeps its factor in files"
         absent.append(f"{why}: {INSTALL[name]}")
     raise FactorError(f"no back end here makes a factor in {factoring.words}: {'; '.join(absent)}")
-
-
-def _missing(name):
-    return pardiso_missing() if name == "pardiso" else missing(name)

@@ -89,20 +89,10 @@ class Circumference:
         return 2
 
     def __call__(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Amplitudes of one shape.
-
-        Parameters
-        ----------
-        shape : (n, 3) ndarray
-            Displacements x, y, z.
-
-        Returns
-        -------
-        profile : (waves + 1, bins * 3) complex ndarray
-            Row n: radial, tangential and axial motion ``Re(c exp(i n t))``, bin by bin, weighted so
-            that the squared norm of a row is the share of the mass that moves so.
-        share : (waves + 1, 3) ndarray
-            Those squared norms by direction of motion.
+        """Amplitudes of one shape (n, 3), displacements x, y, z: the profile (waves + 1, bins * 3), of which
+        row n is the radial, tangential and axial motion ``Re(c exp(i n t))``, bin by bin, weighted so that
+        the squared norm of a row is the share of the mass that moves so; and those squared norms by
+        direction of motion (waves + 1, 3).
         """
         c, s = np.cos(self._angle), np.sin(self._angle)
         # z = r cos t, x = r sin t

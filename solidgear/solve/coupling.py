@@ -8,22 +8,11 @@ from solidgear.body import Body, Supports, component_rows
 
 
 def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndarray, float]:
-    """Bearing matrix with negligible couplings between blocks removed, and the bound that allows
-    it.
+    """Stiffness (6 m, 6 m) of the bearings with negligible couplings between blocks removed, and the
+    bound that allows it, zero where nothing was removed; a larger bound than the tolerance is none.
 
     If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
     eigenvalue of the supported body moves by more than eps, relative.
-
-    Parameters
-    ----------
-    tolerance : float
-        Largest bound that is accepted.
-
-    Returns
-    -------
-    spring : (6 m, 6 m) ndarray
-    bound : float
-        Zero where nothing was removed.
     """
     k = supports.stiffness
     if not supports.ports or len(body.blocks) == 1:
@@ -50,17 +39,8 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
 
 
 def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Blocks that bearings couple, or masses on ports.
-
-    Parameters
-    ----------
-    spring : (6 m, 6 m) ndarray
-        From :func:`decoupled`.
-
-    Returns
-    -------
-    list of list of int
-        Block indices.
+    """Indices of blocks that bearings couple, by their stiffness from :func:`decoupled`, or masses
+    on ports.
     """
     count = len(body.blocks)
     label = list(range(count))

@@ -81,21 +81,11 @@ class Solved:
 
 
 def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
-    """Elastic and rigid modes of blocks that belong together.
+    """Elastic and rigid modes of blocks that belong together: so many, and two more, so that a pair at
+    the end of the list is seen whole.
 
-    Parameters
-    ----------
-    n : int
-        Number of modes wanted; two more are found, so that a pair at the end of the list is seen
-        whole.
-    method : {None, 'lanczos', 'arpack', 'dense'}
-        None takes the quickest for the size and the back end.  If block Lanczos does not converge
-        ARPACK takes over.
-
-    Raises
-    ------
-    SolidgearError
-        If the method is unknown or ARPACK, the last resort, does not converge.
+    Without a method the quickest for the size and the back end is taken. If block Lanczos does not
+    converge ARPACK takes over; SolidgearError if that does not, or if the method is unknown.
     """
     if method not in (None, *METHODS):
         raise SolidgearError(
@@ -238,22 +228,15 @@ class Count:
 
 
 def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:
-    """Sylvester's law of inertia: how many modes lie below the first gap behind ``reach``.
+    """Sylvester's law of inertia: how many modes lie below the first gap behind the
+    highest eigenvalue that is used, rad^2/s^2.
 
     With bearings ``L L'`` kept outside the factor (Haynsworth's additivity on the bordered matrix),
     ``neg(K + L L' - mu M) = neg(K - mu M) - neg(I + L' (K - mu M)^-1 L)``. Masses ``J J'`` on ports
     are outside it too: with ``B = [L, J]`` and ``D = diag(I, -mu I)`` the same theorem gives
     ``neg(K + L L' - mu (M + J J')) = neg(K - mu M) + neg(-D^-1 - B' (K - mu M)^-1 B) - rank(L)``.
 
-    Parameters
-    ----------
-    reach : float
-        Highest eigenvalue that is used, rad^2/s^2.
-
-    Returns
-    -------
-    Count or None
-        None where the back end gives no inertia that can be trusted.
+    None where the back end gives no inertia that can be trusted.
     """
     value = np.array([r.value for r in solved.elastic])
     if len(value) < 2:

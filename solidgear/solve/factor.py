@@ -30,7 +30,6 @@ __all__ = [
     "factored",
     "factorise",
     "indefinite",
-    "negative_pivots",
     "planned",
 ]
 
@@ -158,19 +157,11 @@ def planned(
 
 
 def factored(plans: Sequence[Planned], free: float | None = None) -> list[Factor]:
-    """Make factors that will all be held, if they fit into memory together.
+    """Make factors that will all be held, if they fit into memory together: into the MB that were free
+    before they were analysed, which takes a part of what they need.
 
-    Parameters
-    ----------
-    free : float, optional
-        MB before they were analysed, which takes a part of what they need.
-
-    Raises
-    ------
-    NoRoom
-        With unknowns, the memory they need and the memory free, before a number is computed.
-    FactorError
-        If a matrix is not positive definite to its back end.
+    NoRoom with unknowns, the memory they need and the memory free, before a number is computed;
+    FactorError if a matrix is not positive definite to its back end.
     """
     unknowns, need = sum(p.unknowns for p in plans), sum(p.estimate_mb for p in plans)
     require(need, f"{unknowns} unknowns", plans[0].backend, free)
@@ -237,24 +228,6 @@ def indefinite(
             pass
         reason = f"no sound factor by {name}"
     return None
-
-
-def negative_pivots(matrix: sp.spmatrix, backend: str | None = None) -> tuple[int, str] | None:
-    """Number of negative eigenvalues of a sparse symmetric matrix.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-    backend : str, optional
-        As for :func:`factorise`.
-
-    Returns
-    -------
-    (int, str) or None
-        The count and the back end that made it; None as for :func:`indefinite`.
-    """
-    found = indefinite(matrix, backend)
-    return None if found is None else (found.negative, found.backend)
 
 
 def _canonical(matrix):

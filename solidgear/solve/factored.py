@@ -60,17 +60,7 @@ class Factor:
         return self.backend + (f" ({', '.join(unusual)})" if unusual else "")
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve with the factor.
-
-        Parameters
-        ----------
-        rhs : (n,) or (n, k) ndarray
-
-        Returns
-        -------
-        ndarray
-            Of the same shape.
-        """
+        """Solution for one (n,) or several (n, k) right-hand sides."""
         return heard(len(rhs), self._solve, rhs)
 
 

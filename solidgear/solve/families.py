@@ -29,13 +29,7 @@ def several(block: Block) -> bool:
 
 
 def family_of(block: Block) -> str:
-    """Family of the motions of a block.
-
-    Returns
-    -------
-    str
-        ``all`` for a block that holds every motion.
-    """
+    """Family of the motions of a block; ``all`` for one that holds every motion."""
     if len(block.components) == 6:
         return "all"
     if waves_of(block) > 1:

@@ -14,9 +14,10 @@ import numpy as np
 
 from solidgear.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.errors import SolidgearError
+from solidgear.solve.coupling import groups
 from solidgear.solve.eigen import Raw, Solved, count_below, lowest
-from solidgear.solve.families import family_of, repeats, waves_of
-from solidgear.solve.supported import Supported, groups
+from solidgear.solve.families import FAMILIES, family_of, repeats, waves_of
+from solidgear.solve.supported import EPS, Supported
 
 # validation/stability/circumferential_families.py: no family of its random shafts began below the
 # closed form over 1.5, nor below a light mesh's over 1.5.
@@ -25,7 +26,7 @@ LIGHT = 1.5
 MOST_WAVES = 100
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
-EPS, DOUBT = float(np.finfo(float).eps), 0.01
+DOUBT = 0.01
 
 
 @dataclass
@@ -65,13 +66,7 @@ class Part:
         return 2 if repeats(self.blocks[0]) else 1 + len(self.twins)
 
     def everywhere(self, found: list[Raw]) -> list[Raw]:
-        """Eigenpairs of the group and of its twins.
-
-        Parameters
-        ----------
-        found : list of Raw
-            Of the group.
-        """
+        """Eigenpairs of the group, and of its twins."""
         out = []
         for r in found:
             vectors = {self.first + b: v for b, v in r.vectors.items()}
@@ -109,21 +104,10 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest of
-    all reach.
-
-    Parameters
-    ----------
-    spring : (6 m, 6 m) ndarray
-        From :func:`~solidgear.solve.supported.decoupled`.
-    n : int
-        Number of shapes wanted in all.
-    method : {None, 'lanczos', 'arpack', 'dense'}
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`~solidgear.solve.eigen.lowest`.
+    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest `n`
+    shapes of all reach; `spring` (6 m, 6 m) is that of
+    :func:`~solidgear.solve.coupling.decoupled`. SolidgearError as
+    :func:`~solidgear.solve.eigen.lowest`.
     """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
@@ -157,19 +141,8 @@ def solved_parts(
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
-    """Highest eigenvalue that is used: that of the last of ``n`` shapes, or the highest allowed.
-
-    Parameters
-    ----------
-    parts : list of Part
-        Solved.
-    highest : float
-        rad^2/s^2.
-
-    Returns
-    -------
-    float
-        rad^2/s^2.
+    """Highest eigenvalue that is used, rad^2/s^2: that of the last of ``n`` shapes of solved
+    parts, or the highest allowed.
     """
     values = sorted(v for part in parts for v in part.values())
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
@@ -178,20 +151,9 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
 def further_parts(
     body: Body, parts: list[Part], n: int, highest: float, method: str | None
 ) -> tuple[list[Part], list[Uncounted]]:
-    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes.
-
-    Parameters
-    ----------
-    parts : list of Part
-        The body's own, solved.
-    highest : float
-        Largest eigenvalue wanted, rad^2/s^2.
-
-    Returns
-    -------
-    found : list of Part
-    left : list of Uncounted
-        The families that begin above, in ascending order of n.
+    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes, below
+    the largest eigenvalue wanted, rad^2/s^2; and those that begin above, in ascending order of
+    waves. `parts` are the body's own, solved.
     """
     have = {waves_of(b) for p in parts for b in p.blocks}
     limit = reach_of(parts, n, highest)
@@ -238,25 +200,11 @@ def _hz(value: float) -> float:
 
 
 def complete(part: Part, reach: float, method: str | None) -> dict:
-    """Count the modes of a part, and search again with more vectors where one was missed.
+    """Count the modes of a solved part up to the highest eigenvalue that is used, rad^2/s^2, and search
+    again with more vectors where one was missed.
 
-    Parameters
-    ----------
-    part : Part
-        Solved; it keeps the verdict.
-    reach : float
-        Highest eigenvalue that is used, rad^2/s^2.
-    method : {None, 'lanczos', 'arpack', 'dense'}
-
-    Returns
-    -------
-    dict
-        ``checked``, with ``below_hz``, ``modes`` and ``backend``, or with ``why`` not.
-
-    Raises
-    ------
-    SolidgearError
-        If modes are still missing.
+    The verdict, which the part keeps, is ``checked``, with ``below_hz``, ``modes`` and ``backend``,
+    or with ``why`` not. SolidgearError if modes are still missing.
     """
     supported, n = part.supported, part.ask
     seen = count_below(supported, part.solved, reach)
@@ -296,12 +244,8 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """Everything that was solved, lowest number of waves last among single families.
-
-    Returns
-    -------
-    list of (str, int or None, bool)
-        Family, waves around the axis (None for all), and whether it was counted.
+    """Family, waves around the axis (None for all), and whether it was counted, of everything that
+    was solved; the lowest number of waves last among single families.
     """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
@@ -317,17 +261,9 @@ def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
 def family_rows(
     parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
 ) -> list[dict]:
-    """Families that were solved and counted, and those that were left alone.
-
-    Parameters
-    ----------
-    found : list of (str, float, int)
-        Family, frequency (Hz) and number of shapes of every mode.
-
-    Returns
-    -------
-    list of dict
-        ``families`` of the evidence of :class:`~solidgear.solve.modes.ModeSet`.
+    """Families that were solved and counted, and those that were left alone, as in the evidence of
+    :class:`~solidgear.solve.modes.ModeSet`; of every mode found its family, frequency (Hz) and
+    number of shapes.
     """
     checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
     below = min((verdict["below_hz"] for verdict in checked), default=np.inf)
@@ -380,3 +316,26 @@ def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool
         if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
             return False
     return True
+
+
+def whole_to(parts: list[Part]) -> dict[int, float]:
+    """Eigenvalues up to which the families of every block are whole, by its index, rad^2/s^2;
+    solved parts that share a family of motion with another one are as whole as both.
+    """
+    ends: dict[str, float] = {}
+    for part in parts:
+        last = part.solved.elastic[-1].value if part.solved.elastic else 0.0
+        for family in _motions(part):
+            ends[family] = min(last, ends.get(family, np.inf))
+    return {
+        index: min(ends[family] for family in _motions(part))
+        for part in parts
+        for index in (*(part.first + b for b in part.supported.group), *part.twins)
+    }
+
+
+def _motions(part: Part) -> set[str]:
+    """Families of motion that a part may show; of an ovalising block its name."""
+    moved = {c for block in part.blocks for c in block.components}
+    own = {name for name, components in FAMILIES.items() if moved & set(components)}
+    return own or {block.name for block in part.blocks}

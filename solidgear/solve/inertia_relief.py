@@ -13,25 +13,15 @@ from collections.abc import Callable
 import numpy as np
 import scipy.linalg as sla
 
+from solidgear.body import Block
+
 Linear = Callable[[np.ndarray], np.ndarray]
 
 
 def inertia_relief(solve: Linear, mass: Linear, rigid: np.ndarray) -> tuple[Linear, Linear]:
-    """Two functions for a free body: loads balanced by its own inertia, and their elastic
-    displacements.
-
-    Parameters
-    ----------
-    solve, mass : callable
-        ``(K + sigma M)^-1 f`` and ``M u``.
-    rigid : (n, r) ndarray
-        Rigid motions.
-
-    Returns
-    -------
-    balanced, relieved : callable
-        The load less the inertia forces of the rigid acceleration it causes; the solution less its
-        rigid part in the mass norm.
+    """Two functions for a free body, by ``(K + sigma M)^-1 f``, ``M u`` and its rigid motions (n, r): the
+    load less the inertia forces of the rigid acceleration it causes; and its displacements less their
+    rigid part in the mass norm.
     """
     heavy = mass(rigid)
     gram = sla.cho_factor(rigid.T @ heavy)
@@ -95,16 +85,16 @@ def elastic_fields(
     missing = 0.0
     for count in range(most):
         z = relieved(left)
-        fresh = _columns(left, z)
-        step = z + step * _ratio(fresh, size)
+        fresh = columns(left, z)
+        step = z + step * ratio(fresh, size)
         size = fresh
         pull = stiffness(step)
-        along = _ratio(size, _columns(step, pull))
+        along = ratio(size, columns(step, pull))
         u = u + step * along
         left = left - pull * along
         gain = along * size
         energy = energy + gain
-        share = float(_ratio(np.abs(gain), energy).max(initial=0.0))
+        share = float(ratio(np.abs(gain), energy).max(initial=0.0))
         # What is still missing shrinks by a constant factor from step to step; rounding shows as
         # gains that do not.
         missing = share if count == 0 else share * share / last
@@ -114,10 +104,25 @@ def elastic_fields(
     return load, u, min(missing, 1.0)
 
 
-def _columns(a, b) -> np.ndarray:
+def relieved_fields(
+    block: Block, solve: Linear, load: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """The same of a free block, by the solution with its factor."""
+    return elastic_fields(
+        solve,
+        block.mass.__matmul__,
+        block.stiffness.__matmul__,
+        block.rigid,
+        load,
+        tolerance,
+    )
+
+
+def columns(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Products of columns with each other."""
     return np.einsum("ij,ij->j", a, b)
 
 
-def _ratio(a, b) -> np.ndarray:
+def ratio(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """``a / b``, and zero where nothing is left to divide by."""
     return np.divide(a, b, out=np.zeros_like(a), where=b > 0)

@@ -12,14 +12,8 @@ if TYPE_CHECKING:
 
 
 class MassUpdate:
-    """Inverse of ``K + shift (M + J J')`` by that of the body without the masses J on its ports.
-
-    Parameters
-    ----------
-    supported : Supported
-        Before masses are put on it.
-    heavy : (n, q) ndarray
-        J.
+    """Inverse of ``K + shift (M + J J')`` by that of the body before the masses J (n, q) are put
+    on its ports.
     """
 
     def __init__(self, supported: Supported, heavy: np.ndarray):

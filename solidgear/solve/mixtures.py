@@ -50,12 +50,8 @@ class Mixture(NamedTuple):
 
 
 def mixtures(found: ModeSet) -> tuple[Mixture, ...]:
-    """Modes with a name that is a toss-up, and the one that each shares its motion with.
-
-    Returns
-    -------
-    tuple of Mixture
-        Each pair once, in ascending order of frequency.
+    """Modes with a name that is a toss-up, and the one that each shares its motion with: each pair
+    once, in ascending order of frequency.
     """
     out: list[Mixture] = []
     elastic = [m for m in found.modes if m.frequency_hz > 0 and m.family in FAMILIES]

@@ -19,6 +19,7 @@ from solidgear.body.mode_names import BENDING, ModeName, meant, numbered
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
+from solidgear.solve.coupling import decoupled
 from solidgear.solve.eigen import Raw
 from solidgear.solve.groups import (
     Part,
@@ -27,12 +28,11 @@ from solidgear.solve.groups import (
     further_parts,
     reach_of,
     solved_parts,
+    whole_to,
 )
-from solidgear.solve.naming import Names, Projection
+from solidgear.solve.naming import Names, Projection, shares
 from solidgear.solve.shifted import SHIFT, factors
 from solidgear.solve.soundness import sound
-from solidgear.solve.supported import decoupled
-from solidgear.solve.whole import whole_to
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
@@ -280,11 +280,10 @@ def _rigid(names: Names, raw: list[Raw]):
     """Modes at 0 Hz."""
     for r in raw:
         motion = names.project(r.vectors)
-        shares = names.project.shares(motion)
-        family = max(shares, key=shares.__getitem__)
-        name = (
-            "rigid (combined)" if sum(s > 0.01 for s in shares.values()) > 1 else f"rigid {family}"
-        )
+        described = shares(motion, names.project.gram)
+        family = max(described, key=described.__getitem__)
+        several = sum(share > 0.01 for share in described.values()) > 1
+        name = "rigid (combined)" if several else f"rigid {family}"
         if names.without_axis:
             name, family = "rigid motion", "mode"
         yield Mode(
@@ -294,7 +293,7 @@ def _rigid(names: Names, raw: list[Raw]):
             1,
             (r.vectors,),
             motion[None],
-            sum(shares.values()),
+            sum(described.values()),
             int(family == BENDING),
         )
 

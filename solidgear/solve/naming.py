@@ -110,29 +110,10 @@ class Projection:
                 out[columns] += inverse @ (loaded.T @ vector)
         return out.reshape(self.count, 6)
 
-    def shares(self, motion: np.ndarray) -> dict[str, float]:
-        """Modal mass described by each family of section motions.
-
-        Parameters
-        ----------
-        motion : (s, 6) ndarray
-
-        Returns
-        -------
-        dict of str to float
-            By the names of ``FAMILIES``.
-        """
-        return shares(motion, self.gram)
-
 
 def shares(motion: np.ndarray, gram: np.ndarray) -> dict[str, float]:
-    """Modal mass that each family of section motions describes, by the names of ``FAMILIES``.
-
-    Parameters
-    ----------
-    motion : (s, 6) ndarray
-    gram : (6 s, 6 s) ndarray
-        Mass matrix of section motions.
+    """Modal mass that each family of section motions (s, 6) describes, by the names of
+    ``FAMILIES``; `gram` is their mass matrix.
     """
     return {family: _share(motion, gram, components) for family, components in FAMILIES.items()}
 
@@ -156,12 +137,8 @@ def _section_loads(block: Block, stations: np.ndarray, found: list[_Loads]) -> _
 
 
 class Names:
-    """Families, twins and numbers of the shapes of one body on its bearings.
-
-    Parameters
-    ----------
-    body : Body
-        All blocks that shapes refer to.
+    """Families, twins and numbers of the shapes of one body, whose blocks they refer to, on its
+    bearings.
     """
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
@@ -179,21 +156,15 @@ class Names:
         self._momenta: dict[int, tuple[dict, dict[int, np.ndarray]]] = {}
 
     def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
-        """Family, waves around, section motions and profile of one shape.
-
-        Parameters
-        ----------
-        vectors : dict of int to (n,) ndarray
-            By block index.
-        """
+        """Family, waves around, section motions and profile of one shape, by block index."""
         motion = self.project(vectors)
-        shares = self.project.shares(motion)
+        described = shares(motion, self.project.gram)
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
             energy, profile = self._around(*self._round, vectors)
         elif any(several(self.body.block(b)) for b in vectors):
             energy = {
-                (1 if name == "bending" else 0, name): share for name, share in shares.items()
+                (1 if name == "bending" else 0, name): share for name, share in described.items()
             }
         else:
             energy = self._by_block(vectors)
@@ -202,7 +173,7 @@ class Names:
             family = "mode"
         if self._round is not None:
             profile = profile[waves]
-        captured = sum(shares.values())
+        captured = sum(described.values())
         if self._with_masses:
             # shares are of the mass of the shaft, of which unit shapes have less than one
             moved = (v @ (self.body.block(b).mass @ v) for b, v in vectors.items())
@@ -293,12 +264,8 @@ class Names:
         return float(radial @ (block.mass @ radial)) / float(v @ (block.mass @ v))
 
     def overlap(self, a: Shape, b: Shape) -> float:
-        """MAC of one shape, turned by a quarter of a wave, with another.
-
-        Returns
-        -------
-        float
-            1 for twins, 0 for modes of other profiles.
+        """MAC of one shape, turned by a quarter of a wave, with another: 1 for twins, 0 for modes
+        of other profiles.
         """
         if (
             a.family != b.family
@@ -347,21 +314,8 @@ class Names:
     def pairs(
         self, shapes: list[Shape], value: np.ndarray
     ) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
-        """Groups of shapes that belong together.
-
-        Parameters
-        ----------
-        shapes : list of Shape
-            In ascending order.
-        value : (k,) ndarray
-            Eigenvalues.
-
-        Returns
-        -------
-        groups : list of tuple of int
-            Pairs and single modes in ascending order of the first member.
-        torn : list of (int, int)
-            Twins that the mesh has split too far to be one.
+        """Groups of shapes that belong together, by their eigenvalues (k,), ascending: pairs and single
+        modes in ascending order of the first member; and twins that the mesh has split too far to be one.
         """
         own = self.body.mesh.get("pair_tolerance", 1e-7)
         partner: dict[int, int] = {}

@@ -12,15 +12,10 @@ from solidgear.frames import rotation
 
 def alike(supports: Supports) -> float:
     """Bound on the relative change of any eigenvalue by a quarter turn of the bearings, and of the
-    masses on ports.
+    masses on ports; infinite where the change is not small.
 
     If ``|v' D v| <= eps v' K v`` for the change D of the stiffness K, then no eigenvalue of the
     supported body moves by more than eps (Rayleigh), and likewise for a change of the mass.
-
-    Returns
-    -------
-    float
-        Infinite where the change is not small.
 
     Examples
     --------

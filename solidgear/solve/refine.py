@@ -16,14 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.solve.supported import ROUNDED, Supported
+from solidgear.solve.inertia_relief import columns
+from solidgear.solve.supported import EPS, ROUNDED, Supported
 
 #: Modes with no more than this part of their mass in elastic motion are nearly rigid ones on soft
 #: springs.
 SOFT = 1e-3
 #: Relative error of an eigenvalue that is worth a further solve, and how many are tried.
 ENOUGH, STEPS = 1e-9, 8
-EPS = float(np.finfo(float).eps)
 #: Rounding of an energy from which on it is worth products in extended precision, where the
 #: processor has it.
 COARSE, EXTENDED = 1e-7, np.finfo(np.longdouble).eps < EPS
@@ -60,12 +60,8 @@ class Refined:
     steps: int
 
     def worst(self, needed: int) -> float:
-        """Largest error of the lowest pairs, rounding left out: no step would mend that.
-
-        Parameters
-        ----------
-        needed : int
-            How many pairs.
+        """Largest error of so many of the lowest pairs, rounding left out: no step would mend
+        that.
         """
         return float((self.error - self.noise)[:needed].max(initial=0.0))
 
@@ -94,7 +90,7 @@ def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed:
         How many of the lowest must be right; the others are there to see gaps.
     """
     carried = supported.mass_rigid.T @ vectors
-    elastic = np.append(_columns(carried, carried) <= 1 - SOFT, True)
+    elastic = np.append(columns(carried, carried) <= 1 - SOFT, True)
     # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above
     # an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
@@ -185,7 +181,7 @@ def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
     )
     # The small problem gives its eigenvalues to the rounding of the largest; quotients give each to
     # its own.
-    value = (_columns(rest, pull) + _columns(stretch, stretch)) / _columns(u, heavy)
+    value = (columns(rest, pull) + columns(stretch, stretch)) / columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
     return _Pairs(
         value.astype(float), u, force.astype(float), _rounding(supported, u, rest, stretch)
@@ -199,11 +195,11 @@ def _outside(x, known, mass):
     Columns that are the rounding of what they lost are left out.
     """
     heavy = mass(known)
-    before = np.sqrt(_columns(x, mass(x)))
+    before = np.sqrt(columns(x, mass(x)))
     out, scale = x, np.ones(x.shape[1])
     for _ in range(3):
         out = out - known @ (heavy.T @ out)
-        size = np.sqrt(_columns(out, mass(out)))
+        size = np.sqrt(columns(out, mass(out)))
         scale = scale * np.where(size > 0, size, np.inf)
         out = out / np.where(size > 0, size, np.inf)
     keep = scale > 1e-8 * before
@@ -230,7 +226,7 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
         w, v = np.linalg.eigh(held.T @ mass(held))
         held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
     rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
-    size = np.sqrt(_columns(rest, mass(rest)))
+    size = np.sqrt(columns(rest, mass(rest)))
     # below that a remainder of a shape is rounding
     keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))
     rest = rest[:, keep] / size[keep]
@@ -256,10 +252,6 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
     return _Pairs(value, u, force.astype(float), _rounding(supported, u, rest @ turn[r:], stretch))
 
 
-def _columns(a, b):
-    return np.einsum("ij,ij->j", a, b)
-
-
 def _rounding(supported, u, rest, stretch):
     """Rounding of each energy by products and by the matrix itself, rad^2/s^2 (held to dense
     solutions by validation/campaign/cases/modes.py).
@@ -274,7 +266,7 @@ def _rounding(supported, u, rest, stretch):
 def _judged(supported, value, u, force, back, rounding, step) -> Refined:
     """Error of each pair from the residuals of all, in the norm of the inverse."""
     mu = value + supported.shift
-    rho = np.sqrt(np.maximum(_columns(force, back), 0.0) / mu)
+    rho = np.sqrt(np.maximum(columns(force, back), 0.0) / mu)
     back_to = np.divide(mu, value, out=np.full_like(mu, np.inf), where=value > 0)
     noise = np.divide(rounding, value, out=np.full_like(mu, np.inf), where=value > 0)
     error = np.minimum(rho, _quadratic(mu, rho)) * back_to

@@ -11,21 +11,9 @@ from solidgear.solve.backends.matrix import FactorError
 
 
 def bordered(matrix, border, factor, corner_of):
-    """Factor the inner part by `factor`, the Schur complement of the border by `corner_of`.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-    border : int
-        Unknowns at the end that are eliminated last.
-    factor : callable
-        :class:`~solidgear.solve.factor.Factor` of a matrix, or None.
-    corner_of : callable
-        :func:`definite_corner` or :func:`any_corner`.
-
-    Returns
-    -------
-    Factor or None
+    """Factor the inner part of a matrix by `factor`, the Schur complement of its border, unknowns at the
+    end, by `corner_of` (:func:`definite_corner` or :func:`any_corner`); None where one of both gives
+    none.
     """
     n = matrix.shape[0] - border
     if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border

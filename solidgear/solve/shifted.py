@@ -32,12 +32,7 @@ class Factored:
 
 
 def factors(body: Body) -> list[Factor]:
-    """One factor of ``K + sigma M`` per block, kept with the body.
-
-    Returns
-    -------
-    list of Factor
-        Twins share theirs.
+    """One factor of ``K + sigma M`` per block, which twins share, kept with the body.
 
     Raises
     ------
@@ -50,12 +45,8 @@ def factors(body: Body) -> list[Factor]:
 
 
 def plans(body: Body, factoring: Factoring) -> dict[int, Planned]:
-    """Factors of a body that are not made yet, analysed in full.
-
-    Returns
-    -------
-    dict of int to Planned
-        By the identity of the stiffness, which twins share.
+    """Factors of a body that are not made yet, analysed in full, by the identity of the stiffness,
+    which twins share.
     """
     found: dict[int, Planned] = {}
     for block in body.blocks:
@@ -66,13 +57,7 @@ def plans(body: Body, factoring: Factoring) -> dict[int, Planned]:
 
 
 def needed_mb(body: Body, factoring: Factoring) -> float:
-    """Memory that the factors of a body would take, by analysis.
-
-    Returns
-    -------
-    float
-        MB.
-    """
+    """Memory that the factors of a body would take, by analysis, MB."""
     return sum(plan.estimate_mb for plan in plans(body, factoring).values())
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solidgear.solve.backends.matrix import FactorError
-from solidgear.solve.inertia_relief import Linear
+from solidgear.solve.inertia_relief import Linear, columns, ratio
 
 #: what a factor in double precision leaves in the energy norm on solids of 50,000 to 150,000 unknowns
 #: (2e-12 to 6e-12)
@@ -72,15 +72,15 @@ class Refining:
         energy, last = size, np.inf
         for count in range(MOST):
             z = self._scaled(left)
-            fresh = _columns(z, left)
-            step = z + step * np.maximum(_ratio(fresh - _columns(z, before), size), 0.0)
+            fresh = columns(z, left)
+            step = z + step * np.maximum(ratio(fresh - columns(z, before), size), 0.0)
             pull = self.product(step)
-            along = _ratio(_columns(step, left), _columns(step, pull))
-            gain = along * _columns(step, left)
+            along = ratio(columns(step, left), columns(step, pull))
+            gain = along * columns(step, left)
             x += step * along
             before, left, size = left, left - pull * along, fresh
             energy = energy + gain
-            share = float(np.sqrt(_ratio(np.abs(gain), energy).max(initial=0.0)))
+            share = float(np.sqrt(ratio(np.abs(gain), energy).max(initial=0.0)))
             # what this step was short of is to it as it was to the one before
             missing = share if count == 0 else share * min(1.0, share / last)
             if missing < ENOUGH or (count and share > 0.5 * last):
@@ -100,11 +100,3 @@ class Refining:
         size = np.abs(rhs).max(axis=0, initial=0.0)
         size = np.where(size > 0, size, 1.0)
         return np.asarray(self.rough(rhs / size), float) * size
-
-
-def _columns(a, b) -> np.ndarray:
-    return np.einsum("ij,ij->j", a, b)
-
-
-def _ratio(a, b) -> np.ndarray:
-    return np.divide(a, b, out=np.zeros_like(a), where=b > 0)

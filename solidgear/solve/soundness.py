@@ -18,22 +18,8 @@ WRONG = 1e-3
 
 
 def sound(body: Body, mode: Mode, parts: list[Part]) -> Mode:
-    """The mode, unless rounding leaves too little of its frequency.
-
-    Parameters
-    ----------
-    parts : list of Part
-        Where it was found.
-
-    Returns
-    -------
-    Mode
-        The same.
-
-    Raises
-    ------
-    SolidgearError
-        If the error of the frequency is above ``WRONG``; the message names the cause.
+    """The mode, found in some parts, unless rounding may move its frequency by more than
+    ``WRONG``: SolidgearError, which names the cause.
     """
     if mode.error > WRONG:
         doubt = (

@@ -17,20 +17,19 @@ is an exact zero and not a penalty.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, overload
 
 import numpy as np
 import scipy.linalg as sla
-import scipy.sparse as sp
 
 from solidgear.body import Block, Body, as_supports
 from solidgear.body.supports import separated
 from solidgear.errors import SolidgearError, show
 from solidgear.machine.threads import pinned
 from solidgear.solve.condensed import Condensed, Coupled
-from solidgear.solve.inertia_relief import elastic_fields
+from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.shifted import factors
 
 if TYPE_CHECKING:
@@ -95,38 +94,46 @@ def of_twin(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:
     return matrix[..., own[:, None], own] * np.outer(turn, turn)
 
 
+def port_fields(
+    body: Body, tolerance: float
+) -> Iterator[tuple[int, np.ndarray, np.ndarray, float]]:
+    """Elastic displacements of the free body under unit loads on its ports, block by block: of those
+    that repeat no other, the index, the displacements, the work that loads do on them, as computed,
+    and the relative error of it that is left.
+    """
+    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
+        if not block.components or block.mirror is not None:
+            continue
+        k = block.stiffness
+        load, u, missing = relieved_fields(block, factor.solve, block.ports.T.toarray(), tolerance)
+        # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the
+        # product of what both displacements miss.
+        work = u.T @ load
+        yield index, u, work + work.T - u.T @ (k @ u), missing
+
+
 def _flexibility(body: Body, tolerance: float) -> Flexibility:
     n = 6 * len(body.ports)
     out = np.zeros((n, n))
     asymmetry = residual = 0.0
-    backends = []
     fields: dict[int, np.ndarray] = {}
-    for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
-        if not block.components:
-            continue
-        rows = body.rows(block)
-        if block.mirror is not None:
-            out[np.ix_(rows, rows)] = of_twin(body, block, out)
-            continue
-        k = block.stiffness
-        load = block.ports.T.toarray() if sp.issparse(block.ports) else block.ports.T
-        load, u, missing = elastic_fields(
-            factor.solve, block.mass.__matmul__, k.__matmul__, block.rigid, load, tolerance
-        )
-        # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the
-        # product of what both displacements miss.
-        work = u.T @ load
-        f_block = work + work.T - u.T @ (k @ u)
+    for index, u, f_block, missing in port_fields(body, tolerance):
+        block = body.blocks[index]
         size = np.sqrt(np.abs(np.diag(f_block)))
         size[size == 0] = np.inf  # a motion without any flexibility is not asymmetric
         asymmetry = max(
             asymmetry, float((np.abs(f_block - f_block.T) / np.outer(size, size)).max())
         )
         residual = max(residual, float(missing))
+        rows = body.rows(block)
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
-        backends.append(factor.said)
         if block.planar:
             fields[index] = u
+    backends = [f.said for b, f in zip(body.blocks, factors(body)) if b.components]
+    for block in body.blocks:
+        if block.mirror is not None:
+            rows = body.rows(block)
+            out[np.ix_(rows, rows)] = of_twin(body, block, out)
     if not np.all(np.isfinite(out)):
         raise SolidgearError(f"the static solution of the {body.fidelity} body is not finite")
     return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))), fields)

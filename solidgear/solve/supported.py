@@ -15,7 +15,6 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
-from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.inertia_relief import elastic_fields
 from solidgear.solve.mass_update import MassUpdate
 from solidgear.solve.shifted import SHIFT, factors
@@ -31,16 +30,13 @@ EPS = float(np.finfo(float).eps)
 FAST = 1e18
 
 
-__all__ = ["EPS", "FAST", "REFINED", "ROUNDED", "Supported", "decoupled", "groups"]
-
-
 class Supported:
     """Operators of a group of blocks on their bearings.
 
     Parameters
     ----------
     spring : (6 m, 6 m) ndarray
-        Stiffness of the supports, perhaps without negligible couplings (see :func:`decoupled`).
+        Stiffness of the supports, perhaps without negligible couplings (see :func:`solidgear.solve.coupling.decoupled`).
     group : list of int
         Blocks, as given by :func:`groups`.
 
@@ -291,16 +287,11 @@ class Supported:
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """(r, k) stretch ``L'u`` of the springs, the root of their energy.
+        """(r, k) stretch ``L'u`` of the springs, the root of their energy, of (n, k) displacements under
+        loads ``(K + springs + shift M) u``, roughly.
 
-        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
-        comes from the load instead.
-
-        Parameters
-        ----------
-        u : (n, k) ndarray
-        loads : (n, k) ndarray
-            ``(K + springs + shift M) u``, roughly.
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it comes
+        from the load instead.
         """
         out = self.load.T @ u
         if self.load.shape[1]:

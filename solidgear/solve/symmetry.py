@@ -111,19 +111,8 @@ def _solver(pieces):
 def symmetric_bases(
     n: int, reflections: Sequence[Reflection]
 ) -> dict[tuple[float, ...], sp.csr_matrix]:
-    """Orthonormal bases of the motions that are symmetric or antisymmetric to every plane.
-
-    Parameters
-    ----------
-    n : int
-        Unknowns.
-    reflections : sequence of (partner, sign)
-
-    Returns
-    -------
-    dict of tuple of float to (n, p) sparse
-        By the parity of the kind in every plane. At most one entry a row; together as many columns
-        as there are unknowns.
+    """Orthonormal bases (n, p) of the motions that are symmetric or antisymmetric to every plane, by the
+    parity in each: at most one entry a row, and together as many columns as there are unknowns.
     """
     here = np.arange(n)
     # what every product of reflections makes of an unknown: its place, its sign

@@ -126,10 +126,8 @@ def harmonic_case(scene) -> Case:
     keep[Basis(mesh, element, quadrature=rule).get_dofs(axis).all(), 1:] = False
 
     def ours():
-        work = harmonic_blocks._Work(
-            scene, mesh, element, body.geometry.dofs, body.geometry.meridian, order
-        )
-        block = work.bending_block("bending_z", (2, 3), 1, [(scene.stations[0], "average")])
+        work = harmonic_blocks.Work(scene, body.geometry)
+        block = work.block("bending_z", (2, 3), [(scene.stations[0], "average")])
         return block.stiffness, block.mass
 
     return Case(ours, basis, stiffness, mass, np.flatnonzero(keep.ravel()))

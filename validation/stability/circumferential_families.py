@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse.linalg as spla
-from skfem import MeshQuad1
 
-from solidgear.kernel.assembly import unknowns
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
-from solidgear.models.harmonic.blocks import _Work
-from solidgear.models.harmonic.body import _element
+from solidgear.models.harmonic.blocks import Work
 from solidgear.models.harmonic.circumferential import Families
+from solidgear.models.harmonic.mesh import harmonic_mesh
 from solidgear.scene import STEEL, Material, Scene, Segment
 from solidgear.solve.groups import LIGHT, MARGIN
 from validation.stability.frame import Finding, columns
@@ -137,11 +135,10 @@ def lowest(scene: Scene, waves, order: int = 4) -> np.ndarray:
         scene,
         layout(scene, Grading(layers=1, edge_layers=0, size=max(scene.length / 30, thick / 6))),
     )
-    mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), _element(order)
-    work = _Work(scene, mesh, element, unknowns(mesh, element), flat, order)
+    work = Work(scene, harmonic_mesh(flat, order))
     out = []
     for n in waves:
-        block = work.bending_block(f"ovalising_{n}", (), n, ())
+        block = work.block(f"ovalising_{n}", (), ())
         value = spla.eigsh(
             block.stiffness.tocsc(),
             1,

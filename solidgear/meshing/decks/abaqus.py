@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.decks.deck import Deck, Lines, coordinates, integer, text_of, told_short
 from solidgear.meshing.quality import MeshError
 
 #: kinds of cells by the nodes of a continuum element, in meshio's words
@@ -129,13 +129,7 @@ def _nodes(lines: Lines, block: _Block) -> None:
             raise MeshError(
                 f"line {line}: node {number} has {len(entries) - 1} coordinates where 3 are wanted"
             )
-        try:
-            at = [float(re.sub("[dD]", "e", entry)) for entry in entries[1:4]]
-        except ValueError:
-            raise MeshError(
-                f"line {line}: node {number} has a coordinate that is no number"
-            ) from None
-        lines.node(number, line, at)
+        lines.node(number, line, coordinates(entries[1:4], line, number))
 
 
 def _elements(lines: Lines, block: _Block) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -294,6 +295,14 @@ def integer(text: str, line: int, what: str) -> int:
         raise MeshError(
             f"line {line}: {what} is {text.strip()[:20]!r} where a whole number is wanted"
         ) from None
+
+
+def coordinates(entries: Sequence[str], line: int, node: int) -> list[float]:
+    """Coordinates of a node; MeshError if one is no number."""
+    try:
+        return [float(re.sub("[dD]", "e", entry)) for entry in entries]
+    except ValueError:
+        raise MeshError(f"line {line}: node {node} has a coordinate that is no number") from None
 
 
 def told_short(number: int, line: int, name: str, has: int, wanted: str) -> MeshError:

@@ -7,10 +7,9 @@ Cincinnati, "Universal file formats for modal analysis testing and finite elemen
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
-from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.decks.deck import Deck, Lines, coordinates, integer, text_of, told_short
 from solidgear.meshing.quality import MeshError
 
 #: by the descriptor of a finite element: kind of cell in meshio's words, and its nodes in VTK's
@@ -80,10 +79,7 @@ def _datasets(text: str) -> Iterator[tuple[str, Data]]:
 def _nodes(lines: Lines, data: Data) -> None:
     for (line, head), (below, at) in _by(data, 2):
         number = integer((head.split() or [""])[0], line, "the number of a node")
-        try:
-            place = [float(re.sub("[dD]", "e", entry)) for entry in at.split()]
-        except ValueError:
-            place = []
+        place = coordinates(at.split(), below, number)
         if len(place) != 3:
             raise MeshError(f"line {below}: node {number} has a coordinate that is no number")
         lines.node(number, line, place)

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block, Body, Port
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.beam.drawing import BeamLine
 from solidgear.models.beam.element import (
     Elements,
@@ -25,7 +25,6 @@ from solidgear.models.beam.element import (
     surface,
 )
 from solidgear.models.beam.shoulder import Hinge, hinges
-from solidgear.models.options import BEAM_OPTIONS, checked
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 
@@ -45,40 +44,18 @@ def beam(
     shoulder: bool = False,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
-    """Free beam model of a scene.
+    """Free beam model of a scene, in four blocks (axial, torsion and the two bending planes); options as
+    in :data:`~solidgear.models.options.BEAM_OPTIONS`.
 
-    Parameters
-    ----------
-    scene : Scene
-    shear : bool
-        Timoshenko if True, Euler-Bernoulli if False.
-    rotary_inertia : bool
-        Whether sections carry rotary inertia in bending.
-    head : {'cone', 'mean'}
-        Follow the taper of conical segments, or replace each by the cylinder of its mean radii.
-    mass : {'consistent', 'lumped'}
-    kappa : {'hutchinson', 'cowper'}
-        Shear coefficient; Cowper's for comparison with older work, solid sections only.
-    elements : int, optional
-        Least number of elements along the shaft; by default eight to a diameter.
-    shoulder : bool
-        Whether steps of the outer radius are as soft as in the solid
-        (:mod:`solidgear.models.beam.shoulder`), where a plain beam fills the thick part with stress at
-        once.
-    attachments : tuple of str, optional
-        Attachments to build for every station, the first being the default one; by default those of
-        the scene.
-
-    Returns
-    -------
-    Body
-        Four blocks (axial, torsion and the two bending planes).
+    Cowper's shear coefficient is for comparison with older work, on solid sections only. There are
+    eight elements to a diameter unless more are asked for. With ``shoulder`` steps of the outer radius
+    are as soft as in the solid (:mod:`solidgear.models.beam.shoulder`), where a plain beam fills the
+    thick part with stress at once.
 
     Raises
     ------
     SolidgearError
-        For an option out of its range, Cowper's coefficient on a hollow shaft, or Euler elements
-        below ``SHORTEST`` of the shaft.
+        For Cowper's coefficient on a hollow shaft, or Euler elements below ``SHORTEST`` of the shaft.
 
     Examples
     --------
@@ -88,18 +65,6 @@ def beam(
     >>> body.mesh["elements"], [block.components for block in body.blocks]
     (30, [(2, 3), (0, 5), (1,), (4,)])
     """
-    checked(
-        "timoshenko" if shear else "euler",
-        {
-            "head": head,
-            "mass": mass,
-            "kappa": kappa,
-            "elements": elements,
-            "shoulder": shoulder,
-            "attachments": attachments,
-        },
-        BEAM_OPTIONS,
-    )
     if kappa == "cowper" and any(s.inner0 or s.inner1 for s in scene.segments):
         raise SolidgearError(
             "kappa: 'cowper' is given for solid sections only; use 'hutchinson' for a hollow shaft"
@@ -146,28 +111,25 @@ def on_nodes(
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
     shape = {name: part[2] for name, part in made.items()}
     rows = [port_rows(station, how, elements, shape, at, size) for station, how in wanted]
-    stacked = {name: sp.csr_matrix(np.vstack([r[name] for r in rows])) for name in size}
-    rigid = [(i, s) for i, (s, a) in enumerate(wanted) if a == "rigid"]
 
-    def tied(block: Block, per_node: int) -> Block:
-        masks = [_seat_mask(s, nodes, per_node, block.size) for _, s in rigid]
-        return tie_rigidly(block, [(i, s.y, mask) for (i, s), mask in zip(rigid, masks)])
+    def block(
+        name: str, components: tuple[int, ...], family: str, rigid, y, per_node: int
+    ) -> Block:
+        ports = []
+        for (station, how), row in zip(wanted, rows):
+            if how == "rigid":
+                mask = _seat_mask(station, nodes, per_node, size[family])
+                ports.append(Attached(station.y, held=mask))
+            else:
+                ports.append(Attached(station.y, row[family]))
+        return with_ports(Block(name, components, k[family], m[family], rigid, y), ports)
 
-    bending = tied(
-        Block("bending_z", (2, 3), k["bending"], m["bending"], lift, y2, stacked["bending"]), 2
-    )
+    bending = block("bending_z", (2, 3), "bending", lift, y2, 2)
     blocks = (
         bending,
         bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        tied(
-            Block("axial", (1,), k["axial"], m["axial"], one[:, None], nodes, stacked["axial"]), 1
-        ),
-        tied(
-            Block(
-                "torsion", (4,), k["torsion"], m["torsion"], one[:, None], nodes, stacked["torsion"]
-            ),
-            1,
-        ),
+        block("axial", (1,), "axial", one[:, None], nodes, 1),
+        block("torsion", (4,), "torsion", one[:, None], nodes, 1),
     )
     facts = {
         "element": "timoshenko" if shear else "euler",

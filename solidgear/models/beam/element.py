@@ -158,12 +158,8 @@ class Section:
         self.polar = 2 * self.rotary
 
     def soften(self, bend: np.ndarray, stretch: np.ndarray, twist: np.ndarray) -> None:
-        """Add compliance, spread evenly over the length; shear and inertia stay.
-
-        Parameters
-        ----------
-        bend, stretch, twist : (e,) ndarray
-            rad/(N m), m/N and rad/(N m).
+        """Add compliances (e,), rad/(N m), m/N and rad/(N m), spread evenly over the length; shear and
+        inertia stay.
         """
         self.bend = 1 / (1 / self.bend + (bend / self.length)[:, None])
         self.stretch = 1 / (1 / self.stretch + (stretch / self.length)[:, None])
@@ -266,21 +262,9 @@ _HALVES = (_GAUSS[0] < 0, _GAUSS[0] > 0)
 
 
 def rod_matrices(c: Section, rigidity, inertia, mass: str):
-    """Stiffness, mass and field of tapered bars in stretch or twist.
-
-    Parameters
-    ----------
-    rigidity : (e, q) ndarray
-        ``E A`` or ``G J``.
-    inertia : (e, q) ndarray
-        ``rho A`` or ``rho J``.
-    mass : {'consistent', 'lumped'}
-
-    Returns
-    -------
-    stiffness, mass : (e, 2, 2) ndarray
-    shape : (e, q, 2) ndarray
-        Motion at the Gauss points.
+    """Stiffness and mass (e, 2, 2) of tapered bars in stretch or twist, ``consistent`` or ``lumped``, by
+    ``E A`` and ``rho A``, or ``G J`` and ``rho J``, at the Gauss points; and their motion (e, q, 2)
+    there.
     """
     compliance = (c.w / rigidity).sum(axis=1)[:, None, None]
     k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
@@ -293,21 +277,9 @@ def rod_matrices(c: Section, rigidity, inertia, mass: str):
 
 
 def surface(e: Elements, lo: np.ndarray, hi: np.ndarray):
-    """Quadrature on the outer surface of parts of elements.
-
-    Parameters
-    ----------
-    lo, hi : (e,) ndarray
-        m.
-
-    Returns
-    -------
-    y, r : (e, q) ndarray
-        Places along the shaft, and radii there, m.
-    weight : (e, q) ndarray
-        Of the length along the surface, m.
-    lagrange : (e, q, q) ndarray
-        Interpolation from the Gauss points of the element.
+    """Quadrature on the outer surface of parts of elements between two places, m: (e, q) places along
+    the shaft, radii there, and weights of the length along the surface, m; and the interpolation (e,
+    q, q) from the Gauss points of the element.
     """
     x, w = _GAUSS
     y = (lo + hi)[:, None] / 2 + (hi - lo)[:, None] / 2 * x

@@ -1,7 +1,7 @@
 r"""Stress of a harmonic solid on a fillet: along its arc, around the axis, and what a free surface
 must not have.
 
-Strains are those of :func:`solidgear.models.harmonic.blocks.strains`; with the outward normal n and
+Strains are those of :func:`solidgear.models.harmonic.families.strains`; with the outward normal n and
 the tangent s of the meridian,
 
     along = s . sigma s,   around = sigma_tt,   shear = s . sigma t,   traction = sigma n
@@ -20,8 +20,9 @@ from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.cell_shapes import Kind
 from solidgear.meshing.cells import HIGH, LOW, OUT
-from solidgear.models.harmonic.blocks import _Work, strains
-from solidgear.models.harmonic.body import HarmonicMesh
+from solidgear.models.harmonic.blocks import Work
+from solidgear.models.harmonic.families import TORSION, family_of, strains
+from solidgear.models.harmonic.mesh import HarmonicMesh
 from solidgear.scene.blends import Corner
 
 #: places on the side of a cell, and the step of differences in its reference coordinates
@@ -70,9 +71,9 @@ class Arc:
 
     def __init__(self, scene, body: Body, corner: Corner):
         mesh: HarmonicMesh = body.geometry  # type: ignore[assignment]
-        flat, order = mesh.meridian, int(body.mesh["order"])
+        flat = mesh.meridian
         self.corner, self.scene = corner, scene
-        self._work = _Work(scene, mesh.mesh, mesh.element, mesh.dofs, flat, order)
+        self._work = Work(scene, mesh)
         if corner.centre is None:
             raise SolidgearError(f'{corner.kind} "{corner.name}" is no arc')
         away = np.hypot(*(flat.centre - np.array(corner.centre)[:, None]))
@@ -83,12 +84,11 @@ class Arc:
 
     def stress(self, block: Block, u: np.ndarray) -> ArcStress:
         """Stress under (n,) displacements of a block."""
-        waves = {"torsion": -1, "axial": 0}.get(block.name, 1)
-        count = {-1: 1, 0: 2}.get(waves, 3)
-        every = np.zeros(self._work.n * count)
-        every[self._work.free_unknowns(waves) if waves >= 0 else slice(None)] = u
-        values = every.reshape(-1, count)
-        parts = np.concatenate([self._on_cell(int(k), waves, values) for k in self._cells], axis=1)
+        family = family_of(block.name)
+        values = self._work.geometry.whole(family, u)
+        parts = np.concatenate(
+            [self._on_cell(int(k), family.waves, values) for k in self._cells], axis=1
+        )
         angle, along, around, shear, traction, *slope = parts[
             :, np.argsort(parts[0], kind="stable")
         ]
@@ -133,7 +133,7 @@ class Arc:
         functions = np.array([table.value / r, slope[0], slope[1]])
         fields = np.einsum("ibq,bc->qic", functions, values[self._work.dofs[:, cell]])
         material = self.scene.segments[self._work.flat.segment[cell]].material
-        if waves < 0:
+        if waves == TORSION:
             strain = np.zeros((6, len(r)))
             strain[3], strain[4] = r * fields[:, 1, 0], r * fields[:, 2, 0]
         else:

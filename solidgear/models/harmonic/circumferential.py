@@ -15,14 +15,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse.linalg as spla
-from skfem import ElementQuad2, MeshQuad1
 
 from solidgear.body import Block
-from solidgear.kernel.assembly import unknowns
 from solidgear.meshing.grading import Grading
 from solidgear.meshing.layout import layout
 from solidgear.meshing.meridian import meridian
-from solidgear.models.harmonic.blocks import _Work
+from solidgear.models.harmonic.blocks import Work
+from solidgear.models.harmonic.mesh import harmonic_mesh
 from solidgear.models.spectrum import overhangs
 
 if TYPE_CHECKING:
@@ -52,7 +51,7 @@ class Families:
         self._scene, self.block = scene, build
         self._parts = _parts(scene.segments)
         self._found: dict[int, float] = {}
-        self._work: _Work | None = None
+        self._work: Work | None = None
 
     def bound(self, n: int) -> float:
         """Frequency (Hz) above which all motions of n waves should lie, in closed form; it grows
@@ -63,7 +62,7 @@ class Families:
     def light(self, n: int) -> float:
         """Lowest frequency (Hz) of n waves on a light mesh, somewhat too high."""
         if n not in self._found:
-            block = self._light_work().bending_block(f"ovalising_{n}", (), n, ())
+            block = self._light_work().block(f"ovalising_{n}", (), ())
             value = spla.eigsh(
                 block.stiffness.tocsc(),
                 1,
@@ -83,8 +82,7 @@ class Families:
             flat = meridian(
                 s, layout(s, Grading(layers=0, edge_layers=0, size=max(s.length / 12, thick / 3)))
             )
-            mesh, element = MeshQuad1(flat.points, flat.cells, sort_t=False), ElementQuad2()
-            self._work = _Work(s, mesh, element, unknowns(mesh, element), flat, 2)
+            self._work = Work(s, harmonic_mesh(flat, 2))
         return self._work
 
 

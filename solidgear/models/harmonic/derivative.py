@@ -21,17 +21,14 @@ import numpy as np
 from skfem import ElementQuad1
 
 from solidgear.body import Body
-from solidgear.body.model import FURTHER, SINE
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import reference
 from solidgear.meshing.bands import radial_bands
-from solidgear.models.harmonic.blocks import _energy, _weight, _Work
+from solidgear.models.harmonic.blocks import Work
+from solidgear.models.harmonic.families import TORSION, Family, family_of
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.coned import coned
 from solidgear.solve.adjoint import Form, State
-
-#: key of torsion among numbers of waves
-TORSION = -1
 
 
 @dataclass
@@ -70,9 +67,7 @@ class HarmonicAdjoint:
         self.scene = scene = coned(scene)
         geometry: Any = body.geometry
         self.flat, self.body = geometry.meridian, body
-        self.work = _Work(
-            scene, geometry.mesh, geometry.element, geometry.dofs, self.flat, body.mesh["order"]
-        )
+        self.work = Work(scene, geometry)
         self.stations = [*attached_stations(scene.stations)]
         if [(s.name, a) for s, a in self.stations] != [(p.name, p.attachment) for p in body.ports]:
             raise SolidgearError("derivatives need the attachments of the scene")
@@ -82,14 +77,14 @@ class HarmonicAdjoint:
         owner = [k for k, form in enumerate(forms) for _ in form.pairs]
         scale = [form.scale for form in forms for _ in form.pairs]
         self.pushes = [self._empty() for _ in forms]
-        for waves, columns, use in self._families(pairs):
+        for own, columns, use in self._families(pairs):
             kept = [self.pushes[owner[k]] for k, _, _ in use]
             by = np.array([scale[k] for k, _, _ in use])
             lam = np.array([pairs[k][0].eigenvalue for k, _, _ in use])
             first, second = (np.array([u[side] for u in use]) for side in (1, 2))
-            family = _Family(self, waves, columns, first, second, lam, by, kept)
-            family.volume()
-            family.ports()
+            states = _States(self, own, columns, first, second, lam, by, kept)
+            states.volume()
+            states.ports()
 
     def _empty(self) -> Push:
         p, s = len(self.body.ports), len(self.scene.segments)
@@ -100,76 +95,43 @@ class HarmonicAdjoint:
         )
 
     def _families(self, pairs):
-        """Yields (waves, columns, uses): unknowns of the mesh of every state in every block with so
-        many waves, and (pair, column of one, column of the other).
+        """Yields (family, columns, uses): unknowns of the mesh of every state in every block of a
+        family, and (pair, column of one, column of the other).
         """
-        groups: dict[int, tuple[list, dict, list]] = {}
+        groups: dict[Family, tuple[list, dict, list]] = {}
         for k, (a, b) in enumerate(pairs):
             for index in a.vectors.keys() & b.vectors.keys():
                 block = self.body.block(index)
-                waves = _waves(index, block)
-                columns, known, uses = groups.setdefault(waves, ([], {}, []))
+                family = family_of(block.name)
+                columns, known, uses = groups.setdefault(family, ([], {}, []))
                 at = []
                 for state in (a, b):
                     if (id(state), index) not in known:
                         known[id(state), index] = len(columns)
-                        columns.append(
-                            (state, index, self._whole(waves, block, state.vectors[index]))
-                        )
+                        u = state.vectors[index]
+                        u = u if block.expand is None else block.expand @ u
+                        columns.append((state, index, self.work.geometry.whole(family, u)))
                     at.append(known[id(state), index])
                 uses.append((k, *at))
-        for waves, (columns, _, uses) in groups.items():
-            yield waves, columns, uses
-
-    def _whole(self, waves: int, block, u: np.ndarray) -> np.ndarray:
-        """(n, c) unknowns of the mesh, with those that the axis holds."""
-        u = u if block.expand is None else block.expand @ u
-        if waves == TORSION:
-            return u[:, None]
-        c = 2 if waves == 0 else 3
-        out = np.zeros(self.work.n * c)
-        keep = self.work.free_unknowns(waves)
-        if len(u) != keep.sum():
-            raise SolidgearError("derivatives of waves around rigid seats are not known")
-        out[keep] = u
-        return out.reshape(-1, c)
+        for family, (columns, _, uses) in groups.items():
+            yield family, columns, uses
 
 
-def _waves(index: int, block) -> int:
-    if index >= FURTHER:
-        return index - (SINE if index >= SINE else FURTHER)
-    if block.name == "torsion":
-        return TORSION
-    if block.name.startswith("ovalising_"):
-        return int(block.name.split("_")[1])
-    return 0 if block.name == "axial" else 1
+class _States:
+    """States of one family of motion, and the pairs of them."""
 
-
-class _Family:
-    """States of one number of waves, and the pairs of them."""
-
-    def __init__(self, whole: HarmonicAdjoint, waves, columns, first, second, lam, by, pushes):
-        self.whole, self.work, self.waves = whole, whole.work, waves
+    def __init__(
+        self, whole: HarmonicAdjoint, family: Family, columns, first, second, lam, by, pushes
+    ):
+        self.whole, self.work, self.family = whole, whole.work, family
         self.columns = columns
         self.u = np.stack([one[2] for one in columns], axis=-1)
         self.first, self.second, self.lam, self.by, self.pushes = first, second, lam, by, pushes
-        c = self.u.shape[1]
-        if waves == TORSION:
-            self.trace, self.rest = np.zeros((3, 1, 3, 1)), np.eye(3).reshape(3, 1, 3, 1)
-            self.share, self.power = np.ones(1), 3
-        else:
-            self.trace, normal, shear = _energy(waves)
-            self.rest = 2 * normal + shear
-            self.share = np.ones(2) if c == 2 else np.array([2.0, 2.0, 1.0])
-            self.power = 1
+        self.trace, normal, shear = family.energy
+        self.rest = 2 * normal + shear
         # forces that rigid seats hold surfaces by
-        self.rigid = waves == 1 and any(a == "rigid" for _, a in whole.stations)
-        self.residual = np.zeros((self.work.n, c, self.u.shape[2]))
-
-    def _weight(self, t, dv):
-        if self.waves == TORSION:
-            return 2 * np.pi * dv * t.x[0] ** 3
-        return _weight(self.waves, t, dv)
+        self.rigid = family.waves == 1 and any(a == "rigid" for _, a in whole.stations)
+        self.residual = np.zeros((self.work.n, *self.u.shape[1:]))
 
     def fields(self, t, cells):
         """Values (m, q, c, k) and functions (3, m, q, c, k) as in `strains`, at points of cells."""
@@ -178,8 +140,6 @@ class _Family:
         slope = np.einsum("bdq,bmck->dmqck", t.slope, local, optimize=True)
         gradient = np.einsum("dimq,dmqck->imqck", t.inverse, slope, optimize=True)
         around = value / t.x[0][:, :, None, None]
-        if self.waves == TORSION:
-            around = np.zeros_like(around)
         return value, np.concatenate([around[None], gradient])
 
     def densities(self, material, value, g):
@@ -190,7 +150,7 @@ class _Family:
         e_trace = np.einsum("imupk,imupk->muk", one, trace[..., two])
         e_rest = np.einsum("imupk,imupk->muk", one, rest[..., two])
         heavy = np.einsum(
-            "mupk,mupk,p->muk", value[..., self.first], value[..., self.second], self.share
+            "mupk,mupk,p->muk", value[..., self.first], value[..., self.second], self.family.share
         )
         mu = material.shear_modulus
         lame = 2 * mu * material.nu / (1 - 2 * material.nu)
@@ -201,9 +161,9 @@ class _Family:
         work, flat = self.work, self.whole.flat
         shape, dshape = reference(ElementQuad1(), work.points)
         segment = 0
-        for part, material, t, dv in work._batches():
+        for part, material, t, dv in work.batches():
             segment = int(flat.segment[part[0]])
-            w = self._weight(t, dv)[:, :, None]
+            w = self.family.weight(t.x[0], dv)[:, :, None]
             value, g = self.fields(t, part)
             e_trace, e_rest, heavy, stress, lame, mu = self.densities(material, value, g)
             mass = self.lam * heavy
@@ -214,7 +174,7 @@ class _Family:
             t_ij = np.einsum("jmupk,imupk->ijmuk", one, s_two, optimize=True)
             t_ij = t_ij + np.einsum("jmupk,imupk->ijmuk", two, s_one, optimize=True)
             r = t.x[0][:, :, None]
-            radial = w * (self.power * e - t_ij[0, 0]) / r
+            radial = w * (self.family.power * e - t_ij[0, 0]) / r
             spread = -t_ij[1:, 1:] * w
             for i in range(2):
                 spread[i, i] += w * e
@@ -237,7 +197,7 @@ class _Family:
         """Add forces of the cells on the functions of their corners."""
         lam = np.array([one[0].eigenvalue for one in self.columns])
         pull = stress[0] / t.x[0][:, :, None, None]
-        pull = pull - material.density * lam * self.share[:, None] * value
+        pull = pull - material.density * lam * self.family.share[:, None] * value
         gradient = np.einsum("bdq,dimq->bimq", t.slope[:4], t.inverse)
         out = np.einsum("bq,mqpk->bmpk", t.value[:4], pull * w[..., None])
         out += np.einsum("bimq,imqpk->bmpk", gradient, stress[1:] * w[..., None])
@@ -257,7 +217,7 @@ class _Family:
             material = self.whole.scene.segments[int(flat.segment[cell[0]])].material
             e_trace, e_rest, heavy, _, lame, mu = self.densities(material, value, g)
             e = lame * e_trace + mu * e_rest - material.density * self.lam * heavy
-            e = e * self._weight(t, dy)[:, :, None]
+            e = e * self.family.weight(t.x[0], dy)[:, :, None]
             for end, hat in enumerate((1 - work.g, work.g)):
                 felt = -sign * self.by * np.einsum("q,mqk->k", hat, e)
                 for k, push in enumerate(self.pushes):
@@ -277,7 +237,7 @@ class _Family:
 
     def ports(self) -> None:
         """Terms of the rows of ports: F' dB u of both states."""
-        if self.waves not in (TORSION, 0, 1):
+        if self.family.waves not in (TORSION, 0, 1):
             return
         if self.rigid:
             self._unload()
@@ -292,7 +252,7 @@ class _Family:
         for p, (station, attachment) in enumerate(self.whole.stations):
             if attachment == "rigid":
                 continue
-            rows = self.work._mean(1, station, attachment)
+            rows = self.work.mean(self.family, station, attachment)
             for k, (state, index, _) in enumerate(self.columns):
                 force = self._own(state.forces, index, p)
                 self.residual[..., k] -= (force @ rows).reshape(-1, 3)
@@ -308,7 +268,7 @@ class _Family:
         force = self._own(state.forces, index, p)
         moved = self._own(self.columns[other][0].motions, index, p)
         if attachment == "rigid":
-            if self.waves == 1:
+            if self.family.waves == 1:
                 self._rigid(p, station, mine, moved, push, by)
             return
         if not force.any():
@@ -316,7 +276,7 @@ class _Family:
         work, flat = self.work, self.whole.flat
         value, r, h, weight, dofs, cells, ends = work.surface(station, attachment)
         u = np.einsum("bq,bec->eqc", value, self.u[dofs][..., other])
-        if self.waves == 1:
+        if self.family.waves == 1:
             ring = 2 * np.pi * weight * r
             area, first, second = ((ring * f).sum() for f in (1.0, h, h * h + r * r / 2))
             gram = np.array([[area, first], [first, second]])
@@ -329,7 +289,7 @@ class _Family:
             by_r = 2 * np.pi * (arm * lift - r * g[1] * along) - np.pi * r**2 * g[1] * moved[1]
             by_h = 2 * np.pi * r * (g[1] * lift - arm * moved[1])
         else:
-            power = 1 if self.waves == 0 else 3
+            power = 1 if self.family.waves == 0 else 3
             g = force[0] / (weight * r**power).sum()
             rest = u[..., -1] - moved[0]
             density, by_r = g * r**power * rest, g * power * r ** (power - 1) * rest
@@ -356,7 +316,7 @@ class _Family:
     def _rigid(self, p, station, mine, moved, push: Push, by) -> None:
         """A rigid seat takes its nodes along as they lie about the port."""
         work, flat = self.work, self.whole.flat
-        cells = work._seat_cells(station)
+        cells = work.seat_cells(station)
         nodes = np.unique(flat.cells[[1, 2]][:, cells])
         corner = {int(n): int(d) for n, d in zip(flat.cells.ravel(), work.dofs[:4].ravel())}
         held = self.residual[[corner[int(n)] for n in nodes]][..., mine]

@@ -1,4 +1,4 @@
-"""Differences between the blocks of a harmonic solid: unknowns, energies, rigid and mean motions.
+"""Families of motion of a harmonic solid: unknowns, energies, rigid and mean motions of each.
 
 In the unknowns of :mod:`solidgear.models.harmonic.blocks`; one set of integrals serves them all.
 """
@@ -6,73 +6,129 @@ In the unknowns of :mod:`solidgear.models.harmonic.blocks`; one set of integrals
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.body import Block
-from solidgear.models.harmonic.blocks import _energy
+if TYPE_CHECKING:
+    from solidgear.scene import Material
+
+#: stands for torsion among numbers of waves
+TORSION = -1
+
+
+def strains(n: int) -> tuple[np.ndarray, ...]:
+    """Strains rr, tt, yy and shears rt, ty, ry of harmonic n, each (3, c): entry [i, p] belongs to
+    function i of unknown p, functions being (phi / r, phi,r, phi,y) and unknowns (u_r, u_y) for
+    n = 0, (p, q, w) otherwise. Shears rt and ty go with ``sin nt``, the others with ``cos nt``.
+    """
+    if n == 0:
+        rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 2))
+        rr[1, 0] = tt[0, 0] = yy[2, 1] = ry[2, 0] = ry[1, 1] = 1.0
+    else:
+        rr, tt, yy, rt, ty, ry = np.zeros((6, 3, 3))
+        rr[1, 0] = rr[1, 1] = 1.0
+        tt[0, 0], tt[0, 1] = 1 - n, 1 + n
+        yy[2, 2] = 1.0
+        rt[0, 0], rt[1, 0], rt[0, 1], rt[1, 1] = 1 - n, -1.0, -(1 + n), 1.0
+        ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n
+        ry[2, 0] = ry[2, 1] = ry[1, 2] = 1.0
+    return rr, tt, yy, rt, ty, ry
 
 
 @dataclass(frozen=True)
 class Family:
-    """One family of motion of a harmonic solid.
+    """One family of motion.
 
     Attributes
     ----------
     waves : int
-        Around the axis; -1 of torsion.
-    count : int
-        Unknowns of a point.
-    energy : tuple of (3, c, 3, c) ndarray
-        See :func:`solidgear.models.harmonic.blocks._energy`.
-    share : (c,) ndarray
-        Of the mass in every unknown.
-    held : tuple of int
-        Unknowns that are zero on the axis.
+        Around the axis; :data:`TORSION` of torsion.
     """
 
     waves: int
-    count: int
-    energy: tuple[np.ndarray, ...]
-    share: np.ndarray
-    held: tuple[int, ...]
 
-    def stiffness(self, material) -> np.ndarray:
-        """(3 c, 3 c) coefficients of the strain energy."""
-        mu = material.shear_modulus
-        lame = 2 * mu * material.nu / (1 - 2 * material.nu)
-        trace, normal, shear = self.energy
-        size = 3 * self.count
-        return (lame * trace + mu * (2 * normal + shear)).reshape(size, size)
+    @property
+    def count(self) -> int:
+        """Unknowns of a point."""
+        return {TORSION: 1, 0: 2}.get(self.waves, 3)
+
+    @property
+    def share(self) -> np.ndarray:
+        """(c,) share of the mass in every unknown."""
+        return np.array([2.0, 2.0, 1.0]) if self.count == 3 else np.ones(self.count)
+
+    @property
+    def held(self) -> tuple[int, ...]:
+        """Unknowns that are zero on the axis."""
+        return {TORSION: (), 0: (0,), 1: (1, 2)}.get(self.waves, (0, 1, 2))
+
+    def free(self, on_axis: np.ndarray) -> np.ndarray:
+        """(n, c) mask of the unknowns that the axis leaves free; given is which points have a share on
+        it.
+        """
+        keep = np.ones((len(on_axis), self.count), bool)
+        for unknown in self.held:
+            keep[on_axis, unknown] = False
+        return keep
+
+    @property
+    def power(self) -> int:
+        """Power of the radius in integrals over the body."""
+        return 3 if self.waves == TORSION else 1
 
     def weight(self, r: np.ndarray, area: np.ndarray) -> np.ndarray:
         """Weights of points in integrals over the body."""
-        if self.waves < 0:
-            return 2 * np.pi * area * r**3
-        return (2 * np.pi if self.waves == 0 else np.pi) * area * r
+        return (np.pi if self.waves > 0 else 2 * np.pi) * area * r**self.power
 
-    def rigid(self, r: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """(..., c, m) rigid motions about the origin at some places."""
+    @property
+    def energy(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Coefficients of twice the strain energy density: three (3, c, 3, c) that multiply lambda, 2
+        mu and mu. Entry [i, p, j, q] belongs to the product of function i of unknown p with function
+        j of unknown q, as in :func:`strains`.
+        """
+        if self.waves == TORSION:
+            shear = np.zeros((3, 1, 3, 1))
+            shear[1, 0, 1, 0] = shear[2, 0, 2, 0] = 1.0
+            return 0 * shear, 0 * shear, shear
+        rr, tt, yy, rt, ty, ry = strains(self.waves)
+
+        def product(*parts: np.ndarray) -> np.ndarray:
+            return np.sum([np.multiply.outer(s, s) for s in parts], axis=0)
+
+        return product(rr + tt + yy), product(rr, tt, yy), product(rt, ty, ry)
+
+    def stiffness(self, material: Material) -> np.ndarray:
+        """(3, c, 3, c) coefficients of twice the strain energy density in a material."""
+        mu = material.shear_modulus
+        lame = 2 * mu * material.nu / (1 - 2 * material.nu)
+        trace, normal, shear = self.energy
+        return lame * trace + mu * (2 * normal + shear)
+
+    def rigid(self, r: np.ndarray, y: np.ndarray, one: np.ndarray | float = 1.0) -> np.ndarray:
+        """(..., c, m) rigid motions about the origin at some places; or their coefficients by those of
+        the places and of a constant.
+        """
         count = 2 if self.waves == 1 else 1 if self.waves < 1 else 0
         out = np.zeros((*r.shape, self.count, count))
         if self.waves == 0:
-            out[..., 1, 0] = 1.0
-        elif self.waves < 0:
-            out[..., 0, 0] = 1.0
+            out[..., 1, 0] = one
+        elif self.waves == TORSION:
+            out[..., 0, 0] = one
         elif self.waves == 1:
-            out[..., 0, 0] = 1.0
+            out[..., 0, 0] = one
             out[..., 0, 1] = y
             out[..., 2, 1] = -r
         return out
 
     def means(self, r: np.ndarray, h: np.ndarray, w: np.ndarray) -> np.ndarray:
         """(..., c, m) densities whose integrals over a surface of length weights ``w`` are its mean
-        motions about the place from which ``h`` counts.
+        motions (least squares) about the place from which ``h`` counts.
         """
         if self.waves == 0:
             out = np.zeros((*r.shape, 2, 1))
             out[..., 1, 0] = w * r / (w * r).sum()
-        elif self.waves < 0:
+        elif self.waves == TORSION:
             out = (w * r**3 / (w * r**3).sum())[..., None, None]
         else:
             raw = np.zeros((*r.shape, 3, 2))
@@ -84,14 +140,7 @@ class Family:
         return out
 
 
-def family_of(block: Block) -> Family:
-    """The family of a block."""
-    if block.name == "torsion":
-        shear = np.zeros((3, 1, 3, 1))
-        shear[1, 0, 1, 0] = shear[2, 0, 2, 0] = 1.0
-        return Family(-1, 1, (0 * shear, 0 * shear, shear), np.ones(1), ())
-    if block.name == "axial":
-        return Family(0, 2, _energy(0), np.ones(2), (0,))
-    waves = 1 if block.name.startswith("bending") else int(block.name.rpartition("_")[2])
-    held = (1, 2) if waves == 1 else (0, 1, 2)
-    return Family(waves, 3, _energy(waves), np.array([2.0, 2.0, 1.0]), held)
+def family_of(block: str) -> Family:
+    """The family of a block, by its name."""
+    known = {"torsion": TORSION, "axial": 0, "bending_z": 1, "bending_x": 1}
+    return Family(known[block] if block in known else int(block.rpartition("_")[2]))

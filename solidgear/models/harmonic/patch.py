@@ -22,8 +22,9 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import tabulate
-from solidgear.models.harmonic.blocks import _CORNERS, _Work
-from solidgear.models.harmonic.body import HarmonicMesh
+from solidgear.models.harmonic.blocks import CORNERS, Work
+from solidgear.models.harmonic.families import Family
+from solidgear.models.harmonic.mesh import HarmonicMesh
 from solidgear.scene import Scene
 
 
@@ -76,9 +77,8 @@ class PatchMotion:
             raise SolidgearError(
                 f"the {body.fidelity} body has no harmonics around its axis; use harmonic"
             )
-        flat, order = geometry.meridian, int(body.mesh["order"])
         self.patch = patch
-        self._work = _Work(scene, geometry.mesh, geometry.element, geometry.dofs, flat, order)
+        self._work = Work(scene, geometry)
         self._mean = self._along()
 
     def _along(self) -> np.ndarray:
@@ -86,9 +86,9 @@ class PatchMotion:
         work, first, last = self._work, self.patch.first, self.patch.last
         inside = self.patch.inside
         cells, side_of, at = (
-            (work.flat.inner, (0, 3), 0.0) if inside else (work.flat.outer, (1, 2), 1.0)
+            (work.flat.inner, [0, 3], 0.0) if inside else (work.flat.outer, [1, 2], 1.0)
         )
-        ends = work.flat.points[1][work.flat.cells[np.ix_(side_of, cells)]]
+        ends = work.flat.points[1][work.flat.cells[side_of][:, cells]]
         out, area = np.zeros(work.n), 0.0
         for cell, (one, other) in zip(cells, ends.T):
             # the share of the cell's side that lies on the patch
@@ -96,7 +96,8 @@ class PatchMotion:
             if high - low < 1e-9:
                 continue
             points = np.vstack([np.full_like(work.g, at), low + (high - low) * work.g])
-            t = tabulate(_CORNERS, work._nodes(np.array([cell])), work.element, points)
+            nodes = work.flat.points[:, work.flat.cells[:, [cell]]]
+            t = tabulate(CORNERS, nodes, work.element, points)
             side = np.linalg.norm(t.tangent[:, :, :, 1], axis=2)[0]
             weight = side * work.gw * (high - low) * t.x[0][0]
             np.add.at(out, work.dofs[:, cell], np.atleast_2d(t.value) @ weight)
@@ -109,20 +110,11 @@ class PatchMotion:
         return out / area
 
     def rows(self, n: int) -> np.ndarray:
-        """Mean radial, tangential and axial motion: of the even part, the odd one, the even one.
-
-        Parameters
-        ----------
-        n : int
-            Waves around the axis, 1 or more.
-
-        Returns
-        -------
-        (3, m) ndarray
-            On the unknowns of the block of n waves (p, q, w).
+        """Mean radial, tangential and axial motion (3, m), of the even part, the odd one, the even one, on
+        the unknowns (p, q, w) of the block of n >= 1 waves.
         """
         half = n * self.patch.arc / 2
         # u_r = p + q, u_t = p - q, u_y = w
         parts = np.array([[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
         every = np.einsum("k,ic->ikc", self._mean * np.sinc(half / np.pi), parts)
-        return every.reshape(3, -1)[:, self._work.free_unknowns(n)]
+        return every.reshape(3, -1)[:, Family(n).free(self._work.geometry.on_axis).ravel()]

@@ -12,6 +12,8 @@ import scipy.sparse as sp
 from solidgear.body.sections import Sections, hats
 from solidgear.kernel.assembly import batches
 from solidgear.kernel.cell_shapes import Shapes
+from solidgear.kernel.lobatto import gauss
+from solidgear.models.harmonic.families import TORSION
 
 
 @dataclass(frozen=True)
@@ -27,11 +29,13 @@ class Part:
     power: int = 0
 
 
-#: Families, by their unknowns: (u_r, u_y) axially, u_t / r in torsion, (p, q, w) in bending with
-#: translation and tilt.
-AXIAL = (Part(1, 2 * np.pi, 1),)
-TORSION = (Part(0, 2 * np.pi, 3),)
-BENDING = (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1))
+#: by waves around, in unknowns (u_r, u_y) axially, u_t / r in torsion, (p, q, w) in bending with
+#: translation and tilt
+PARTS = {
+    0: (Part(1, 2 * np.pi, 1),),
+    TORSION: (Part(0, 2 * np.pi, 3),),
+    1: (Part(0, 2 * np.pi, 1), Part(2, np.pi, 1, -1.0, 1)),
+}
 
 
 def from_cells(
@@ -47,8 +51,7 @@ def from_cells(
     numbered together.
     """
     n = int(dofs.max()) + 1
-    x, w = np.polynomial.legendre.leggauss(order + 2)
-    x, w = (x + 1) / 2, w / 2
+    x, w = gauss(order + 2)
     flat = shapes.flat
     reach = np.ptp(flat.points[1][flat.cells], axis=0)
 

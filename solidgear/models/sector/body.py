@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet2
 
-from solidgear.body import Block, Body, Port
+from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.element_size import rough_cells
 from solidgear.meshing.holes import fine_lines
@@ -27,15 +26,13 @@ from solidgear.meshing.sector import (
     sectors_of,
 )
 from solidgear.models.kinds import CYCLIC
-from solidgear.models.options import SECTOR_OPTIONS, checked
 from solidgear.models.sector.cyclic import cyclic_blocks
 from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
 from solidgear.models.size import Size, of_mesh
-from solidgear.models.solid.block import free_block
+from solidgear.models.solid.block import body_of, free_block, mesh_facts
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
 from solidgear.scene.features.base import SMALLEST
@@ -59,29 +56,16 @@ def sector(
     count: int | None = None,
     half: bool = True,
 ) -> Body:
-    """Free body of a shaft that repeats itself around the axis, from one sector of it.
+    """Free body of a shaft that repeats itself around the axis, from one sector of it; options as in
+    :data:`~solidgear.models.options.SECTOR_OPTIONS`, and `count` sectors around, by default as many
+    as features have in common.
 
     Teeth are resolved, also those that the scene smears for other models, unless the scene resolves
-    other features: then the segment of revolution stands for smeared ones here too.
-
-    Parameters
-    ----------
-    scene : Scene
-        With teeth, splines or bolt circles, and no feature of another kind.
-    size, graded_size, refinement
-        As for tetrahedra of :func:`solidgear.models.solid.body.solid`.
-    material_port : bool
-        The lumped point follows the mean motion of the material between the ends of its span, not
-        that of its surface. Of teeth that converges more quickly.
-    ovalising : tuple of int
-        Further harmonic indices to build, from 2 to less than half the sectors.
-    attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one.
-    count : int, optional
-        Sectors around; by default as many as features have in common.
-    half : bool
-        Solve half a sector where its features are even about a plane: straight teeth, and holes
-        that lie evenly with them. The whole sector then has the same elements and their images.
+    other features: then the segment of revolution stands for smeared ones here too. The mean motion
+    of the material between the ends of its span converges more quickly, of teeth, than that of the
+    surface of the lumped point. Ovalising harmonics are below half the sectors. Half a sector is
+    solved where features are even about a plane, as straight teeth are, and holes that lie evenly
+    with them: the whole sector then has the same elements and their images.
 
     Returns
     -------
@@ -96,8 +80,6 @@ def sector(
         faces; MeshError where meshing fails.
     """
     own = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    given = {**own, "ovalising": ovalising, "attachments": attachments, "half": half}
-    attachments = checked("sector", given, SECTOR_OPTIONS)["attachments"]
     wanted = [*attached_stations(scene.stations, attachments)]
     features = cyclic_features(scene)
     ends = (scene.port.lo, scene.port.hi) if material_port else ()
@@ -124,8 +106,12 @@ def sector(
         return mesh.over_facets(found), held
 
     blocks = blocks_of(scene, wanted, parts_of, ovalising)
-    facts = _facts(made, mesh, features, refinement) | {"pair_tolerance": PAIRS}
-    return _body("sector", scene, wanted, blocks, facts, mesh)
+    facts = _facts(made, mesh, features, refinement) | {
+        "sectors": made.count,
+        "solved_part": "half a sector" if made.half else "a whole sector",
+        "pair_tolerance": PAIRS,
+    }
+    return body_of(scene, wanted, blocks, facts, mesh, "sector")
 
 
 def _solved_part(made: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Block, ...]]]:
@@ -144,10 +130,12 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
     features = cyclic_features(scene)
     mesh, segment, made = whole_mesh(scene, wanted, refinement=refinement, **own)
     solid = _isoparametric(mesh, "tet10", segment)
-    block, ties = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
-    facts = _facts(made, solid, features, refinement) | {"pair_tolerance": 1e-6}
-    del facts["solved_part"]
-    return _body("solid", scene, wanted, (tie_rigidly(block, ties),), facts, solid)
+    block = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
+    facts = _facts(made, solid, features, refinement) | {
+        "sectors": made.count,
+        "pair_tolerance": 1e-6,
+    }
+    return body_of(scene, wanted, (block,), facts, solid)
 
 
 def whole_mesh(
@@ -314,22 +302,9 @@ def rough_sector(scene, wanted, *, refinement: float, count: int | None = None, 
     return rough_cells(scene.outline, fine=fine, **own) / (2 * around)
 
 
-def _body(fidelity, scene, wanted, blocks, facts, drawing) -> Body:
-    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    return Body(fidelity, blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
-
-
 def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> dict[str, Any]:
-    elements = made.mesh.t.shape[1]
     return {
-        "element": "tet10",
-        "elements": elements * made.parts,
-        "nodes": int(mesh.nodes.shape[1]),
-        "sectors": made.count,
-        "solved_part": "half a sector" if made.half else "a whole sector",
+        **mesh_facts(mesh, made.quality, made.parts),
         "refinement": refinement,
-        "volume": made.parts * made.quality.volume,
-        "min_jacobian_ratio": made.quality.min_ratio,
-        "representative_size": float((made.quality.volume / elements) ** (1 / 3)),
         "features": [f.name for f in features],
     }

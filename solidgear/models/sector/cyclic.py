@@ -20,7 +20,7 @@ sector's part of a seat, the motion is ``A_full^{-1} Re(P b' T q)`` with
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ import scipy.sparse as sp
 
 from solidgear.body import Block
 from solidgear.frames import rotation
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.solid.block import rigid_motions
 from solidgear.models.solid.matrices import _matrices, weighed
 from solidgear.models.solid.mesh import SolidMesh
@@ -155,24 +155,12 @@ def cyclic_blocks(
     parts_of: Callable[[Any, str], Any],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
-    """Blocks of a whole part from the mesh of one sector.
+    """Blocks of a whole part from the mesh of one sector: ``cyclic_0`` (components 1, 4), ``cyclic_1``
+    (0, 2, 3, 5), and ``cyclic_h`` without ports for further harmonics from 2 on.
 
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Of the sector.
-    wanted : sequence of (station, attachment)
-    parts_of : callable
-        ``parts_of(station, attachment)``: pieces of the surface, or of the material, whose mean
-        motion is that of the station (:meth:`SolidMesh.over_facets`), and the nodes that a rigid
-        seat holds, None for any other.
-    harmonics : sequence of int
-        Further indices, from 2 on.
-
-    Returns
-    -------
-    tuple of Block
-        ``cyclic_0`` (components 1, 4), ``cyclic_1`` (0, 2, 3, 5), and ``cyclic_h`` without ports.
+    ``parts_of(station, attachment)`` gives pieces of the surface, or of the material, whose mean
+    motion is that of the station (:meth:`SolidMesh.over_facets`), and the nodes that a rigid seat
+    holds, None for any other.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m, n = m.tocsr(), mesh.nodes.shape[1]
@@ -202,20 +190,18 @@ def _block(h, k, m, t, own, node, y, rigid, sector: Sector, seats) -> Block:
     columns = own.conj().T @ (rigid @ back[:, components])
     columns = columns.real if real else _interleaved(columns)
     where = y[node] if real else np.repeat(y[node], 2)
-    rows, ties = [np.zeros((0, stiffness.shape[0]))], []
-    for i, (station, held, gram, loads) in enumerate(seats if components else ()):
+    ports = []
+    for station, held, gram, loads in seats if components else ():
         if held is not None:
             mask = np.isin(node, held)
-            ties.append((i, station.y, mask if real else np.repeat(mask, 2)))
-            rows.append(np.zeros((len(components), stiffness.shape[0])))
+            ports.append(Attached(station.y, held=mask if real else np.repeat(mask, 2)))
             continue
         whole = sum(turn @ gram @ turn.T for turn in turns)[np.ix_(components, components)]
         summed = sum(p * turn for p, turn in zip(phase, turns))[list(components)]
         motion = np.linalg.solve(whole, summed @ (t.T @ loads).T)
         motion = motion.real if real else _interleaved(motion.conj().T).T
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
-        rows.append(motion)
-    expand = spread(t)
+        ports.append(Attached(station.y, motion))
     block = Block(
         f"cyclic_{h}",
         components,
@@ -223,10 +209,7 @@ def _block(h, k, m, t, own, node, y, rigid, sector: Sector, seats) -> Block:
         mass.tocsr(),
         columns,
         where,
-        sp.csr_matrix(np.vstack(rows)),
-        None,
-        False,
-        expand=expand,
+        planar=False,
+        expand=spread(t),
     )
-    tied = tie_rigidly(block, ties)
-    return replace(tied, expand=(expand @ tied.expand).tocsr()) if ties else block
+    return with_ports(block, ports)

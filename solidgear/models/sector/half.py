@@ -21,7 +21,7 @@ mirrors it (Thomas 1979 solves the pair at once).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,12 +30,12 @@ import scipy.sparse as sp
 from solidgear.body import Block
 from solidgear.body.surface import Surface
 from solidgear.frames import rotation
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.meshing.sector import MATCH, SectorMesh
 from solidgear.models.sector.cyclic import ROUNDING
 from solidgear.models.sector.mesh import PieceSolid
 from solidgear.models.solid.block import rigid_motions
-from solidgear.models.solid.drawing import solid_surface
+from solidgear.models.solid.drawing import copied, solid_surface
 from solidgear.models.solid.matrices import _matrices, weighed
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 
@@ -189,16 +189,15 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
     # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
     energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
     stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
-    rows, ties = [np.zeros((0, t.shape[1]))], []
-    for i, (station, held, gram, loads) in enumerate(seats):
+    ports = []
+    for station, held, gram, loads in seats:
         if held is not None:
-            ties.append((i, station.y, np.isin(node, held)))
-            rows.append(np.zeros((len(components), t.shape[1])))
+            ports.append(Attached(station.y, held=np.isin(node, held)))
             continue
         own = gram[np.ix_(components, components)]
         motion = np.linalg.solve(own, energy * (t.T @ _in_parts(loads, components)).T)
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
-        rows.append(motion)
+        ports.append(Attached(station.y, motion))
     block = Block(
         name,
         components,
@@ -206,13 +205,10 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
         mass.tocsr(),
         t.T @ _in_parts(rigid, components) if components else np.zeros((t.shape[1], 0)),
         mesh.nodes[1, node],
-        sp.csr_matrix(np.vstack(rows)),
-        None,
-        False,
+        planar=False,
         expand=t.tocsr(),
     )
-    tied = tie_rigidly(block, ties)
-    return replace(tied, expand=(t @ tied.expand).tocsr()) if ties else block
+    return with_ports(block, ports)
 
 
 def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
@@ -240,33 +236,17 @@ class HalfSectorSolid(PieceSolid):
             )
             parts.append((name, a, b))
         rest = solid_surface(self, None)
-        size, points, displacement = len(rest.points), [], []
+        copies = []
         for k in range(half.count):
             angle = k * half.angle + half.turn
-            turn = rotation(1, angle)[:3, :3].T
-            for side in (1.0, -1.0):
-                local = np.zeros((size, 3))
+            turn = rotation(1, angle)[:3, :3]
+            for side, image in ((1.0, np.eye(3)), (-1.0, np.diag(_MIRROR))):
+                local = np.zeros(rest.points.shape)
                 for name, a, b in parts:
                     of_a, of_b = _phases(name, angle)
                     local += of_a * a + side * of_b * b
-                flip = _MIRROR if side < 0 else np.ones(3)
-                points.append((rest.points * flip) @ turn)
-                displacement.append((local * flip) @ turn)
-        shift = size * np.arange(2 * half.count)[:, None, None]
-
-        def every(cells: np.ndarray) -> np.ndarray:
-            copies = (cells + shift).copy()
-            # images in the mirror turn round
-            copies[1::2] = copies[1::2, :, ::-1]
-            return copies.reshape(-1, cells.shape[1])
-
-        return Surface(
-            np.vstack(points),
-            np.vstack(displacement),
-            every(rest.faces),
-            every(rest.triangles),
-            every(rest.lines),
-        )
+                copies.append((turn @ image, local))
+        return copied(rest, copies)
 
 
 def _real_and_not(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

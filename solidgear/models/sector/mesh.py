@@ -14,7 +14,7 @@ from solidgear.frames import rotation
 from solidgear.meshing.sector import SectorMesh, cut_vertices, matched
 from solidgear.models.sector.cyclic import Sector
 from solidgear.models.solid.block import Facets
-from solidgear.models.solid.drawing import solid_surface
+from solidgear.models.solid.drawing import copied, solid_surface
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.solid.seat_faces import Seats
 
@@ -89,24 +89,15 @@ class SectorSolid(PieceSolid):
             pieces = (vector,) if h == 0 else (vector[::2], vector[1::2])
             parts[h] = [solid_surface(self, piece).displacement for piece in pieces]
         rest = solid_surface(self, None)
-        size, copies = len(rest.points), []
+        copies = []
         for k in range(self.sector.count):
             angle = k * self.sector.angle
-            local = np.zeros((size, 3))
+            local = np.zeros(rest.points.shape)
             for h, fields in parts.items():
                 for factor, field in zip((np.cos(h * angle), -np.sin(h * angle)), fields):
                     local += factor * field
-            turn = rotation(1, angle)[:3, :3].T
-            copies.append((rest.points @ turn, local @ turn))
-        points, displacement = (np.vstack(part) for part in zip(*copies))
-        shift = size * np.arange(self.sector.count)[:, None, None]
-
-        def every(cells):
-            return (cells + shift).reshape(-1, cells.shape[1])
-
-        return Surface(
-            points, displacement, every(rest.faces), every(rest.triangles), every(rest.lines)
-        )
+            copies.append((rotation(1, angle)[:3, :3], local))
+        return copied(rest, copies)
 
 
 def sector_solid(made: SectorMesh) -> SectorSolid:

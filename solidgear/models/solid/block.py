@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.sparse as sp
 
-from solidgear.body import Block, Reflection
+from solidgear.body import Block, Body, Port, Reflection
 from solidgear.errors import SolidgearError
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.meshing.edge_places import edge_places
 from solidgear.models.solid.matrices import _matrices, _mean
 from solidgear.models.solid.mesh import SolidMesh
+from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.patches import point_of
+
+if TYPE_CHECKING:
+    from solidgear.body.surface import Drawing
+    from solidgear.meshing.quality import MeshQuality
 
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
@@ -132,8 +137,9 @@ def free_block(
     *,
     clipped: bool = False,
     materials: Sequence[Any] | None = None,
-) -> tuple[Block, list[tuple[int, tuple[float, float, float], np.ndarray]]]:
-    """The free block of a mesh with the rows of its ports.
+    reflections: tuple[Reflection, ...] = (),
+) -> Block:
+    """The free block of a mesh, of all six components, with its ports.
 
     Parameters
     ----------
@@ -147,13 +153,8 @@ def free_block(
         Facets may reach beyond the ends of their seat, which then end where they are said to.
     materials : sequence of Material, optional
         That the elements name; by default those of the segments.
-
-    Returns
-    -------
-    block : Block
-        All six components.
-    ties : list of (port index, point, mask)
-        Rigid seats, for :func:`solidgear.kernel.attachment.tie_rigidly`.
+    reflections : tuple of (partner, sign)
+        From :func:`mirrored`.
 
     Raises
     ------
@@ -162,8 +163,8 @@ def free_block(
     """
     k, m = _matrices(mesh, materials or [segment.material for segment in scene.segments])
     n = mesh.nodes.shape[1]
-    rows, ties = [], []
-    for i, (station, attachment) in enumerate(wanted):
+    ports = []
+    for station, attachment in wanted:
         facets = facets_of(station, attachment)
         if not len(facets):
             where = "section" if attachment == "section" else "seat"
@@ -177,10 +178,43 @@ def free_block(
             if within is not None:
                 y, hair = mesh.nodes[1], 1e-7 * scene.length
                 mask[(y < within[0] - hair) | (y > within[1] + hair)] = False
-            ties.append((i, place, mask.ravel()))
-            rows.append(sp.csr_matrix((6, 3 * n)))
+            ports.append(Attached(place, held=mask.ravel()))
         else:
-            rows.append(_mean(mesh, facets, place, n, within=within))
-    rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
-    ports = sp.vstack(rows).tocsr() if rows else sp.csr_matrix((0, 3 * n))
-    return Block("full", tuple(range(6)), k, m, rigid, y, ports, None, False), ties
+            ports.append(Attached(place, _mean(mesh, facets, place, n, within=within)))
+    block = Block(
+        "full",
+        tuple(range(6)),
+        k,
+        m,
+        rigid_motions(mesh.nodes),
+        np.repeat(mesh.nodes[1], 3),
+        planar=False,
+        reflections=reflections,
+    )
+    return with_ports(block, ports)
+
+
+def body_of(
+    scene: Any,
+    wanted: Sequence[tuple[Any, str]],
+    blocks: tuple[Block, ...],
+    facts: dict[str, Any],
+    drawing: Drawing,
+    fidelity: str = "solid",
+) -> Body:
+    """The body of some blocks of a volume mesh, with their stations."""
+    points = [point_of(station) for station, _ in wanted]
+    ports = tuple(Port(s.name, y, a, x, z) for (s, a), (x, y, z) in zip(wanted, points))
+    return Body(fidelity, blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
+
+
+def mesh_facts(solid: SolidMesh, quality: MeshQuality, copies: int = 1) -> dict[str, Any]:
+    """Facts of a mesh of which so many copies make the body, with the quality of one."""
+    return {
+        "element": solid.name,
+        "elements": quality.n_elements * copies,
+        "nodes": int(solid.nodes.shape[1]),
+        "volume": copies * quality.volume,
+        "min_jacobian_ratio": quality.min_ratio,
+        "representative_size": float((quality.volume / quality.n_elements) ** (1 / 3)),
+    }

@@ -9,23 +9,21 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from solidgear.body import Body, Port, Reflection
+from solidgear.body import Body, Reflection
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.hexahedra import hexahedra
 from solidgear.meshing.quality import check_mesh
 from solidgear.meshing.tetrahedra import tetrahedra
 from solidgear.models.kinds import BODIES, CYCLIC, PARTS
-from solidgear.models.options import SOLID_OPTIONS, checked
-from solidgear.models.solid.block import free_block, mirrored, seat_facets
+from solidgear.models.options import thick_enough
+from solidgear.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.solid.part import part_body
 from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.models.solid.rectangular import block_body
-from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.shaft import named, resolved, without_axis
@@ -48,49 +46,21 @@ def solid(
     half: bool = True,
     coarser: int = 0,
 ) -> Body:
-    """Free 3D solid of a scene.
+    """Free 3D solid of a scene: one block with all six components, or, of a part with features and a
+    mirror plane, two, of the motions that are symmetric about it and of the others; options as in
+    :data:`~solidgear.models.options.SOLID_OPTIONS`.
 
-    Parameters
-    ----------
-    scene : Scene
-    element : str
-        One of :data:`solidgear.elements.ELEMENTS`: hexahedra on a structured O-grid, tetrahedra from gmsh.
-    relative_size : float
-        Size of hexahedra away from singular edges in local outer radii.
-    size : float, optional
-        Element size away from singular edges, m; by default ``relative_size`` (hexahedra) or a
-        third of the largest outer radius (tetrahedra).
-    layers, edge_layers, radial_layers, ratio
-        Geometric grading of hexahedra: layers towards shoulders and towards seat ends along the shaft, towards
-        surfaces across it, and the size of each relative to the last.  The defaults give 1.4e-3 in
-        stiffness at 37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k
-        come of 1, 2 and 3 layers of both kinds, none at seat ends and 8 cells around.
-    around : int
-        Elements around the circumference (tetrahedra: at least 16).
-    graded_size : float, optional
-        Size of tetrahedra at shoulders and seat ends, m; a quarter of ``size`` by default, ``size``
-        for a uniform mesh.
-    refinement : float
-        Multiplies the number of cells in every direction, for convergence studies.
-    attachments : tuple of str, optional
-        Attachments to build at every station, the first being the default one; by default what the
-        scene says.
-    half : bool
-        For a scene with features that share a mirror plane: solve two half models. A part from a
-        file is solved whole.
-    coarser : int
-        Of a part with several mesh files, how many come after the one that is solved.
-
-    Returns
-    -------
-    Body
-        One block with all six components; of a part with features and a mirror plane two, of the
-        motions that are symmetric about it and of the others.
+    Hexahedra are as large away from singular edges as ``relative_size`` says, tetrahedra a third of
+    the largest outer radius, unless ``size`` is given, and at shoulders and seat ends a quarter of
+    that; there are at least 16 of these around. The defaults of hexahedra give 1.4e-3 in stiffness at
+    37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k come of 1, 2 and 3
+    layers of both kinds, none at seat ends and 8 cells around. A part from a file is solved whole.
 
     Raises
     ------
     SolidgearError
-        Unknown element or attachment; MeshError where meshing fails or an element is inverted.
+        Layers thinner than digits, or cells around that do not fit; MeshError where meshing fails or
+        an element is inverted.
     """
     grading = {
         "relative_size": relative_size,
@@ -102,11 +72,7 @@ def solid(
         "around": around,
         "refinement": refinement,
     }
-    attachments = checked(
-        "solid",
-        {"element": element, **grading, "graded_size": graded_size, "attachments": attachments},
-        SOLID_OPTIONS,
-    )["attachments"]
+    thick_enough("solid", grading)
     if element.startswith("hex") and around % 4:
         raise SolidgearError(
             f"solid: around = {around} does not fit an O-grid; use a multiple of 4"
@@ -144,29 +110,14 @@ def solid(
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)
     facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
-    block, ties = free_block(body_mesh, scene, wanted, facets)
-    block = replace(block, reflections=reflections)
+    block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
     facts = {
-        "element": element,
-        "elements": int(body_mesh.dofs.shape[1]),
-        "nodes": int(body_mesh.nodes.shape[1]),
+        **mesh_facts(body_mesh, quality),
         "refinement": refinement,
-        "volume": quality.volume,
-        "min_jacobian_ratio": quality.min_ratio,
-        "representative_size": float((quality.volume / body_mesh.dofs.shape[1]) ** (1 / 3)),
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,
     }
-    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    return Body(
-        "solid",
-        (tie_rigidly(block, ties),),
-        ports,
-        elastic_scale(scene),
-        scene.length,
-        facts,
-        body_mesh,
-    )
+    return body_of(scene, wanted, (block,), facts, body_mesh)
 
 
 def _hexes(scene, wanted, grading):

@@ -51,6 +51,22 @@ def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:
     return Surface(rest.points, moved, rest.quads, rest.triangles, rest.lines)
 
 
+def copied(rest: Surface, copies: Iterable[tuple[np.ndarray, np.ndarray]]) -> Surface:
+    """Copies of a surface by orthogonal maps (3, 3), each with the displacements (n, 3) of its points
+    before it is mapped; faces of an image in a mirror turn round.
+    """
+    points, moved, faces, triangles, lines = [], [], [], [], []
+    for k, (to, displacement) in enumerate(copies):
+        around = slice(None, None, 1 if np.linalg.det(to) > 0 else -1)
+        shift = k * len(rest.points)
+        points.append(rest.points @ to.T)
+        moved.append(displacement @ to.T)
+        faces.append(shift + rest.faces[:, around])
+        triangles.append(shift + rest.triangles[:, around])
+        lines.append(shift + rest.lines)
+    return Surface(*(np.vstack(every) for every in (points, moved, faces, triangles, lines)))
+
+
 def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray) -> np.ndarray:
     """A field of the nodes at all points of all faces."""
     return np.concatenate(
@@ -85,9 +101,7 @@ def outline(geometry: SolidMesh) -> Outline:
     b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
     parts, keys, faces, lines, done = [], [], [], [], 0
     for place, elements in geometry.local_facets(geometry.boundary):
-        corner = refdom.p[:, refdom.facets[place]]
-        s, t = corner[:, 1] - corner[:, 0], corner[:, -1] - corner[:, 0]
-        points = corner[:, :1] + np.outer(s, grid[:, 0] / m) + np.outer(t, grid[:, 1] / m)
+        points, s, t = geometry.on_facet(place, grid.T / m)
         parts.append((reference(element, points)[0], dofs[:, elements]))
         serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
         done += serial.size
@@ -100,7 +114,8 @@ def outline(geometry: SolidMesh) -> Outline:
             [np.minimum(va, vb), np.maximum(va, vb), np.where(va <= vb, k, m - k)], axis=-1
         )
         keys.append(key.reshape(-1, 3))
-        outward = np.cross(s, t) @ (corner.mean(axis=1) - refdom.p.mean(axis=1)) > 0
+        middle = refdom.p[:, refdom.facets[place]].mean(axis=1)
+        outward = np.cross(s, t) @ (middle - refdom.p.mean(axis=1)) > 0
         faces.append(serial[:, cells if outward else cells[:, ::-1]].reshape(-1, corners))
         lines.append(serial[:, np.column_stack([rim, np.roll(rim, -1)])].reshape(-1, 2))
     _, first, number = np.unique(

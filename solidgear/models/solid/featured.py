@@ -9,18 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.body import Block, Body, Port
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.body import Block, Body
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
 from solidgear.meshing.quality import check_mesh
 from solidgear.models.kinds import CYCLIC
-from solidgear.models.solid.block import Facets, free_block
+from solidgear.models.solid.block import Facets, body_of, free_block, mesh_facts
 from solidgear.models.solid.halves import HalfDrawing, half_blocks
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.models.solid.plan import tetrahedra_of
 from solidgear.models.solid.seat_faces import Seats
-from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.shaft import resolved
 
 
@@ -52,29 +50,21 @@ def featured_body(
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
     facets = _facets(solid, scene)
     if made.plane is None:
-        block, ties = free_block(solid, scene, wanted, facets)
-        blocks: tuple[Block, ...] = (tie_rigidly(block, ties),)
+        blocks: tuple[Block, ...] = (free_block(solid, scene, wanted, facets),)
         drawing: SolidMesh | HalfDrawing = solid
     else:
         blocks = half_blocks(solid, scene, wanted, facets, made.plane)
         drawing = HalfDrawing(solid, made.plane)
-    share = 1 if made.plane is None else 2
     facts = {
-        "element": "tet10",
-        "elements": int(solid.dofs.shape[1]) * share,
-        "nodes": int(solid.nodes.shape[1]),
+        **mesh_facts(solid, quality, copies=1 if made.plane is None else 2),
         "refinement": refinement,
-        "volume": share * quality.volume,
-        "min_jacobian_ratio": quality.min_ratio,
-        "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
         "features": [f.name for f in resolved(scene)],
         "mirror_plane": "none" if made.plane is None else f"{'xyz'[made.plane]} = 0",
         # nothing promises twins: what is split is split
         "round": False,
         "pair_tolerance": 0.0,
     }
-    ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    return Body("solid", blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
+    return body_of(scene, wanted, blocks, facts, drawing)
 
 
 def _facets(solid: SolidMesh, scene: Any) -> Facets:

@@ -16,8 +16,9 @@ import scipy.sparse as sp
 from solidgear.body import Block
 from solidgear.body.surface import Surface, Volume
 from solidgear.errors import SolidgearError
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.kernel.attachment import Attached, with_ports
 from solidgear.models.solid.block import Facets, rigid_motions
+from solidgear.models.solid.drawing import copied
 from solidgear.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.models.solid.mesh import SolidMesh
 
@@ -54,15 +55,14 @@ def half_blocks(
     blocks = []
     for (name, own), held in zip(PARTS[axis], (across, ~across)):
         free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
-        rows, ties = [], []
-        for i, ((station, _), found, seat) in enumerate(zip(wanted, facets, seats)):
+        ports = []
+        for (station, _), found, seat in zip(wanted, facets, seats):
             if seat is None:
                 mask = np.zeros((n, 3), bool)
                 mask[mesh.facet_unknowns(found)] = True
-                ties.append((i, station.y, mask.ravel()[free]))
-                rows.append(sp.csr_matrix((len(own), len(free))))
+                ports.append(Attached(station.y, held=mask.ravel()[free]))
             else:
-                rows.append(rigid_part(*seat, own)[:, free])
+                ports.append(Attached(station.y, rigid_part(*seat, own)[:, free]))
         block = Block(
             name,
             own,
@@ -70,22 +70,11 @@ def half_blocks(
             (2 * m[free][:, free]).tocsr(),
             rigid[free][:, list(own)],
             y[free],
-            sp.vstack(rows).tocsr(),
-            None,
-            False,
-            expand=_into(3 * n, free),
+            planar=False,
+            expand=sp.identity(3 * n, format="csc")[:, free].tocsr(),
         )
-        tied = tie_rigidly(block, ties)
-        if ties:
-            assert tied.expand is not None  # of the ties
-            object.__setattr__(tied, "expand", (block.expand @ tied.expand).tocsr())
-        blocks.append(tied)
+        blocks.append(with_ports(block, ports))
     return blocks[0], blocks[1]
-
-
-def _into(size: int, free: np.ndarray) -> sp.csr_matrix:
-    ones = np.ones(len(free))
-    return sp.csr_matrix((ones, (free, np.arange(len(free)))), shape=(size, len(free)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,14 +94,8 @@ class HalfDrawing:
         """Both halves, the second as a mirror image of the first."""
         first, second = self._halves(moved)
         here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
-        count = len(here.points)
-        return Surface(
-            np.vstack([here.points, image.points * self._flip]),
-            np.vstack([here.displacement, image.displacement * self._flip]),
-            np.vstack([here.faces, count + image.faces[:, ::-1]]),
-            np.vstack([here.triangles, count + image.triangles[:, ::-1]]),
-            np.vstack([here.lines, count + image.lines]),
-        )
+        mirror = np.diag(self._flip)
+        return copied(here, [(np.eye(3), here.displacement), (mirror, image.displacement)])
 
     def _halves(self, moved: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Unknowns of the half, and of the other one before it is turned over."""

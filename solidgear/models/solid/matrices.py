@@ -14,6 +14,7 @@ from solidgear.body.mass import ScalarMass
 from solidgear.elements import ELEMENTS
 from solidgear.frames import cross_matrix, on_axis
 from solidgear.kernel.assembly import Pattern, Tabulation, batches, inverted, straight
+from solidgear.kernel.lobatto import gauss_box
 from solidgear.models.solid.mesh import SolidMesh
 
 if TYPE_CHECKING:
@@ -111,7 +112,4 @@ def _cell_rule(name):
     degree = ELEMENTS[name].degree
     if name.startswith("tet"):
         return get_quadrature(RefTet, degree)  # the rules in use have positive weights only
-    x, w = np.polynomial.legendre.leggauss((degree + 1) // 2)
-    x, w = (x + 1) / 2, w / 2
-    grid = np.array([g.ravel() for g in np.meshgrid(x, x, x, indexing="ij")])
-    return grid, np.einsum("i,j,k->ijk", w, w, w).ravel()
+    return gauss_box((degree + 1) // 2, 3)

@@ -16,6 +16,7 @@ from skfem.refdom import RefTet, RefTri
 from solidgear.body.surface import Surface, Volume
 from solidgear.elements import ELEMENTS
 from solidgear.kernel.assembly import reference, tabulate, unknowns
+from solidgear.kernel.lobatto import gauss_box
 from solidgear.models.solid.drawing import outline, solid_surface
 
 if TYPE_CHECKING:
@@ -86,6 +87,14 @@ class SolidMesh:
         for p in np.unique(place):
             yield p, elements[place == p]
 
+    def on_facet(self, place: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Reference points of an element by two coordinates (2, q) in one of its facets, and the sides
+        of the facet along which these run.
+        """
+        corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
+        s, t = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
+        return corners[:, :1] + np.outer(s, at[0]) + np.outer(t, at[1]), s, t
+
     def tabulate(self, points, elements):
         """Tabulate basis and geometry on some elements."""
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
@@ -107,10 +116,7 @@ class SolidMesh:
             _facet_rule(self.mesh.refdom) if within is None else _pieces(self.mesh.refdom)
         )
         for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            s = corners[:, 1] - corners[:, 0]
-            t = corners[:, -1] - corners[:, 0]
-            points = corners[:, :1] + np.outer(s, ref[0]) + np.outer(t, ref[1])
+            points, s, t = self.on_facet(place, ref)
             tab = self.tabulate(points, elements)
             area = np.linalg.norm(np.cross(tab.tangent @ s, tab.tangent @ t), axis=2) * weights
             if within is not None:
@@ -134,12 +140,7 @@ class SolidMesh:
         ref, _ = _facet_rule(self.mesh.refdom)
         found = []
         for place, elements in self.local_facets(facets):
-            corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
-            points = (
-                corners[:, :1]
-                + np.outer(corners[:, 1] - corners[:, 0], ref[0])
-                + np.outer(corners[:, -1] - corners[:, 0], ref[1])
-            )
+            points, _, _ = self.on_facet(place, ref)
             alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-9
             found.append(self.dofs[alive][:, elements].ravel())
         return np.unique(np.concatenate(found))
@@ -182,9 +183,7 @@ def _facet_rule(refdom):
     """Quadrature on a facet in two local coordinates."""
     if refdom is RefTet:
         return get_quadrature(RefTri, 6)
-    x, w = np.polynomial.legendre.leggauss(4)
-    x, w = (x + 1) / 2, w / 2
-    return np.array([g.ravel() for g in np.meshgrid(x, x, indexing="ij")]), np.outer(w, w).ravel()
+    return gauss_box(4, 2)
 
 
 def _pieces(refdom):

@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.body import Body, Port
-from solidgear.kernel.attachment import tie_rigidly
+from solidgear.body import Body
 from solidgear.meshing.quality import check_mesh
-from solidgear.models.solid.block import free_block
+from solidgear.models.solid.block import body_of, free_block, mesh_facts
 from solidgear.models.solid.mesh import _isoparametric
 from solidgear.models.solid.seat_faces import Seats
-from solidgear.models.spectrum import elastic_scale
-from solidgear.scene.patches import point_of
 
 if TYPE_CHECKING:
     from skfem import Mesh
@@ -89,26 +86,11 @@ def solid_body(
         patch = getattr(station, "patch", None)
         return seats(station, attachment) if patch is None else (patches or {})[patch.name]
 
-    block, ties = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
+    block = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
     own = {
-        "element": element,
-        "elements": int(solid.dofs.shape[1]),
-        "nodes": int(solid.nodes.shape[1]),
-        "volume": quality.volume,
-        "min_jacobian_ratio": quality.min_ratio,
-        "representative_size": float((quality.volume / solid.dofs.shape[1]) ** (1 / 3)),
+        **mesh_facts(solid, quality),
         # nothing promises twins: what is split is split
         "round": False,
         "pair_tolerance": 0.0,
     }
-    points = [point_of(s) for s, _ in wanted]
-    ports = tuple(Port(s.name, y, a, x, z) for (s, a), (x, y, z) in zip(wanted, points))
-    return Body(
-        "solid",
-        (tie_rigidly(block, ties),),
-        ports,
-        elastic_scale(shaft),
-        shaft.length,
-        {**own, **(facts or {})},
-        solid,
-    )
+    return body_of(shaft, wanted, (block,), {**own, **(facts or {})}, solid)

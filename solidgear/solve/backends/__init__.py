@@ -38,16 +38,7 @@ INSTALL = {
 
 @lru_cache
 def missing(name: str) -> str:
-    """True where a back end can be used.
-
-    Parameters
-    ----------
-    name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
-
-    Returns
-    -------
-    str
-        Empty if it can, else the reason why not.
+    """Empty if a back end can be used, else the reason why not.
 
     Examples
     --------

@@ -10,16 +10,8 @@ from solidgear.solve.backends.memory_law import law
 
 
 class Cholmod:
-    """SuiteSparse CHOLMOD through scikit-sparse: METIS ordering, supernodal LL'.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Symmetric, sorted rows.
-    definite : bool
-        Positive definite; it takes no other.
-    planar : bool
-        Whether it comes from a 1D or 2D mesh, for the estimate of memory.
+    """SuiteSparse CHOLMOD through scikit-sparse: METIS ordering, supernodal LL'; of positive
+    definite matrices alone.
     """
 
     name = "cholmod"

@@ -19,21 +19,8 @@ PLANAR = 57.0
 
 
 def law(name: str, unknowns: float, entries: float, planar: bool = False) -> float:
-    """Peak memory of factoring a matrix, about.
-
-    Parameters
-    ----------
-    name : {'pardiso', 'cholmod', 'mumps', 'superlu'}
-        Back end.
-    unknowns, entries : float
-        Rows of the matrix, and what is in them, both triangles.
-    planar : bool
-        Whether it comes from a 1D or 2D mesh.
-
-    Returns
-    -------
-    float
-        MB.
+    """Peak memory of factoring a matrix by a back end, about, MB: by its rows, the entries of both
+    triangles, and whether it comes from a 1D or 2D mesh.
 
     Examples
     --------

@@ -9,19 +9,10 @@ from solidgear.solve.backends.matrix import FactorError, upper_triangle
 
 
 class Mumps:
-    """MUMPS through python-mumps, LDL'.
+    """MUMPS through python-mumps, LDL'; pivots of a positive definite matrix stay on the diagonal.
 
     The ordering is left to MUMPS.  PORD was a quarter faster on solids of revolution, but ends the
     process on some small dense matrices.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Symmetric, sorted rows.
-    definite : bool
-        Whether it is positive definite: then pivots stay on the diagonal.
-    out_of_core : bool
-        Keep the factor in files.
     """
 
     name = "mumps"

@@ -85,20 +85,10 @@ KEPT = 16.0
 
 class Pardiso:
     """MKL PARDISO called directly: pypardiso copies the indices at every call, hashes the matrix at
-    every solve and refines twice.
+    every solve and refines twice. LL' of a positive definite matrix, else LDL' with Bunch-Kaufman
+    pivots; out of core the factor is kept in a folder that goes with it.
 
     Parameter numbers and error codes: oneMKL developer reference, "pardiso iparm Parameter".
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Symmetric, sorted rows.
-    definite : bool
-        Whether it is positive definite: LL', else LDL' with Bunch-Kaufman pivots.
-    single : bool
-        Factor and solve with numbers of four bytes.
-    out_of_core : bool
-        Keep the factor in files, in a folder that goes with it.
 
     Raises
     ------

@@ -19,19 +19,7 @@ SINGLE_SHARE = 0.67
 
 
 class SuperLU:
-    """SciPy's SuperLU in symmetric mode; pivots stay on the diagonal unless one vanishes.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Symmetric, sorted rows.
-    definite : bool
-        Whether it must be positive definite.
-    planar : bool
-        Whether it comes from a 1D or 2D mesh, for the estimate of memory.
-    single : bool
-        Factor and solve with numbers of four bytes.
-    """
+    """SciPy's SuperLU in symmetric mode; pivots stay on the diagonal unless one vanishes."""
 
     name = "superlu"
 

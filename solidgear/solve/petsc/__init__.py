@@ -27,13 +27,13 @@ from solidgear.body.mass import ScalarMass
 from solidgear.factoring import Factoring
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.backends.memory_law import MB, law
+from solidgear.solve.choice import FORCED
 from solidgear.solve.factor import Planned
 from solidgear.solve.factored import Factor
 from solidgear.solve.schur import bordered, definite_corner
 
 WORKER = Path(__file__).parent / "worker.py"
 INSTALL = "apt-get install python3-petsc4py-real python3-slepc4py-real openmpi-bin"
-FORCED = "asked for"
 PROBE = "import worker; worker.libraries()"
 
 
@@ -219,12 +219,8 @@ def needed_mb(unknowns: float, entries: float, factoring: Factoring) -> float:
 
 
 def plan_on_ranks(block: Block, matrix: sp.csr_matrix, factoring: Factoring) -> Planned:
-    """The factor of a block by an engine of its own, which has no analysis apart.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Its shifted stiffness.
+    """The factor of the shifted stiffness of a block by an engine of its own, which has no
+    analysis apart.
     """
     name = "mumps" if factoring.engine == "petsc" else "gamg-cg"
     nodal = isinstance(block.mass, ScalarMass)

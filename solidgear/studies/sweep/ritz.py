@@ -39,8 +39,8 @@ import scipy.linalg as sla
 from solidgear.body import Supports, component_rows
 from solidgear.body.mode_names import numbered
 from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
+from solidgear.solve.coupling import decoupled, groups
 from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
-from solidgear.solve.supported import decoupled, groups
 from solidgear.springs import root_of
 
 #: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings

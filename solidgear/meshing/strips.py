@@ -1,24 +1,17 @@
-"""Layout of the mesh lines of a shaft with fillets or chamfers: rows and rings of their blocks among
-those of the sharp shaft.
-"""
+"""Rings of the blocks at fillets and chamfers among those of the sharp shaft: strips along bands."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.meshing.bands import Bands, first_of_run, radial_bands
-from solidgear.meshing.blocks import DEPTH, Joint, joints_of, lines_with_blocks, rounded_layers
-from solidgear.meshing.grading import Grading, joint_length
-from solidgear.meshing.marks import Mark, owners_of
-from solidgear.meshing.rings import Radii, Run, needs_of, ring_lines, runs_of
+from solidgear.meshing.bands import Bands, first_of_run
+from solidgear.meshing.blocks import DEPTH, Joint
+from solidgear.meshing.rings import Radii, Run
 from solidgear.scene.blends import Corner
 from solidgear.scene.outline import SURFACES, Outline, Surface
-
-if TYPE_CHECKING:
-    from solidgear.scene.shaft import Shaft
 
 #: how much of a band a strip takes at most
 MOST_OF_BAND = 0.3
@@ -39,41 +32,7 @@ Strips = dict[tuple[int, int, Surface], Strip]
 SIDES: tuple[Surface, Surface] = (SURFACES[1], SURFACES[0])
 
 
-def rounded_layout(
-    scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None, marks: Sequence[Mark]
-) -> tuple:
-    """Parts of a :class:`solidgear.meshing.layout.Layout`, of a shaft with fillets or chamfers, by
-    the marks of the shaft without them; SolidgearError if a seat ends among the cells of a block.
-    """
-    segments, outline = scene.segments, scene.outline
-    joints = joints_of(scene, grading, marks)
-    y = lines_with_blocks(scene, grading, marks, joints)
-    for joint in joints:
-        joint.line = int(np.abs(y - joint.y).argmin())
-    bands, left, right = radial_bands(outline)
-    corners = {}
-    for k in range(1, len(segments)):
-        reach = grading.radial_reach * joint_length(segments, k - 1)
-        for surface in SURFACES:
-            corners[k, surface] = rounded_layers(
-                outline, k, [surface], grading.across, reach, grading.ratio
-            )
-    needs = needs_of(scene, grading, attachments, bands, corners)
-    strips: Strips = {}
-    fractions = {}
-    for run in runs_of(bands, left, right):
-        thickness = max(run.thicknesses)
-        for surface in SIDES:
-            strip = _strip_of(joints, bands, run, surface)
-            if strip:
-                strips[(*run.key, surface)] = strip
-                thickness -= strip.depth
-        fractions[run.key] = ring_lines(segments, grading, run, needs, thickness)
-    split = _split_bands(outline, bands, left, right, strips, fractions)
-    return y, owners_of(y, segments), *split, tuple(joints)
-
-
-def _strip_of(joints: Sequence[Joint], bands: Bands, run: Run, surface: Surface) -> Strip | None:
+def strip_of(joints: Sequence[Joint], bands: Bands, run: Run, surface: Surface) -> Strip | None:
     """The strip along one side of a band; None where no fillet or chamfer lies on it."""
     wanted = [
         (DEPTH * c.radial if c.root else c.radial, joint.cells(c))
@@ -95,7 +54,7 @@ def _band_at(bands: Bands, segment: int, surface: Surface) -> int:
     return lowest if surface == "bore" else end - 1
 
 
-def _split_bands(
+def split_bands(
     outline: Outline,
     bands: Bands,
     left: Radii,
