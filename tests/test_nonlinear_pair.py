@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from solidgear.errors import SolidgearError
+from solidgear.nonlinear.apart import doubled
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.doubling import doubled
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import Run, settled, sweep
 from solidgear.nonlinear.run_up import run_up

@@ -986,8 +986,8 @@ MUTATIONS = (
     ),
     Mutation(
         "period doubling: the excitation of one period is that of two",
-        "solidgear/nonlinear/doubling.py",
-        "_from",
+        "solidgear/nonlinear/apart.py",
+        "_doubled",
         "begin.balance.remainder.slower(2)",
         "begin.balance.remainder.slower(1)",
         "tests/test_nonlinear_pair.py"
