@@ -314,15 +314,9 @@ def over_force(
         mean = found.remainder.mean * (force / found.teeth.mean_force)
         ends = found.branch.omega[0], found.branch.omega[-1]
         branch = follow(replace(found.remainder, mean=mean), *map(float, ends), step=STEP)
-        jumps = tuple(
-            (
-                float(branch.points[k].omega / (2 * np.pi)),
-                bool(branch.points[k - 1].tangent[-1] > 0),
-            )
-            for k in branch.turning
-        )
-        largest = max(float(np.ptp(point.forces()[:, 0])) / 2 for point in branch.points)
-        out.append(AtForce(force, jumps, largest))
+        own = replace(found, branch=branch)
+        jumps = tuple((jump.frequency_hz, jump.rising) for jump in own.jumps)
+        out.append(AtForce(force, jumps, float(own.force.max())))
     return tuple(out)
 
 
