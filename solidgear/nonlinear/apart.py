@@ -310,21 +310,10 @@ def _seeds(
 
 def _arrived(balance: Balance, motion: np.ndarray, omega: float) -> np.ndarray | None:
     """Place at which a few steps of Newton's method arrive; None where they do not."""
-    far = FAR * np.abs(motion).max()
-    for _ in range(STEPS):
-        left = balance.residual(motion, omega)
-        if not left.held:
-            return None
-        try:
-            change = np.linalg.solve(left.jacobian, -left.value)
-        except np.linalg.LinAlgError:
-            return None
-        motion = motion + change
-        if not np.abs(motion).max() < far:
-            return None
-        if np.abs(change).max() <= CLOSE * np.abs(motion).max():
-            return motion
-    return None
+    try:
+        return balance.solve(motion, omega, steps=STEPS, close=CLOSE, far=FAR)
+    except (SolidgearError, np.linalg.LinAlgError):
+        return None
 
 
 def _across(branch: Branch, omega: float, balance: Balance) -> list[np.ndarray]:

@@ -162,8 +162,6 @@ def backlash_model(
 
     Parameters
     ----------
-    models : sequence of str
-        One for each shaft, or one for all.
     highest_hz : float
         Modes above it give way like springs.
     """
@@ -252,8 +250,6 @@ def with_backlash(
 
     Parameters
     ----------
-    models : sequence of str
-        One for each shaft, or one for all.
     highest_hz, lowest_hz : float, optional
         Of the driven mesh; the highest is that of the file by default, the lowest a hundredth of it.
     told : callable, optional

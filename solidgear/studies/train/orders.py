@@ -101,8 +101,6 @@ def order_map(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz, mesh

@@ -111,8 +111,6 @@ class Drive:
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     damping : {'hysteretic', 'viscous', 'modal', 'literal'}
     matched_hz : float
         Of viscous losses, Hz.
@@ -346,8 +344,6 @@ def respond(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz, forces, mesh
