@@ -156,7 +156,7 @@ def order_map(
         at = np.array([mode.frequency_hz for mode in met])
         force = np.abs(drive.mesh(at, k + 1)[1]) if line.force is not None else [None] * len(met)
         for mode, size in zip(met, force):
-            rpm = 60 * mode.frequency_hz / line.per_turn
-            size = size if size is None else float(size)
-            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, rpm, size))
+            own = None if size is None else float(size)
+            at_rpm = 60 * mode.frequency_hz / line.per_turn
+            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, at_rpm, own))
     return OrderMap(highest, top, teeth, tuple(lines), elastic, tuple(crossings))
