@@ -50,8 +50,6 @@ class Steady:
         That it took.
     stretch, force : (t, m) ndarray
         Over its cycle, at equal intervals; forces with those of dampers.
-    section : (p, 2) ndarray
-        First stretch and its rate at the beginning of each of the last periods (Poincare).
     state : (2r,) ndarray
         At its end, where another speed can begin.
     """
@@ -61,7 +59,6 @@ class Steady:
     periods: int
     stretch: np.ndarray
     force: np.ndarray
-    section: np.ndarray
     state: np.ndarray
 
     @property
@@ -313,13 +310,12 @@ def settled(
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
     rates: list[np.ndarray] = []
-    section: list[tuple[float, float]] = []
     change: dict[int, list[float]] = {c: [] for c in range(1, LONGEST_CYCLE + 1)}
-    cycle = 0
-    for _ in range(most):
+    cycle = periods = 0
+    while not cycle and periods < most:
+        periods += 1
         modal, s, v = run.period(modal)
         waves, rates = [*waves[-LONGEST_CYCLE:], s], [*rates[-LONGEST_CYCLE:], v]
-        section.append((float(s[0, 0]), float(v[0, 0])))
         swing = float(np.ptp(s, axis=0).max()) or 1.0
         for c, own in change.items():
             if len(waves) > c:
@@ -328,14 +324,12 @@ def settled(
         # what still fades towards one period looks like two or three before
         if cycle > 1 and max(change[1][-FADING:]) < STILL_FADING * steady:
             cycle = 0
-        if cycle:
-            break
     kept, rate = (np.concatenate(own[-max(cycle, 1) :]) for own in (waves, rates))
     angle = 2 * np.pi * np.arange(len(kept)) / run.looks
     factor = remainder.factor(angle) if remainder.varies else None
     line = remainder.line(angle, omega)
     force = remainder.forces(kept, rate, factor, line).value
-    return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
+    return Steady(omega, cycle, periods, kept, force, modal)
 
 
 def _faded(change: list[float], steady: float, rounding: float) -> bool:
