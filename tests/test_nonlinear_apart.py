@@ -4,28 +4,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_nonlinear_pair import pair
 
 import solidgear as sg
 from solidgear.nonlinear.apart import search
 from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import settled
 from solidgear.nonlinear.stability import stable
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import teeth_of, with_backlash
 from solidgear.studies.train.nonlinear_told import BacklashTold
-from solidgear.system import Inertia, RowSpring, System
-from solidgear.system.law import Gap
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
-
-
-def pair(error):
-    """x'' + 0.1 x' + f(x) = 0.1 + error w^2 cos w t."""
-    teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, 1.0))
-    system = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    losses = {"loss": {"mesh": 0.1}, "kind": "viscous", "matched_hz": 1 / (2 * np.pi)}
-    return remainder(system, load=np.array([0.1]), errors={"mesh": [error]}, **losses)
 
 
 def loudest(branch):

@@ -4,11 +4,12 @@ balance, continuation, stability and motion in time.
 
 import numpy as np
 import pytest
+from teeth import ALONG, mass_on_teeth
 
 from solidgear.errors import SolidgearError
+from solidgear.nonlinear.apart import doubled
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.doubling import doubled
 from solidgear.nonlinear.model import remainder
 from solidgear.nonlinear.motion import Run, settled, sweep
 from solidgear.nonlinear.run_up import run_up
@@ -17,16 +18,12 @@ from solidgear.system import Inertia, RowSpring, System
 from solidgear.system.law import Gap
 
 ZETA, MEAN = 0.05, 0.1
-ALONG = [0, 0, 1, 0, 0, 0]
+TEETH = Gap(1.0, 1.0)
 
 
-def pair(amplitude, law=None):
+def pair(amplitude, law=TEETH):
     """A mass on teeth with a half gap of one."""
-    law = law or Gap(1.0, 1.0)
-    teeth = RowSpring("gear", ALONG, law.stiffness(MEAN), law=law)
-    system = System({"gear": Inertia(1.0, "z")}, {"mesh": teeth})
-    losses = {"loss": {"mesh": 2 * ZETA}, "kind": "viscous", "matched_hz": 1 / (2 * np.pi)}
-    return remainder(system, load=np.array([MEAN]), errors={"mesh": [amplitude]}, **losses)
+    return mass_on_teeth(law, MEAN, amplitude, damping=ZETA)
 
 
 def linear_rms(amplitude, w):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import wofz
+from teeth import ALONG, mass_on_teeth
 
 from solidgear.errors import SolidgearError
 from solidgear.nonlinear.continuation import follow
@@ -18,16 +19,8 @@ ZETA, ERROR = 0.05, 0.05
 
 
 def pair(mean, varying=0.0, gap=1.0):
-    """A mass on teeth with a half gap, ``s'' + 2 zeta s' + f(s) = mean - e''``."""
-    teeth = RowSpring("gear", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, gap))
-    losses = {"loss": {"mesh": 2 * ZETA}, "kind": "viscous", "matched_hz": 1 / (2 * np.pi)}
-    return remainder(
-        System({"gear": Inertia(1.0, "z")}, {"mesh": teeth}),
-        load=np.array([mean]),
-        errors={"mesh": [ERROR]},
-        cycles={"mesh": [varying]},
-        **losses,
-    )
+    """A mass on teeth with a half gap."""
+    return mass_on_teeth(Gap(1.0, gap), mean, ERROR, varying, ZETA)
 
 
 def closed_form(t, begin, ramp):
@@ -112,8 +105,8 @@ def test_a_run_through_contacts_is_the_same_by_exact_pieces_and_integrated(branc
 def test_a_run_of_two_links_is_that_of_the_equations_written_out():
     """Two masses in a row on teeth that both part, by a general integrator that knows none of this."""
     half, mean, begin, end, ramp = (1.0, 0.5), 0.06, 0.4, 1.8, 3e-3
-    first = RowSpring("one", [0, 0, 1, 0, 0, 0], 1.0, law=Gap(1.0, half[0]))
-    second = RowSpring("two", [0, 0, 1, 0, 0, 0], 1.0, to="one", law=Gap(1.0, half[1]))
+    first = RowSpring("one", ALONG, 1.0, law=Gap(1.0, half[0]))
+    second = RowSpring("two", ALONG, 1.0, to="one", law=Gap(1.0, half[1]))
     own = remainder(
         System({name: Inertia(1.0, "z") for name in ("one", "two")}, {"a": first, "b": second}),
         load=np.array([0.0, mean]),

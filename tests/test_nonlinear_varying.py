@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
+from teeth import ALONG, mass_on_teeth
 
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.integrated import Integrated
@@ -18,28 +19,11 @@ from solidgear.nonlinear.varying import edges, growth, hill
 from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System
 from solidgear.system.law import Gap, RadialGap
 
-ALONG = [0, 0, 1, 0, 0, 0]
-
-
-def pair(law, mean=0.0, error=0.0, depth=0.0, damping=0.0):
-    """A unit mass on a link with a law, its stiffness varying by a share."""
-    link = RowSpring("gear", ALONG, law.stiffness(mean), law=law)
-    system = System({"gear": Inertia(1.0, "z")}, {"mesh": link})
-    return remainder(
-        system,
-        load=np.array([mean]),
-        errors={"mesh": [error]},
-        cycles={"mesh": [depth]},
-        loss={"mesh": 2 * damping},
-        kind="viscous",
-        matched_hz=1 / (2 * np.pi),
-    )
-
 
 @pytest.mark.parametrize("depth", [0.1, 0.5])
 @pytest.mark.parametrize(("tongue", "low", "high"), [(1, 1.5, 2.6), (2, 0.8, 1.2)])
 def test_tongues_of_mathieu_by_hill_and_by_floquet(depth, tongue, low, high):
-    own = pair(Gap(1.0, 0.0), depth=depth)
+    own = mass_on_teeth(Gap(1.0, 0.0), varying=depth)
 
     def apart(w, number):  # y'' + (a - 2 q cos 2z) y = 0 with a = 4 / w^2, q = 2 depth / w^2
         return number(tongue, 2 * depth / w**2) - 4 / w**2
@@ -53,11 +37,13 @@ def test_tongues_of_mathieu_by_hill_and_by_floquet(depth, tongue, low, high):
 
 
 def test_losses_close_a_tongue_where_hill_says():
-    own = pair(Gap(1.0, 0.0), depth=0.3, damping=0.05)
+    own = mass_on_teeth(Gap(1.0, 0.0), varying=0.3, damping=0.05)
     for w in edges(own, 1.5, 2.6, half=True):
         assert abs(growth(own, w)) == pytest.approx(1.0, abs=1e-4)
     # first tongue: open above a depth of four damping ratios (to first order)
-    assert edges(pair(Gap(1.0, 0.0), depth=0.19, damping=0.05), 1.5, 2.6, half=True) == ()
+    assert (
+        edges(mass_on_teeth(Gap(1.0, 0.0), varying=0.19, damping=0.05), 1.5, 2.6, half=True) == ()
+    )
     assert hill(replace(own, cycle=0 * own.cycle), 2.0, half=True) == pytest.approx(1.0)
 
 
@@ -77,7 +63,7 @@ LONG = {"hertz", "two stiffnesses"}
 )
 def test_balance_and_time_agree_on_every_law(law):
     law, depth = LAWS[law]
-    own = pair(law, mean=0.1, error=0.05, depth=depth, damping=0.05)
+    own = mass_on_teeth(law, mean=0.1, error=0.05, varying=depth, damping=0.05)
     slow = np.sqrt(own.stiffness[0, 0])
     point = follow(own, 0.45 * slow, 1.1 * slow).at(0.85 * slow)[-1]
     assert point.forces().min() < 0.02, "this is to be a motion that leaves its piece"
@@ -87,7 +73,7 @@ def test_balance_and_time_agree_on_every_law(law):
 
 
 def test_a_mass_gains_over_a_cycle_what_it_loses():
-    own = pair(Gap(1.0, 1.0), mean=0.1, error=0.05, depth=0.2, damping=0.05)
+    own = mass_on_teeth(Gap(1.0, 1.0), mean=0.1, error=0.05, varying=0.2, damping=0.05)
     point = follow(own, 0.5, 0.9).points[-1]
     state = point.state()
     for _ in range(30):
@@ -142,7 +128,7 @@ def test_a_rotor_that_rubs_moves_alike_by_balance_and_in_time():
 
 
 def test_a_curved_law_has_multipliers_too():
-    own = pair(Gap(1.0, 0.05, exponent=1.5), mean=0.1, error=0.005, damping=0.05)
+    own = mass_on_teeth(Gap(1.0, 0.05, exponent=1.5), mean=0.1, error=0.005, damping=0.05)
     slow = np.sqrt(own.stiffness[0, 0])
     point = follow(own, 0.6 * slow, 0.5 * slow).points[0]
     left = np.exp(-own.losses[0, 0] * 2 * np.pi / point.omega)

@@ -129,6 +129,7 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
     arguments += ["--backlash", "100 um", "--mean-force", "5 kN", "--error", "10 um"]
     arguments += ["--against", "lumped/timoshenko+lumped/timoshenko", "--max-frequency", "700"]
     arguments += ["--min-frequency", "450", "--out", str(tmp_path / "out"), "--run-up", "-2000"]
+    arguments += ["--apart", "2"]
     code, out, _ = run(*arguments)
     assert code == 0 and "Jumps" not in out.splitlines()[0]
     assert "The motion jumps at 615.7 Hz (2639 rpm) as the speed rises" in out

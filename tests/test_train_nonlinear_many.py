@@ -45,6 +45,7 @@ def test_shafts_of_any_names_part_like_pinion_and_gear(run, tmp_path):
     asked = ["--backlash", "100 um", "--mean-force", "5 kN", "--error", "10 um"]
     asked += ["--against", "timoshenko+timoshenko", "--min-frequency", "590"]
     asked += ["--shaft", "small=timoshenko", "--shaft", "ring=timoshenko", "--max-frequency", "630"]
+    asked += ["--apart", "0"]
     code, out, _ = run("nonlinear", "long.toml", *asked)
     # the same jump as of the file with [pinion] and [gear]
     assert code == 0 and "The motion jumps at 615.7 Hz (2639 rpm) as the speed rises" in out

@@ -326,7 +326,7 @@ def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical
     ]
     gear = helical.gear.with_changes(scene=helical.gear.scene.with_changes(bearings=tuple(stiff)))
     shop = Workshop(helical.with_changes(gear=gear))
-    found = deflection(shop, OperatingPoint(torque=100.0), "timoshenko", "rigid")
+    found = deflection(shop, OperatingPoint(torque=100.0), "timoshenko", "rigid/euler")
     tilt = np.array([m.value for m in found.displacement["pinion"]])[3:]
     slope = np.cross(tilt, [0.0, 1.0, 0.0])
     normal = shop.contact.pinion.normal * [1, 0, 1]
@@ -363,7 +363,7 @@ def bevel():
 )
 def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
     """Motions about the crossing point of the axes, x_p = -y_g, of the overhung pair."""
-    system = bevel.system("rigid", "rigid")
+    system = bevel.system("rigid/euler")
     found = {m.name: m.row for m in misalignment(bevel, system)}
     port = system.port("pinion.pinion")
     # the pinion's own axis passes the crossing at x = z = 0, beneath the gear's lumped point

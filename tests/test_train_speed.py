@@ -66,7 +66,7 @@ def test_the_bar_of_a_bearing_line_holds_the_true_inside(
     # nothing of the inside is told, and nothing slips
     true = passing(Inside(count, diameter, 0.0, pitch, 0.0, (0.52, 0.52)))
     data = Catalogue(designation=designation, load_rating=rating)
-    for order in of_bearing("A", data, 1.0, numbers=[1]):
+    for order in (order for order in of_bearing("A", data, 1.0) if order.name.endswith(" 1")):
         assert order.low / (1 - SLIP) < getattr(true, order.kind) < order.high / (1 + SLIP)
         assert "estimated elements, element diameter, pitch diameter" in order.source
 

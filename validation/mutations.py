@@ -938,9 +938,9 @@ MUTATIONS = (
     ),
     Mutation(
         "run-up: the angle of the excitation is that of the speed of the moment all along",
-        "solidgear/nonlinear/run_up.py",
-        "Ramped.__init__",
-        "middle * (begin + self.speeds) / 2",
+        "solidgear/nonlinear/motion.py",
+        "Run.__init__",
+        "middle * (omega + self.speeds) / 2",
         "middle * self.speeds",
         "tests/test_nonlinear_run_up.py::test_a_linear_run_is_that_of_the_closed_form",
     ),
@@ -986,8 +986,8 @@ MUTATIONS = (
     ),
     Mutation(
         "period doubling: the excitation of one period is that of two",
-        "solidgear/nonlinear/doubling.py",
-        "_from",
+        "solidgear/nonlinear/apart.py",
+        "_doubled",
         "begin.balance.remainder.slower(2)",
         "begin.balance.remainder.slower(1)",
         "tests/test_nonlinear_pair.py"

@@ -5,7 +5,8 @@ phases, at some speeds.  A motion that it arrives at and that lies on no branch 
 followed both ways, until it is back where it began, merges or leaves the range.  It finds unstable
 motions as well as stable ones: an isola is met anywhere between its ends, not just where it is stable.
 
-No number of starts shows that there are no others.
+No number of starts shows that there are no others.  Motions of two periods that come off a branch
+where its period doubles are followed from there.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ import numpy as np
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
-from solidgear.nonlinear.balance import Balance, as_complex
+from solidgear.nonlinear.balance import Balance, as_complex, as_real
 from solidgear.nonlinear.continuation import Branch, Follower, Point, cut, fitted, walked
 from solidgear.nonlinear.motion import departure
+from solidgear.nonlinear.stability import multipliers
 
 #: starts at a speed of one and of two periods, orders of the excitation that they balance, and steps
 #: of Newton's method that they may take
@@ -31,8 +33,9 @@ AMPLITUDES, FAR = (0.4, 1.6), 30.0
 SPREAD = (0.7548776662466927, 0.5698402909980532)
 #: changes that end Newton's method, and that tell motions of one balance and of two apart, relative
 CLOSE, APART, OTHER = 1e-9, 1e-5, 1e-2
-#: half orders over the scale of motions below which two periods are one
-MERGED = 1e-3
+#: half orders over the scale of motions below which two periods are one, and the first step away from
+#: where a period doubles
+MERGED, AWAY = 1e-3, 0.01
 #: of the swing, how far off a period in time may be of a motion that is believed
 BELIEVED = 1e-2
 
@@ -144,6 +147,65 @@ def search(branch: Branch, omegas: Sequence[float], step: float = 0.02) -> Searc
     return Search(np.array(omegas, float), count, tuple(found), tuple(lost))
 
 
+def flip(point: Point) -> float:
+    """One plus the most negative real multiplier: below zero where the period doubles."""
+    found = multipliers(point)
+    real = found.real[np.abs(found.imag) < 1e-9 * np.abs(found[0]) + 1e-12]
+    return 1.0 + float(real.min(initial=0.0))
+
+
+@pinned
+def doubled(branch: Branch, step: float = 0.02) -> list[Branch]:
+    """Motions of two periods, from every place of a branch at which its period doubles.
+
+    Parameters
+    ----------
+    step : float
+        Longest step, as that of :func:`solidgear.nonlinear.continuation.follow`.
+
+    Returns
+    -------
+    list of Branch
+        Each until its motions have one period again or leave the range; frequencies are those of
+        two periods, half of the excitation.  One that ends where another began is told once.
+    """
+    out: list[Branch] = []
+    met: list[float] = []
+    for begin in branch.crossings(flip):
+        if any(abs(begin.omega / end - 1) < MERGED for end in met):
+            continue
+        found = _doubled(begin, branch, step)
+        out.append(found)
+        met.append(2 * found.points[-1].omega)
+    return out
+
+
+def _doubled(begin: Point, branch: Branch, step: float) -> Branch:
+    size, width = branch.scale
+    m = begin.balance.remainder.rows
+    own = begin.balance.remainder.slower(2)
+    harmonics = np.zeros((2 * begin.balance.count + 1, m), complex)
+    harmonics[::2] = begin.harmonics
+    balance = Balance(own, 2 * begin.balance.count)
+    motion = as_real(harmonics).ravel()
+    left = balance.residual(motion, begin.omega / 2)
+    along = np.append(np.linalg.svd(left.jacobian)[2][-1], 0.0)
+    walk = Follower(balance, size, width / 2)
+    first = Point(begin.omega / 2, motion, balance, along, 0.0)
+    low, high = branch.omega.min() / 2, branch.omega.max() / 2
+
+    def ended(point: Point) -> bool:
+        return _parts(point.motion, m, 2) < MERGED * size or not low <= point.omega <= high
+
+    near = walk.correct(first, AWAY)
+    if near is None:
+        raise SolidgearError(
+            f"the motion of two periods at {begin.omega:g} rad/s cannot be followed"
+        )
+    points, turning = walked(walk, near[0], step, False, ended)
+    return Branch((first, *points), tuple(k + 1 for k in turning), (size, width / 2))
+
+
 def _followed(
     walk: Follower,
     motion: np.ndarray,
@@ -248,21 +310,10 @@ def _seeds(
 
 def _arrived(balance: Balance, motion: np.ndarray, omega: float) -> np.ndarray | None:
     """Place at which a few steps of Newton's method arrive; None where they do not."""
-    far = FAR * np.abs(motion).max()
-    for _ in range(STEPS):
-        left = balance.residual(motion, omega)
-        if not left.held:
-            return None
-        try:
-            change = np.linalg.solve(left.jacobian, -left.value)
-        except np.linalg.LinAlgError:
-            return None
-        motion = motion + change
-        if not np.abs(motion).max() < far:
-            return None
-        if np.abs(change).max() <= CLOSE * np.abs(motion).max():
-            return motion
-    return None
+    try:
+        return balance.solve(motion, omega, steps=STEPS, close=CLOSE, far=FAR)
+    except (SolidgearError, np.linalg.LinAlgError):
+        return None
 
 
 def _across(branch: Branch, omega: float, balance: Balance) -> list[np.ndarray]:

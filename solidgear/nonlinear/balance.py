@@ -251,21 +251,41 @@ class Balance:
                 by += np.einsum("hk,ki,knj->hinj", weight, into, changes)
         return parts, by
 
-    def solve(self, motion: np.ndarray, omega: float) -> np.ndarray:
+    def solve(
+        self,
+        motion: np.ndarray,
+        omega: float,
+        *,
+        steps: int = 4 * ITERATIONS,
+        close: float = ARRIVED,
+        far: float | None = None,
+    ) -> np.ndarray:
         """Motion (n,) at a frequency by Newton's method, from a guess.
+
+        Parameters
+        ----------
+        steps : int
+            At most.
+        close : float
+            Last change, relative.
+        far : float, optional
+            Times the size of the guess, beyond which it is given up.
 
         Raises
         ------
         SolidgearError
             If it does not converge; begin nearer.
         """
-        for _ in range(4 * ITERATIONS):
+        most = np.inf if far is None else far * np.abs(motion).max()
+        for _ in range(steps):
             left = self.residual(motion, omega)
             if not left.held:
                 break
             step = np.linalg.solve(left.jacobian, -left.value)
             motion = motion + step
-            if np.abs(step).max() <= ARRIVED * np.abs(motion).max():
+            if not np.abs(motion).max() < most:
+                break
+            if np.abs(step).max() <= close * np.abs(motion).max():
                 return motion
         raise SolidgearError("harmonic balance does not converge from this motion; begin nearer")
 

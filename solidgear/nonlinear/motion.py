@@ -6,10 +6,12 @@ Nothing of harmonic balance is used but the force laws and what is linear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as sla
+from scipy.special import factorial
 
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
@@ -28,6 +30,8 @@ FADING = 8
 STILL_FADING = 100.0
 #: changes that are no motion, of exact pieces
 ROUNDING = 1e-12
+#: steps between two looks at what is crossed, and powers of time that tell the excitation in a step
+BLOCK, POWERS = 64, 9
 #: Newton's steps that locate a crossing, and its rest relative to the gap
 CROSSINGS, LOCATED = 30, 1e-13
 
@@ -46,8 +50,6 @@ class Steady:
         That it took.
     stretch, force : (t, m) ndarray
         Over its cycle, at equal intervals; forces with those of dampers.
-    section : (p, 2) ndarray
-        First stretch and its rate at the beginning of each of the last periods (Poincare).
     state : (2r,) ndarray
         At its end, where another speed can begin.
     """
@@ -57,7 +59,6 @@ class Steady:
     periods: int
     stretch: np.ndarray
     force: np.ndarray
-    section: np.ndarray
     state: np.ndarray
 
     @property
@@ -67,80 +68,152 @@ class Steady:
 
 
 class Run:
-    """A remainder in time, at one frequency of the excitation."""
+    """A remainder in time, exact between contacts, at one frequency of the excitation or while it
+    changes evenly.
 
-    def __init__(self, remainder: Remainder, omega: float):
-        self.remainder, self.omega = remainder, omega
-        self.pieces = Pieces(remainder, omega)
-        size = self.piece(self.pieces.name(remainder.mean)).size
-        self.looks = max(LOOKS, int(np.ceil(size / SHORT * 2 * np.pi / omega)))
-        self.step = 2 * np.pi / omega / self.looks
-        self._ahead: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
+    Within a step so short that its own change of the frequency is nothing, the excitation is told by
+    its powers of time, whose effect on a state depends on the pieces alone.
 
-    def piece(self, name: tuple[int, ...]) -> Piece:
-        """The linear equation on some pieces."""
-        return self.pieces.piece(name)
+    Parameters
+    ----------
+    omega : float
+        Of the excitation at the beginning, rad/s.
+    slope : float
+        How it grows, rad/s^2; without unbalance where it does.
+    duration : float, optional
+        s; one period without it.
+    """
+
+    def __init__(
+        self, remainder: Remainder, omega: float, slope: float = 0.0, duration: float | None = None
+    ):
+        once = duration is None
+        duration = 2 * np.pi / omega if duration is None else duration
+        fastest = max(omega, omega + slope * duration)
+        there = Pieces(remainder, fastest)
+        # what a piece is at any frequency lies on a line through two of them
+        self.still, self.unit = there, there
+        if slope:
+            self.still, self.unit = Pieces(remainder, 0.0), Pieces(remainder, 1.0)
+        self.remainder, self.edges = remainder, there.edges
+        size = there.piece(there.name(remainder.mean)).size
+        period = 2 * np.pi / fastest
+        self.looks = max(LOOKS, int(np.ceil(size / SHORT * period)))
+        count = self.looks if once else int(np.ceil(duration / (period / self.looks)))
+        self.step = duration / count
+        self.times = self.step * np.arange(count + 1)
+        middle = self.times + self.step / 2
+        self.speeds = omega + slope * middle
+        # the angle at the beginning of a step whose speed is that of its middle throughout
+        angle = middle * (omega + self.speeds) / 2 - self.speeds * self.step / 2
+        self.orders = 1j * np.arange(1, len(remainder.error) + 1)
+        self.turn = np.exp(angle[:, None] * self.orders)
+        self.around = np.ones((count + 1, 1 + 2 * self.turn.shape[1]))
+        self.around[:, 1::2], self.around[:, 2::2] = self.turn.real, self.turn.imag
+        self._tables: dict[tuple[int, ...], tuple[np.ndarray, ...]] = {}
 
     def period(self, modal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """State (2r,) a period later, and stretches and rates (looks, m) on the way."""
-        y = self.pieces.state(modal)
-        name = self._standing(y)
-        s, v = (np.empty((self.looks, self.remainder.rows)) for _ in range(2))
-        k = 0
-        while k < self.looks:
-            piece = self.piece(name)
-            seen, over = self._looking(name)
-            left = self.looks - k
-            ahead = np.concatenate([piece.stretch @ y, *(seen[:left] @ y)]).reshape(left + 1, -1)
-            gone = np.flatnonzero(self._off(name, ahead[1:]))
-            stay = int(gone[0]) if len(gone) else left
-            # a period is looked at once, its end being the beginning of the next
-            count = min(stay + 1, left)
-            s[k : k + count] = ahead[:count]
-            before = y
-            for j in range(count):
-                v[k + j] = piece.rate @ (over[j - 1] @ before if j else before)
-            y = over[stay - 1] @ y if stay else y
-            k += stay
-            if stay < left:
-                y, name = self._through(name, y, self.step)
-                k += 1
-        return y[: 2 * len(self.remainder.omega)], s, v
+        _, s, v, modal = self.whole(modal)
+        return modal, s, v
 
-    def _looking(self, name: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Rows (looks, m, n) that give the stretches 1, 2 ... steps later, and transitions."""
-        if name not in self._ahead:
-            piece = self.piece(name)
-            one = piece.over(self.step)
-            over = np.empty((self.looks, *one.shape))
-            over[0] = one
-            for k in range(1, self.looks):
-                over[k] = one @ over[k - 1]
-            self._ahead[name] = piece.stretch @ over, over
-        return self._ahead[name]
+    def piece(self, name: tuple[int, ...], omega: float) -> Piece:
+        """The linear equation on some pieces, at a frequency of the excitation."""
+        at_rest, turning = self.still.piece(name), self.unit.piece(name)
+        if at_rest is turning:
+            return at_rest
+        return Piece(
+            at_rest.matrix + omega * (turning.matrix - at_rest.matrix),
+            at_rest.stretch,
+            at_rest.rate + omega * (turning.rate - at_rest.rate),
+        )
+
+    def whole(self, modal: np.ndarray, told: Callable[[float], None] | None = None):
+        """Times (t,), stretches and rates (t, m), and the last state."""
+        size, count = 2 * len(self.remainder.omega), len(self.times) - 1
+        s, v = (np.empty((count, self.remainder.rows)) for _ in range(2))
+        name = self._standing(np.append(modal, self.around[0]))
+        y, k = modal, 0
+        while k < count:
+            if told:
+                told(k / count)
+            here = slice(k, min(k + BLOCK, count) + 1)
+            over, push = self._steps(name, here)
+            states = np.empty((len(push), size))
+            states[0] = y
+            for j in range(len(push) - 1):
+                states[j + 1] = over @ states[j] + push[j]
+            whole, still = np.hstack([states, self.around[here]]), self.still.piece(name)
+            ahead = whole @ still.stretch.T
+            gone = np.flatnonzero(self._off(name, ahead[1:]))
+            stay = int(gone[0]) if len(gone) else len(push) - 1
+            kept = min(stay + 1, len(push) - 1)
+            s[k : k + kept] = ahead[:kept]
+            turning = whole[:kept] @ (self.unit.piece(name).rate - still.rate).T
+            v[k : k + kept] = (
+                whole[:kept] @ still.rate.T + self.speeds[k : k + kept, None] * turning
+            )
+            y, k = states[stay], k + stay
+            if len(gone):
+                y, name = self._through(name, np.append(y, self.around[k]), float(self.speeds[k]))
+                y, k = y[:size], k + 1
+        return self.times[:-1], s, v, y
+
+    def _steps(self, name: tuple[int, ...], here: slice) -> tuple[np.ndarray, np.ndarray]:
+        """Transition (2r, 2r) of a state over one step, and what the excitation adds to it in each of
+        some steps (n, 2r).
+        """
+        if name not in self._tables:
+            self._tables[name] = self._table(name)
+        over, constant, still, unit = self._tables[name]
+        speed = self.speeds[here, None, None]
+        powers = (speed * self.orders[:, None]) ** np.arange(POWERS) * self.turn[here, :, None]
+        flat = powers.reshape(len(powers), -1)
+        return over, constant + (flat @ still + speed[:, :, 0] * (flat @ unit)).real
+
+    def _table(self, name: tuple[int, ...]) -> tuple[np.ndarray, ...]:
+        size = 2 * len(self.remainder.omega)
+        still = self.still.piece(name).matrix[:size]
+        own, given = still[:, :size], still[:, size:]
+        change = self.unit.piece(name).matrix[:size, size:] - given
+        by = []
+        for columns in (given, change):
+            orders = columns[:, 1::2] - 1j * columns[:, 2::2]
+            by.append(self._powers(own, orders).transpose(2, 0, 1).reshape(-1, size))
+        constant = self._powers(own, given[:, :1])[0, :, 0]
+        return sla.expm(self.step * own), constant, *by
+
+    def _powers(self, own: np.ndarray, given: np.ndarray) -> np.ndarray:
+        """(POWERS, 2r, o) what a step of a forcing (2r, o) by ``t^k / k!`` comes to."""
+        terms = [given]
+        for _ in range(TERMS - 1):
+            terms.append(own @ terms[-1])
+        order = 1 + np.arange(POWERS)[:, None] + np.arange(TERMS)
+        return np.tensordot(self.step**order / factorial(order), np.array(terms), axes=1)
 
     def _off(self, name: tuple[int, ...], stretch: np.ndarray) -> np.ndarray:
         """(t,) which of some stretches (t, m) are off these pieces."""
         own = [
             np.searchsorted(edges, stretch[:, row]) != where
-            for row, (where, edges) in enumerate(zip(name, self.pieces.edges))
+            for row, (where, edges) in enumerate(zip(name, self.edges))
         ]
         return np.any(own, axis=0)
 
     def _standing(self, y: np.ndarray) -> tuple[int, ...]:
         """The piece on which a state is: the one that its own stretches name."""
-        name = self.pieces.name(self.remainder.mean)
+        name = self.still.name(self.remainder.mean)
         for _ in range(6):
-            own = self.pieces.name(self.piece(name).stretch @ y)
+            own = self.still.name(self.still.piece(name).stretch @ y)
             if own == name:
                 return name
             name = own
         raise SolidgearError("a state in time is on no piece of the laws, or on two")
 
-    def _through(self, name, y, rest: float):
-        """State and piece after a time in which a stretch leaves its piece."""
+    def _through(self, name, y, omega: float):
+        """State and piece after a step in which a stretch leaves its piece."""
+        rest = self.step
         while rest > 0:
-            piece = self.piece(name)
+            piece = self.piece(name, omega)
             terms = piece.series(y)
             at, row, side = self._crossing(name, terms @ piece.stretch.T, rest)
             y = terms.T @ at ** np.arange(TERMS)
@@ -154,7 +227,7 @@ class Run:
         """First time within `rest` at which a stretch leaves its piece, which one, and to which side."""
         first = rest
         found: tuple[float, int | None, int] = rest, None, 0
-        for row, (where, edges) in enumerate(zip(name, self.pieces.edges)):
+        for row, (where, edges) in enumerate(zip(name, self.edges)):
             for edge, side in ((where - 1, -1), (where, 1)):
                 if not 0 <= edge < len(edges):
                     continue
@@ -237,13 +310,12 @@ def settled(
     modal = np.zeros(2 * len(remainder.omega)) if state is None else state
     waves: list[np.ndarray] = []
     rates: list[np.ndarray] = []
-    section: list[tuple[float, float]] = []
     change: dict[int, list[float]] = {c: [] for c in range(1, LONGEST_CYCLE + 1)}
-    cycle = 0
-    for _ in range(most):
+    cycle = periods = 0
+    while not cycle and periods < most:
+        periods += 1
         modal, s, v = run.period(modal)
         waves, rates = [*waves[-LONGEST_CYCLE:], s], [*rates[-LONGEST_CYCLE:], v]
-        section.append((float(s[0, 0]), float(v[0, 0])))
         swing = float(np.ptp(s, axis=0).max()) or 1.0
         for c, own in change.items():
             if len(waves) > c:
@@ -252,14 +324,12 @@ def settled(
         # what still fades towards one period looks like two or three before
         if cycle > 1 and max(change[1][-FADING:]) < STILL_FADING * steady:
             cycle = 0
-        if cycle:
-            break
     kept, rate = (np.concatenate(own[-max(cycle, 1) :]) for own in (waves, rates))
     angle = 2 * np.pi * np.arange(len(kept)) / run.looks
     factor = remainder.factor(angle) if remainder.varies else None
     line = remainder.line(angle, omega)
     force = remainder.forces(kept, rate, factor, line).value
-    return Steady(omega, cycle, len(section), kept, force, np.array(section[-64:]), modal)
+    return Steady(omega, cycle, periods, kept, force, modal)
 
 
 def _faded(change: list[float], steady: float, rounding: float) -> bool:

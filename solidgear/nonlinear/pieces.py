@@ -125,10 +125,3 @@ class Pieces:
         matrix[: 2 * r, : 2 * r] += own.state
         matrix[r : 2 * r] += own.seen.T @ push
         return Piece(matrix, stretch, rate)
-
-    def state(self, modal: np.ndarray, time: float = 0.0) -> np.ndarray:
-        """Y of a modal state (2r,) at a time."""
-        orders = len(self.remainder.error)
-        angle = self.omega * time * np.arange(1, orders + 1)
-        around = np.column_stack([np.cos(angle), np.sin(angle)]).ravel()
-        return np.concatenate([modal, [1.0], around])

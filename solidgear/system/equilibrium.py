@@ -86,8 +86,6 @@ class SystemEquilibrium:
         Of each bearing alone, at that point.
     lost : tuple of str
         Bearings that carry nothing.
-    unbalanced : float
-        What is left of the loads, of the largest of them or of the preloads.
     """
 
     coordinates: np.ndarray
@@ -95,8 +93,6 @@ class SystemEquilibrium:
     load: dict[str, np.ndarray]
     tangent: dict[str, np.ndarray]
     lost: tuple[str, ...]
-    unbalanced: float
-    iterations: int
     _state: np.ndarray = field(repr=False, default_factory=lambda: np.zeros(0))
 
 
@@ -242,7 +238,7 @@ class OnBearings:
             found = self.balance.settle(target, None if start is None else start._state)
         except NothingHolds as error:
             raise SolidgearError(self._not_held(error.direction)) from None
-        return self._told(load, found.motion, found.unbalanced, found.iterations)
+        return self._told(load, found.motion)
 
     def _not_held(self, direction: np.ndarray) -> str:
         ends = [end for own in self.seats for end in own.ends]
@@ -251,9 +247,7 @@ class OnBearings:
         shaft = ends[k // 5].partition(".")[0]
         return f"no bearing holds {shaft} in {component}: it is {pushed_out(component)}"
 
-    def _told(
-        self, load: np.ndarray, at: np.ndarray, unbalanced: float, iterations: int
-    ) -> SystemEquilibrium:
+    def _told(self, load: np.ndarray, at: np.ndarray) -> SystemEquilibrium:
         ends = [end for own in self.seats for end in own.ends]
         relative, carried = self.balance.carried(at)
         total = load.copy()
@@ -271,8 +265,6 @@ class OnBearings:
             dict(zip(ends, carried)),
             dict(zip(ends, tangent)),
             lost,
-            unbalanced,
-            iterations,
             at,
         )
 

@@ -186,12 +186,7 @@ def turns_of_pinion(train: Train, speed: float, of: str) -> float:
 
 
 def refuse_share(name: str, share: float | None) -> None:
-    """Refuse a share that is none.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Refuse a share that is none."""
     if share is not None and not 0 < share < 1:
         raise SolidgearError(f"{name} {share:g}: give a share between 0 and 1, such as 0.05")
 

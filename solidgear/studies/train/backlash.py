@@ -260,10 +260,6 @@ class Backlash:
         """Frequencies and dynamic mesh force of the same train without backlash."""
         return self._unbounded[0], np.array([self._swing(*one) for one in self._unbounded[1]])
 
-    def linear_force(self, hz: float) -> float:
-        """Dynamic mesh force without backlash at one frequency, N."""
-        return self._swing(*self._linear(hz))
-
     @property
     def returns(self) -> float | None:
         """Highest frequency of a branch that leaves the range where it began, Hz."""
@@ -362,7 +358,7 @@ class Backlash:
         """Frequencies at which the linear answer is off by some decibels, and how much at most;
         above is positive.
         """
-        size = np.array([self.linear_force(f) for f in self.frequency_hz])
+        size = np.array([self._swing(*self._linear(f)) for f in self.frequency_hz])
         error = 20 * np.log10(size / self.force)
         far = self.stable & (np.abs(error) > decibels)
         out = []

@@ -274,8 +274,6 @@ def deflections(
     ----------
     points : sequence of OperatingPoint
         Each is begun at the one before.
-    *models : str
-        One for each shaft, or one for all.
 
     Raises
     ------

@@ -75,9 +75,7 @@ class Order:
 
 
 def train_orders(
-    train: Train,
-    angles: Mapping[str, Sequence[float]] | None = None,
-    mesh_orders: int = len(MESH_ORDERS),
+    train: Train, angles: Mapping[str, Sequence[float]] | None = None
 ) -> tuple[Order, ...]:
     """Orders of all shafts, of their meshes and of their catalogue bearings.
 
@@ -104,15 +102,15 @@ def train_orders(
     >>> [(order.name, round(order.per_turn, 4)) for order in found if order.name.endswith(" 1")][:3]
     [('pinion 1', 1.0), ('gear 1', 0.3111), ('mesh 1', 14.0)]
     """
-    turns, numbers = train.turns, range(1, mesh_orders + 1)
+    turns = train.turns
     out = [order for side in train.shafts for order in of_shaft(side, turns[side])]
     for pair in train.pairs:
-        out += of_mesh(pair.name, train.per_turn(pair), numbers)
+        out += of_mesh(pair.name, train.per_turn(pair))
     for pair in train.pairs:
         wheels = {side: turns[side] for side in pair.shafts}
-        out += of_sidebands(pair.name, train.per_turn(pair), wheels, numbers)
+        out += of_sidebands(pair.name, train.per_turn(pair), wheels)
     for stage in train.stages:
-        out += of_stage(stage, turns, train.per_turn(stage.meshes[0]), numbers)
+        out += of_stage(stage, turns, train.per_turn(stage.meshes[0]))
     for side, own in train.shafts.items():
         for bearing in own.scene.bearings:
             if bearing.catalogue is not None:
@@ -134,11 +132,9 @@ def of_mesh(name: str, per_turn: float, numbers: Iterable[int] = MESH_ORDERS) ->
         yield _exact("mesh", f"{name} {n}", "teeth", n * per_turn)
 
 
-def of_sidebands(
-    name: str, per_turn: float, wheels: Mapping[str, float], numbers: Iterable[int] = MESH_ORDERS
-) -> Iterator[Order]:
+def of_sidebands(name: str, per_turn: float, wheels: Mapping[str, float]) -> Iterator[Order]:
     """Sidebands of a mesh: its harmonics, more and less whole turns of one of its wheels."""
-    for n in numbers:
+    for n in MESH_ORDERS:
         for wheel, turns in wheels.items():
             for k in range(1, SIDEBANDS + 1):
                 source = f"teeth, turns of the {wheel}"
@@ -147,17 +143,15 @@ def of_sidebands(
                     yield _exact("sideband", words, source, n * per_turn + add * turns)
 
 
-def of_stage(
-    stage: Stage, turns: Mapping[str, float], per_turn: float, numbers: Iterable[int] = MESH_ORDERS
-) -> Iterator[Order]:
+def of_stage(stage: Stage, turns: Mapping[str, float], per_turn: float) -> Iterator[Order]:
     """Harmonics of the meshes of planets, with sidebands of the carrier, and of planets that pass a
     point of the ring, one of the sun, and turn.
     """
     sun, carrier = stage.shafts
     count, slow, name = len(stage.teeth.azimuths), turns[carrier], stage.called
-    yield from of_mesh(stage.name, per_turn, numbers)
+    yield from of_mesh(stage.name, per_turn)
     passing = {carrier: slow, f"{name} planets": count * slow}
-    yield from of_sidebands(stage.name, per_turn, passing, numbers)
+    yield from of_sidebands(stage.name, per_turn, passing)
     apart = count * (turns[sun] - slow)
     spin = slow * stage.teeth.ring / stage.teeth.planet
     rolling = (
@@ -166,7 +160,7 @@ def of_stage(
         ("planet", "turns of a planet against the carrier", spin),
     )
     for word, source, each in rolling:
-        for n in numbers:
+        for n in MESH_ORDERS:
             yield _exact("shaft", f"{name} {word} {n}", source, n * each)
 
 
@@ -175,23 +169,16 @@ def _exact(kind: str, name: str, source: str, per_turn: float) -> Order:
 
 
 def of_bearing(
-    name: str,
-    data: Catalogue,
-    inner: float,
-    angles: Sequence[float] = (),
-    outer: float = 0.0,
-    numbers: Iterable[int] = BEARING_ORDERS,
+    name: str, data: Catalogue, inner: float, angles: Sequence[float] = ()
 ) -> Iterator[Order]:
     """Orders of a catalogue bearing, between the ends of its inside, angles and slip.
 
     Parameters
     ----------
-    inner, outer : float
-        Turns of its rings in one turn of the pinion, signed.
+    inner : float
+        Turns of its inner ring in one turn of the pinion, signed; the outer one stands still.
     angles : sequence of float
         Contact angles of its rows at work, rad; that of the catalogue by default.
-    numbers : iterable of int
-        Harmonics.
     """
     geometry = inner_geometry(data)
     at: Sequence[float | None] = angles or (None,)
@@ -199,8 +186,8 @@ def of_bearing(
     if data.balls and "element_diameter" in geometry.estimated:
         sizes = 1 - BALL, 1 + BALL
         ends += [replace(one, diameter=size * one.diameter) for one in ends for size in sizes]
-    found = [passing(inside, angle, inner, outer) for inside in ends for angle in at]
-    middle = [passing(geometry.middle, angle, inner, outer) for angle in at]
+    found = [passing(inside, angle, inner) for inside in ends for angle in at]
+    middle = [passing(geometry.middle, angle, inner) for angle in at]
     for kind, (short, formula) in BEARING.items():
         values = [abs(getattr(one, kind)) for one in found]
         usual = sum(abs(getattr(one, kind)) for one in middle) / len(middle)
@@ -208,7 +195,7 @@ def of_bearing(
         source = (
             f"{short} = {formula}: {_inside(geometry, angles)}; {HARRIS}; slip {100 * SLIP:g} %"
         )
-        for n in numbers:
+        for n in BEARING_ORDERS:
             yield Order(kind, f"{name} {short} {n}", source, n * usual, n * low, n * high)
 
 

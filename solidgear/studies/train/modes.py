@@ -203,8 +203,6 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     max_frequency : float, optional
         Hz; that of the file by default.
 
@@ -268,12 +266,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
 
 
 def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
-    """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft."""
     cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
     if limit >= 0.9 * cut:
         raise SolidgearError(

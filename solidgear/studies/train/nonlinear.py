@@ -162,8 +162,6 @@ def backlash_model(
 
     Parameters
     ----------
-    models : sequence of str
-        One for each shaft, or one for all.
     highest_hz : float
         Modes above it give way like springs.
     """
@@ -252,8 +250,6 @@ def with_backlash(
 
     Parameters
     ----------
-    models : sequence of str
-        One for each shaft, or one for all.
     highest_hz, lowest_hz : float, optional
         Of the driven mesh; the highest is that of the file by default, the lowest a hundredth of it.
     told : callable, optional
@@ -314,15 +310,9 @@ def over_force(
         mean = found.remainder.mean * (force / found.teeth.mean_force)
         ends = found.branch.omega[0], found.branch.omega[-1]
         branch = follow(replace(found.remainder, mean=mean), *map(float, ends), step=STEP)
-        jumps = tuple(
-            (
-                float(branch.points[k].omega / (2 * np.pi)),
-                bool(branch.points[k - 1].tangent[-1] > 0),
-            )
-            for k in branch.turning
-        )
-        largest = max(float(np.ptp(point.forces()[:, 0])) / 2 for point in branch.points)
-        out.append(AtForce(force, jumps, largest))
+        own = replace(found, branch=branch)
+        jumps = tuple((jump.frequency_hz, jump.rising) for jump in own.jumps)
+        out.append(AtForce(force, jumps, float(own.force.max())))
     return tuple(out)
 
 

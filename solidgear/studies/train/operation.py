@@ -30,8 +30,8 @@ from solidgear.studies.train.housing import under
 from solidgear.studies.train.layout import mesh_forces, rotor_torques
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.own_loads import refuse_own_loads, scene_load
+from solidgear.studies.train.stages import mesh_row
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
-from solidgear.system.links import RowSpring
 from solidgear.system.port_forces import port_forces
 from solidgear.system.system import System
 
@@ -245,10 +245,8 @@ def divided(
     """
     out = {}
     for name in (name for name, flow in workshop.train.flows.items() if flow is None):
-        mesh = system.links[name]
-        assert isinstance(mesh, RowSpring)
-        stretch = float((mesh.stretch(*map(system.port, mesh.ends)) @ coordinates)[0])
-        out[name] = -mesh.stiffness * stretch
+        row, stiffness = mesh_row(system, name)
+        out[name] = -stiffness * float(row @ coordinates)
         if not out[name] > 0:
             raise SolidgearError(
                 f"at {where}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "

@@ -101,8 +101,6 @@ def order_map(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz, mesh
@@ -140,11 +138,9 @@ def order_map(
     stage = driven.stage if isinstance(driven, PlanetMesh) else None
     name = driven.name if stage is None else stage.name
     for n, order in enumerate(of_mesh(name, teeth, range(1, count + 1)), start=1):
-        own = OrderLine(order.name, order.per_turn)
-        if n <= given:
-            force = np.abs(drive.mesh(hz, n)[1])
-            own = OrderLine(own.name, own.per_turn, 60 * hz / own.per_turn, force)
-        lines.append(own)
+        force = np.abs(drive.mesh(hz, n)[1]) if n <= given else None
+        rpm = None if force is None else 60 * hz / order.per_turn
+        lines.append(OrderLine(order.name, order.per_turn, rpm, force))
     others = {pair.name: train.per_turn(pair) for pair in train.pairs if pair.name != driven.name}
     others |= {s.name: train.per_turn(s.meshes[0]) for s in train.stages if s is not stage}
     for name, passing in others.items():
@@ -160,9 +156,7 @@ def order_map(
         at = np.array([mode.frequency_hz for mode in met])
         force = np.abs(drive.mesh(at, k + 1)[1]) if line.force is not None else [None] * len(met)
         for mode, size in zip(met, force):
-            rpm, size = (
-                60 * mode.frequency_hz / line.per_turn,
-                size if size is None else float(size),
-            )
-            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, rpm, size))
+            own = None if size is None else float(size)
+            at_rpm = 60 * mode.frequency_hz / line.per_turn
+            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, at_rpm, own))
     return OrderMap(highest, top, teeth, tuple(lines), elastic, tuple(crossings))

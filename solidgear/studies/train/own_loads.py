@@ -16,12 +16,7 @@ SAME_LOAD = 0.05
 
 
 def refuse_own_loads(train: Train, side: str) -> None:
-    """Refuse bearings whose load is told by themselves where a torque brings it.
-
-    Raises
-    ------
-    SceneError
-    """
+    """Refuse bearings whose load is told by themselves where a torque brings it."""
     for bearing in train.shafts[side].scene.bearings:
         data = bearing.catalogue
         if data is None:

@@ -89,8 +89,6 @@ def turned_modes(workshop: Workshop, *models: str, highest_hz: float | None = No
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     highest_hz : float, optional
         Of the modes; that of the file by default. The first elastic mode is always there.
 
@@ -188,8 +186,6 @@ def draw_modes(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     numbers : sequence of int
         Of modes as system-modes lists them, from 1.
 

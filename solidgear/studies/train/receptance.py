@@ -73,8 +73,6 @@ def receptance(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     from_, to : (str, str)
         Port and direction of the force and of the motion, such as ``("gear.gear", "z")``.
     highest_hz : float, optional
@@ -135,12 +133,7 @@ def _bracketed(unit: str) -> str:
 
 
 def _felt(drive: Drive, row: np.ndarray) -> None:
-    """Refuse two ends that move each other by rounding alone, judged mode by mode.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Refuse two ends that move each other by rounding alone, judged mode by mode."""
     shapes = np.hstack([drive.system.free, drive.system.elastic[1]])
     there, here = np.abs(row @ shapes), np.abs(drive.load @ shapes)
     if not (there * here).max() > NOTHING * there.max() * here.max():

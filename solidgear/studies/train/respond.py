@@ -111,8 +111,6 @@ class Drive:
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     damping : {'hysteretic', 'viscous', 'modal', 'literal'}
     matched_hz : float
         Of viscous losses, Hz.
@@ -310,7 +308,8 @@ class Drive:
         found, every = self.named_modes(within)
         names = every[found.rigid :]
         share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
-        lost = np.array([self._loss_of(found, found.rigid + k) for k in range(within)])
+        each = [self.steady.loss.get(name, 0.0) * share for name, share in found.energy.items()]
+        lost = np.sum(each, axis=0)[found.rigid :]
         out = []
         for k in peaks(size):
             if not stands_out(size, k):
@@ -326,9 +325,6 @@ class Drive:
             name = names[fast.argmax()] if near.any() else NO_MODE
             out.append((float(frequency_hz[k]), float(size[k]), name))
         return out
-
-    def _loss_of(self, found, k: int) -> float:
-        return sum(self.steady.loss.get(name, 0.0) * e[k] for name, e in found.energy.items())
 
 
 @pinned
@@ -346,8 +342,6 @@ def respond(
 
     Parameters
     ----------
-    *models : str
-        One for each shaft, or one for all.
     highest_hz : float, optional
         That of the file by default.
     damping, matched_hz, forces, mesh
