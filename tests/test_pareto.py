@@ -244,7 +244,9 @@ class Stage:
             "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
             "like_for_like": {},
         }
-        monkeypatch.setattr(racing, "_reference", lambda *_: (reference, real.condensed.compliance))
+        monkeypatch.setattr(
+            racing, "_reference", lambda *_: (reference, real.statics.main.compliance)
+        )
         monkeypatch.setattr(racing, "_warm_up", lambda *_: {})
         monkeypatch.setattr(
             racing.gc, "collect", lambda: 0

@@ -174,7 +174,7 @@ def test_bars_of_the_whole_matrix(settled):
 def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
     found = study(shaft, "harmonic", evidence=False, most=1, counted=False)
     here = found.ties["as scene"]
-    lost = here.coupled.evidence["stiffness_error"]
+    lost = here.statics.coupled.evidence["stiffness_error"]
     assert (
         here.numbers.solver["K_zz@wheel@pinion"] == lost > here.numbers.solver["C_zz@wheel@pinion"]
     )

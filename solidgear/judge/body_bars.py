@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 from solidgear.body import Body
 from solidgear.bounds.safety import REFINEMENT
 from solidgear.judge.bars import step_bars
-from solidgear.judge.quantities import measure
 from solidgear.judge.sequence_bars import RIGID_EDGE
+from solidgear.judge.solving import Statics, numbers
 from solidgear.ladder import build
 from solidgear.meshing.corners import SHOULDER, is_notched
-from solidgear.quantity import ACROSS, QUANTITIES, STIFFNESS, Quantity
+from solidgear.quantity import Quantity
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -60,20 +59,11 @@ def static_bars(scene: Scene, body: Body, points: tuple[str, ...]) -> dict[Quant
     before = _before(scene, body)
     if before is None:
         return {}
-    levels, solver = [], {}
+    levels = []
     for one in (before, body):
-        main, *others = (condense(one, scene, point) for point in points)
-        coupled = condense(one, scene, points) if others else None
-        further = dict(zip(points[1:], others))
-        levels.append(measure(main, None, further, coupled, (*QUANTITIES, *ACROSS)))
-        solver = dict.fromkeys(levels[-1], main.evidence["residual"])
-        if coupled is not None:
-            solver |= {
-                q: coupled.evidence["stiffness_error"]
-                for q in solver
-                if q.pair and q.kind == STIFFNESS
-            }
-    bars = step_bars(levels, solver, REFINEMENT, left_over=_left_over(scene, before, body))
+        levels.append(numbers(Statics.at(one, scene, points), None))
+    values, solver = [one.quantities for one in levels], levels[-1].solver
+    bars = step_bars(values, solver, REFINEMENT, left_over=_left_over(scene, before, body))
     return {name: bar.width for name, bar in bars.items()}
 
 

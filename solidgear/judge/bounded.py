@@ -8,7 +8,7 @@ quotient and what Kato and Temple leave of it (:mod:`solidgear.bounds.harmonic`)
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,13 +18,12 @@ from solidgear.body import Body, Supports
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import LEAST, ErrorBar
-from solidgear.judge.quantities import Values, in_order, measure, size
-from solidgear.judge.solving import widened
-from solidgear.quantity import ACROSS, STIFFNESS, Quantity
+from solidgear.judge.quantities import Values, in_order, size
+from solidgear.judge.solving import Statics, widened
+from solidgear.quantity import STIFFNESS, Quantity
 from solidgear.scene.coned import coned
-from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense, flexibility
+from solidgear.solve.statics import flexibility
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -33,44 +32,6 @@ if TYPE_CHECKING:
 METHOD = "local problems"
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
-
-
-@dataclass(frozen=True)
-class Statics:
-    """Statics of a body, or of its softest relative."""
-
-    main: Condensed
-    further: Mapping[str, Condensed]
-    coupled: Coupled | None = None
-
-    @classmethod
-    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
-        """Statics that some quantities need: the main point, further ones, and pairs of points."""
-        main = condense(body, supports, scene.port.name)
-        points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
-        further = {point: condense(body, supports, point) for point in points}
-        pairs = {point for q in names for point in q.pair or ()}
-        both = tuple(port.name for port in scene.ports if port.name in pairs)
-        return cls(main, further, condense(body, supports, both) if pairs else None)
-
-    def again(self, body: Body, supports: Supports) -> Statics:
-        """The same of another body."""
-        coupled = self.coupled and condense(
-            body, supports, self.coupled.ports, self.coupled.attachments
-        )
-        return Statics(
-            condense(body, supports, self.main.port, self.main.attachment),
-            {
-                name: condense(body, supports, name, one.attachment)
-                for name, one in self.further.items()
-            },
-            coupled,
-        )
-
-    def values(self) -> dict[Quantity, float]:
-        """All numbers, those of the other plane and between points included."""
-        both = self.further, self.coupled
-        return measure(self.main, None, *both) | measure(None, None, *both, ACROSS)
 
 
 @dataclass(frozen=True)

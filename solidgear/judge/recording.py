@@ -31,7 +31,7 @@ from solidgear.judge.record import (
     VariantRecord,
 )
 from solidgear.judge.solution import Solution
-from solidgear.judge.solving import ENOUGH, Answer
+from solidgear.judge.solving import ENOUGH, Answer, Statics
 from solidgear.judge.ties import SCENE
 from solidgear.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.ladder.model import LUMPED, SOLID
@@ -106,8 +106,8 @@ def recorded(
 
 def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
     port, first = scene.ports[k], next(iter(solutions.values()), None)
-    found = None if first is None else first.ties[SCENE]
-    there = None if found is None else [found.condensed, *found.further.values()][k]
+    found = None if first is None else first.ties[SCENE].statics
+    there = None if found is None else [found.main, *found.further.values()][k]
     return PortRecord(
         name=port.name,
         y=port.y,
@@ -217,8 +217,8 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
-        points=_points(solution.ties[SCENE]),
-        coupled=_coupled(solution.ties[SCENE]),
+        points=_points(solution.ties[SCENE].statics),
+        coupled=_coupled(solution.ties[SCENE].statics),
         modes=[_mode_record(m) for m in solution.modes.modes],
         band=_bar_summary(solution),
         convergence=_convergence(solution),
@@ -231,14 +231,14 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
     )
 
 
-def _points(found: Answer) -> dict[str, PointRecord]:
+def _points(found: Statics) -> dict[str, PointRecord]:
     return {
         name: PointRecord(stiffness=there.stiffness, compliance=there.compliance)
         for name, there in found.further.items()
     }
 
 
-def _coupled(found: Answer) -> CoupledRecord | None:
+def _coupled(found: Statics) -> CoupledRecord | None:
     both = found.coupled
     if both is None:
         return None
@@ -309,8 +309,8 @@ def _mode_record(mode: Mode) -> ModeRecord:
 def _variant_record(found: Answer) -> VariantRecord:
     return VariantRecord(
         quantities=found.quantities,
-        stiffness=found.condensed.stiffness,
-        compliance=found.condensed.compliance,
+        stiffness=found.statics.main.stiffness,
+        compliance=found.statics.main.compliance,
         modes=[_mode_record(m) for m in found.modes.modes],
     )
 

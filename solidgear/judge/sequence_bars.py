@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence as Listed
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
 from solidgear.judge.bars import ErrorBar, step_bars
-from solidgear.judge.quantities import Values, measure, size
+from solidgear.judge.quantities import Values, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
-from solidgear.quantity import ACROSS, Quantity
+from solidgear.quantity import Quantity
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -125,5 +126,4 @@ def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[Values, list[float]]:
         m.frequency_hz for m in found.modes.modes if m.family == BENDING and m.frequency_hz > 0
     ]
     coupled = condense(found.body, plain, points) if points else None
-    across = measure(None, None, found.further, coupled, ACROSS)
-    return found.quantities | measure(None, None, None, coupled) | across, bending
+    return found.quantities | replace(found.statics, coupled=coupled).values(), bending

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.judge.bars import ErrorBar
-from solidgear.judge.bounded import Bounded, Statics, bounded
+from solidgear.judge.bounded import Bounded, bounded
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
 from solidgear.judge.record import LevelRecord
@@ -261,12 +261,13 @@ def _judged(
     """Bars of an answer by local problems, and of the modes of another one of the same body what they
     have in common.
     """
-    statics = Statics(found.condensed, found.further, found.coupled)
     known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
     assert found.supports is not None  # of what was just answered
     left = found.numbers.solver
     others = later.modes if later is not None and later.body is found.body else None
-    return bounded(scene, found.body, found.supports, statics, found.modes, known, left, others)
+    return bounded(
+        scene, found.body, found.supports, found.statics, found.modes, known, left, others
+    )
 
 
 def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:

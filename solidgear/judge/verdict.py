@@ -162,8 +162,8 @@ def _judged(
 
 def _said(gap: Deviation, solutions: dict[str, Solution]) -> str:
     """The quantity of a gap; with its lumped point where there are several."""
-    found = solutions[gap.reference].ties[SCENE]
-    return in_words(gap.quantity, found.condensed.port if found.further else "")
+    found = solutions[gap.reference].ties[SCENE].statics
+    return in_words(gap.quantity, found.main.port if found.further else "")
 
 
 def _why(gap: Deviation, solutions: dict[str, Solution], kind: str, tolerance: float) -> str:

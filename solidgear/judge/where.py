@@ -20,11 +20,11 @@ from solidgear.bounds.harmonic import richer_space
 from solidgear.bounds.refining import Meshed, corner_strength
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.judge.bars import LEAST, ErrorBar
-from solidgear.judge.bounded import Statics, bounded
+from solidgear.judge.bounded import bounded
 from solidgear.judge.quantities import own_name, usual
 from solidgear.judge.record import PlaceRecord, WhereRecord
 from solidgear.judge.singular_places import Place, singular_places
-from solidgear.judge.solving import ENOUGH, numbers, searched
+from solidgear.judge.solving import ENOUGH, Statics, numbers, searched
 from solidgear.judge.ties import SCENE
 from solidgear.ladder import build
 from solidgear.machine.memory import one_run
@@ -238,10 +238,7 @@ def _shares(
 ) -> tuple[ErrorBar, np.ndarray]:
     """Bar of a quantity that is solved, and (m,) shares of it by cells."""
     _exists(quantity, statics, found)
-    solver = {}
-    if statics is not None:
-        left = numbers(statics.main, None, statics.further, statics.coupled).solver
-        solver = {quantity: statics.main.evidence["residual"]} | left
+    solver = numbers(statics, None).solver
     told = bounded(scene, body, supports, statics, found, [quantity], solver)
     bar, score = told.error_bars[quantity], told.scores[quantity]
     if _rounding(bar):

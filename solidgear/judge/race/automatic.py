@@ -16,7 +16,7 @@ from solidgear.judge.answer import climbed
 from solidgear.judge.climb import Climb
 from solidgear.judge.race.pareto import AUTOMATIC, Row
 from solidgear.judge.race.timing import answer
-from solidgear.judge.solving import Answer
+from solidgear.judge.solving import Answer, Statics
 from solidgear.quantity import QUANTITIES
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
@@ -58,7 +58,7 @@ def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
     climb, _ = climbed(scene, options["tol"], QUANTITIES, _Charted, lambda _: None)
     assert climb.largest is not None and climb.modes is not None  # everything was asked
     values = {v.quantity: v.value for v in climb.values()}
-    return Answer(climb.largest, _together(climb), climb.modes, values)
+    return Answer(climb.largest, Statics(_together(climb)), climb.modes, values)
 
 
 class _Charted(Climb):

@@ -218,7 +218,7 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
         "bands": {q: made.bars[q] for q in have},
         "like_for_like": {q: like[q] for q in have if q in like},
     }
-    return record, found.condensed.compliance
+    return record, found.statics.main.compliance
 
 
 def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver: Solve) -> None:
@@ -253,7 +253,7 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver:
     missing = [q for q in against["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
-    whole = scaled_error(found.condensed.compliance, compliance)
+    whole = scaled_error(found.statics.main.compliance, compliance)
     if whole is not None:
         row.errors["C 6x6"] = whole
 
