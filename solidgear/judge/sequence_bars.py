@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
-from solidgear.judge.bars import ErrorBar, step_bars
+from solidgear.judge.bars import ErrorBar, left_over, step_bars
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
@@ -73,8 +73,8 @@ def sequence_bars(
     last = [size or 0.0 for size in sizes[-3:]]
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
-    left_over = 1 / ((last[-2] / last[-1]) ** (2 * sharpest(scene)) - 1)
-    return step_bars(levels, solver, safety, left_over=left_over)
+    share = left_over(last[-2], last[-1], sharpest(scene))
+    return step_bars(levels, solver, safety, left_over=share)
 
 
 def sharpest(scene: Scene) -> float:

@@ -24,9 +24,9 @@ from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.answer import climbed, usable
-from solidgear.judge.body_bars import MODEL, static_bars, stepped_bars
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
+from solidgear.judge.coarser_mesh import coarser_bars, static_bars
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question, mesh_words
 from solidgear.judge.refinement import ONE_MESH, Progress
@@ -214,7 +214,7 @@ def bars_of_modes(
     if settled is None:
         return {}
     if without_axis(scene):
-        return stepped_bars(scene, body, found)
+        return coarser_bars(scene, body, found, settled.options)
     bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
         bars = mode_bars(scene, body, as_supports(scene), found)
@@ -223,6 +223,8 @@ def bars_of_modes(
     return bars | {name: settled.bars[name] for name in asked}
 
 
+#: the only model that holds a body without an axis
+MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
 NESTED = (1.0, 2.0, 4.0)
 
@@ -242,10 +244,11 @@ def _settled_body(
         options = {**LADDER[MODEL].given(scene, {}), **mesh}
         progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
         body = build(scene, MODEL, **options)
-        bars = static_bars(scene, body, points) if ask != "modes" else {}
+        bars = static_bars(scene, body, points, options) if ask != "modes" else {}
         if ask != "stiffness":
             found = modes(body, scene, scene.ask.modes)
-            bars |= {Quantity(name): bar for name, bar in stepped_bars(scene, body, found).items()}
+            told = coarser_bars(scene, body, found, options)
+            bars |= {Quantity(name): bar for name, bar in told.items()}
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]

@@ -10,7 +10,7 @@ from typing import Any
 
 from solidgear.body import as_supports
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.second_mesh import second_bars
+from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.solve.modes import modes
@@ -55,7 +55,7 @@ def judged(seed: int, element: str, refinement: float) -> list[dict[str, Any]]:
     body = build(scene, "solid", **options)
     found = modes(body, scene, scene.ask.modes)
     alone = time.process_time()
-    bars = second_bars(scene, body, found, options)
+    bars = coarser_bars(scene, body, found, options)
     share = (time.process_time() - alone) / (alone - start)
     exact = build(scene, "harmonic", **TRUTH)
     true = modes(exact, scene, scene.ask.modes + MORE)
