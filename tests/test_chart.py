@@ -12,10 +12,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.cli import chart as command
-from solidgear.judge.race import automatic
 from solidgear.judge.race import timing as racing
+from solidgear.judge.race.answers import answer
+from solidgear.judge.race.cases import AUTO, plan
 from solidgear.judge.race.pareto import Race, Row
 from solidgear.judge.race.timing import race
+from solidgear.quantity import QUANTITIES
 from solidgear.report import race_rows, race_style
 from solidgear.report.html import render_page, write_report
 from solidgear.report.panel import SHAPES
@@ -76,11 +78,7 @@ def light():
         patch.setattr(racing, "SURE", 1e-2)
         patch.setattr(racing, "_reference", once)
         patch.setattr(command, "setup_seconds", lambda: SETUP)
-        patch.setattr(command, "automatic_rows", list)
         yield
-
-
-AUTOMATIC = automatic.automatic_rows()
 
 
 @pytest.fixture(scope="module")
@@ -214,8 +212,8 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
 def test_the_automatic_choice_is_charted_at_its_largest_system():
     # the finest mesh is solved for bending and last for torsion alone, which has a fifth of it
     scene = sg.load("geometry/shaft_stepped.toml")
-    found = automatic.solved(scene, automatic.AUTO, {"tol": 1e-3}, 10)
-    told = sg.answer(scene, 1e-3, automatic.QUANTITIES)
+    found = answer(scene, AUTO, {"tol": 1e-3}, 10)
+    told = sg.answer(scene, 1e-3, QUANTITIES)
     most = max(step.unknowns or 0 for step in told.steps)
     # a mesh is told with all systems that were solved on it; the largest of three is no less than a third
     assert most / 3 <= found.body.size <= most
@@ -223,8 +221,8 @@ def test_the_automatic_choice_is_charted_at_its_largest_system():
 
 @pytest.mark.slow
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
-    rows = [replace(row) for row in AUTOMATIC[:2]]
-    found = race(sg.load(SCENE), rows, runs=1, sure=2e-4, solver=automatic.solved)
+    rows = [row for row in plan(sg.load(SCENE)) if row.model == AUTO][:2]
+    found = race(sg.load(SCENE), rows, runs=1, sure=2e-4)
     # a twentieth of the tighter tolerance
     assert max(found.reference["bands"].values()) < 5e-4
     assert [row.status for row in found.rows] == ["ok", "ok"]

@@ -12,10 +12,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
+from solidgear.judge.race import answers
 from solidgear.judge.race import timing as racing
+from solidgear.judge.race.answers import answer
 from solidgear.judge.race.cases import plan, setup_seconds
 from solidgear.judge.race.pareto import Race, Row, front
-from solidgear.judge.race.timing import answer, race, scaled_error
+from solidgear.judge.race.timing import race, scaled_error
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: coarse, but enough to give a bar
@@ -133,7 +135,7 @@ def test_scaled_error_sees_couplings_and_leaves_free_motions_out():
 @pytest.mark.parametrize("full", [False, True])
 def test_plan_has_every_family_uniform_and_graded_level_by_level(scene, full):
     names = {row.series for row in plan(scene, full)}
-    assert names == {"lumped", "Euler", "Timoshenko"} | {
+    assert names == {"lumped", "Euler", "Timoshenko", "automatic"} | {
         f"{kind} {grading}"
         for kind in ("harmonic h", "harmonic p", "TET4", "TET10", "HEX8", "HEX20", "HEX27")
         for grading in ("uniform", "graded")
@@ -220,7 +222,7 @@ def test_lumped_has_the_compliance_of_its_source_and_its_own_frequency(scene):
 
 
 def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeypatch):
-    monkeypatch.setattr(racing, "preferred", lambda made: None)
+    monkeypatch.setattr(answers, "preferred", lambda made: None)
     with pytest.raises(SolidgearError, match="no lumped mass is positive"):
         answer(scene, "lumped", {}, 10)
 

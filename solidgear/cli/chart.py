@@ -13,7 +13,6 @@ from solidgear.cli.app import Progress, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SolidgearError
-from solidgear.judge.race.automatic import automatic_rows, solved
 from solidgear.judge.race.cases import plan, setup_seconds
 from solidgear.judge.race.pareto import Race
 from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
@@ -125,8 +124,7 @@ def run_chart(
             once = setup_seconds()
             found = race(
                 scene,
-                sorted([*plan(scene, full), *automatic_rows()], key=lambda row: row.level),
-                solver=solved,
+                plan(scene, full),
                 runs=runs,
                 budget=budget,
                 sure=FULL_SURE if full else None,

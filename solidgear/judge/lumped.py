@@ -85,21 +85,18 @@ def sources() -> tuple[str, ...]:
 def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None:
     """(source model, variant) that stands for the lumped model."""
     for source in sources():
-        variants = lumped[source].variants if source in lumped else {}
-        for name in PREFERRED:
-            if name in variants and variants[name].feasible and variants[name].first:
-                return source, name
+        variant = preferred(lumped[source].variants) if source in lumped else None
+        if variant is not None:
+            return source, variant
     return None
 
 
-def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
+def preferred(made: Mapping[str, Synthesis] | Mapping[str, LumpedVariant]) -> str | None:
     """The variant that stands for the lumped model: mode-matched where it is physical and holds the
     mode as its first, else Guyan; None where neither does.
     """
-    for name in PREFERRED:
-        if made[name].feasible and made[name].first:
-            return made[name]
-    return None
+    good = (name for name in PREFERRED if name in made and made[name].feasible and made[name].first)
+    return next(good, None)
 
 
 def drawn(model: str) -> dict[str, str]:

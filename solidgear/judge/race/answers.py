@@ -1,7 +1,7 @@
-"""The automatic choice as one more line in a chart of error against cost.
+"""Answers of the rows of a chart of error against cost, that of the automatic choice among them.
 
-What it costs is the whole climb, every mesh that was tried included; what the other lines cost is
-one mesh, of which nobody has shown that it will do.
+What the automatic choice costs is the whole climb, every mesh that was tried included; what the other
+lines cost is one mesh, of which nobody has shown that it will do.
 """
 
 from __future__ import annotations
@@ -12,12 +12,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.errors import SolidgearError
 from solidgear.judge.answer import climbed
 from solidgear.judge.climb import Climb
-from solidgear.judge.race.pareto import AUTOMATIC, Row
-from solidgear.judge.race.timing import answer
-from solidgear.judge.solving import Answer, Statics
-from solidgear.quantity import QUANTITIES
+from solidgear.judge.lumped import preferred, sources
+from solidgear.judge.race.cases import AUTO
+from solidgear.judge.solving import Answer, Statics, solve
+from solidgear.ladder.model import LUMPED
+from solidgear.ladder.registry import LADDER
+from solidgear.quantity import FIRST_BENDING, QUANTITIES
+from solidgear.reduction.effective_mass import synthesise
 from solidgear.solve.condensed import Condensed
 from solidgear.solve.families import FAMILIES
 
@@ -25,37 +29,37 @@ if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene import Scene
 
-#: name of the model in rows of a chart
-AUTO = "auto"
-TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
-
-def automatic_rows() -> list[Row]:
-    """One row a tolerance.
-
-    Examples
-    --------
-    >>> [(row.level, row.options["tol"]) for row in automatic_rows()]
-    [(1, 0.1), (2, 0.01), (3, 0.001), (4, 0.0001)]
-    """
-    return [
-        Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
-        for level, tol in enumerate(TOLERANCES, start=1)
-    ]
-
-
-def solved(scene: Scene, model: str, options: dict, n: int) -> Answer:
-    """Answer of a row of a chart, the automatic ones included; a solver for
-    :func:`solidgear.judge.race.timing.race`.
+def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:
+    """Answer of one model, or of the automatic choice.
 
     Raises
     ------
     SolidgearError
         Where the model cannot be made.
     """
-    if model != AUTO:
-        return answer(scene, model, options, n)
-    climb, _ = climbed(scene, options["tol"], QUANTITIES, _Charted, lambda _: None)
+    if model == AUTO:
+        return _automatic(scene, options["tol"])
+    if LADDER[model].family == LUMPED:
+        return _lumped(scene, options, n)
+    return solve(scene, model, n, **options)
+
+
+def _lumped(scene: Scene, options: dict, n: int) -> Answer:
+    """The lumped model rests on the best beam, and has a first bending of its own."""
+    found = solve(scene, sources()[0], n, **options)
+    _, made = synthesise(found.body, scene, scene.port.name, found.modes)
+    chosen = preferred(made)
+    hertz = None if chosen is None else made[chosen].frequency_hz
+    if hertz is None:
+        raise SolidgearError(
+            "no lumped mass is positive and has the first bending mode as its first"
+        )
+    return replace(found, quantities=found.quantities | {FIRST_BENDING: hertz})
+
+
+def _automatic(scene: Scene, tol: float) -> Answer:
+    climb, _ = climbed(scene, tol, QUANTITIES, _Charted, lambda _: None)
     assert climb.largest is not None and climb.modes is not None  # everything was asked
     values = {v.quantity: v.value for v in climb.values()}
     return Answer(climb.largest, Statics(_together(climb)), climb.modes, values)
