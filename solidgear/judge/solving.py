@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.judge.quantities import measure
 from solidgear.ladder import build
-from solidgear.machine.meter import Meter
 from solidgear.quantity import ACROSS, QUANTITIES, STIFFNESS, Quantity
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
@@ -150,6 +149,12 @@ class Answer:
     quantities: dict[Quantity, float]
     supports: Supports | None = None
 
+    @classmethod
+    def of(cls, body: Body, supports: Supports, statics: Statics, modes: ModeSet) -> Answer:
+        """With the numbers of its statics and modes."""
+        values = measure(statics.main, modes, statics.further, statics.coupled)
+        return cls(body, statics, modes, values, supports)
+
     @property
     def numbers(self) -> Numbers:
         """Its numbers and what the solver may have left in them; they outlive the body."""
@@ -228,98 +233,35 @@ def solve(
     n: int = ENOUGH,
     *,
     max_frequency: float | None = None,
-    count: bool = False,
-    ovalising: bool = False,
-    meter: Meter | None = None,
     **options: Any,
 ) -> Answer:
-    """Build one model of a scene and solve it as the scene is tied.
-
-    Parameters
-    ----------
-    model : str
-        One that builds a body.
-    n : int
-        Elastic shapes, twins counted twice.
-    max_frequency : float, optional
-        Hz; modes above are left out.
-    count : bool
-        Whether modes are counted by the inertia of a second factor.
-    ovalising : bool
-        Whether families of two waves around and more are searched.
-    meter : Meter, optional
-        Given the seconds of every stage.
-    **options
-        Of the builder.
-
-    Raises
-    ------
-    SolidgearError
-        As the builder, the statics and the modes do.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> found = solve(sg.load("geometry/shaft_stepped.toml"), "timoshenko")
-    >>> list(found.quantities)[:3]
-    ['C_zz', 'C_z,thx', 'C_thx']
+    """Build one model of a scene and solve it as the scene is tied: so many elastic shapes, twins counted
+    twice, up to a frequency in Hz. Errors are those of the builder, the statics and the modes.
     """
-    meter = meter or Meter()
-    with meter.stage("build"):
-        body = build(scene, model, **options)
-    return answered(
-        body,
-        as_supports(scene),
-        [port.name for port in scene.ports],
-        n=n,
-        max_frequency=max_frequency,
-        count=count,
-        ovalising=ovalising,
-        meter=meter,
-    )
+    body = build(scene, model, **options)
+    ports = [port.name for port in scene.ports]
+    return answered(body, as_supports(scene), ports, n, max_frequency=max_frequency)
 
 
 def answered(
     body: Body,
     supports: Supports,
     ports: Sequence[str],
-    attachments: Sequence[str | None] | str | None = None,
-    *,
     n: int = ENOUGH,
-    max_frequency: float | None = None,
-    count: bool = False,
-    ovalising: bool = False,
     wanted: Iterable[str] = (),
-    spare: bool = False,
-    meter: Meter,
+    *,
+    ovalising: bool = False,
+    **options: Any,
 ) -> Answer:
-    """Answer of a body on some supports; parameters as for :func:`solve`.
+    """Answer of a body on some supports.
 
     Parameters
     ----------
     ports : sequence of str
         Names of the lumped points, the main one first.
-    attachments : str or sequence of str, optional
-        Of the lumped points; by default the body's first.
-    wanted : iterable of str
-        Names of modes that are searched for until they are there.
-    spare : bool
-        Whether one more of the same motion is wanted above each.
+    n, wanted, **options
+        As for :func:`searched`.
     """
-    with meter.stage("statics"):
-        statics = Statics.at(body, supports, ports, attachments)
-    with meter.stage("modes"):
-        found = searched(
-            body,
-            supports,
-            n,
-            wanted,
-            spare=spare,
-            max_frequency=max_frequency,
-            count=count,
-            ovalising=ovalising,
-        )
-    # Evidence, not part of the answer: kept apart from what the modes cost.
-    meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
-    values = measure(statics.main, found, statics.further, statics.coupled)
-    return Answer(body, statics, found, values, supports)
+    statics = Statics.at(body, supports, ports)
+    found = searched(body, supports, n, wanted, ovalising=ovalising, **options)
+    return Answer.of(body, supports, statics, found)
