@@ -42,7 +42,6 @@ from solidgear.solve.mixtures import mixtures
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
-    from solidgear.solve.modes import Mode
 
 
 def recorded(
@@ -60,8 +59,6 @@ def recorded(
     ----------
     failed : dict of str to str
         Models that could not be solved, and why.
-    lumped : dict of str to LumpedRecord
-        From :func:`solidgear.judge.lumped.synthesise_all`.
     complete : bool
         False after an interrupt.
     """
@@ -217,9 +214,12 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
-        points=_points(solution.ties[SCENE].statics),
+        points={
+            name: PointRecord.model_validate(there)
+            for name, there in solution.ties[SCENE].statics.further.items()
+        },
         coupled=_coupled(solution.ties[SCENE].statics),
-        modes=[_mode_record(m) for m in solution.modes.modes],
+        modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
         band=_bar_summary(solution),
         convergence=_convergence(solution),
         dofs=solution.body.size,
@@ -229,13 +229,6 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
         mesh=solution.body.mesh,
         evidence=_evidence(solution),
     )
-
-
-def _points(found: Statics) -> dict[str, PointRecord]:
-    return {
-        name: PointRecord(stiffness=there.stiffness, compliance=there.compliance)
-        for name, there in found.further.items()
-    }
 
 
 def _coupled(found: Statics) -> CoupledRecord | None:
@@ -295,23 +288,12 @@ def _evidence(solution: Solution) -> EvidenceRecord:
     )
 
 
-def _mode_record(mode: Mode) -> ModeRecord:
-    return ModeRecord(
-        name=mode.name,
-        family=mode.family,
-        frequency_hz=mode.frequency_hz,
-        multiplicity=mode.multiplicity,
-        captured=mode.captured,
-        error=mode.error,
-    )
-
-
 def _variant_record(found: Answer) -> VariantRecord:
     return VariantRecord(
         quantities=found.quantities,
         stiffness=found.statics.main.stiffness,
         compliance=found.statics.main.compliance,
-        modes=[_mode_record(m) for m in found.modes.modes],
+        modes=[ModeRecord.model_validate(m) for m in found.modes.modes],
     )
 
 
