@@ -22,7 +22,7 @@ from solidgear.judge.sequence_bars import sequence_bars
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, Answer, Numbers, searched
 from solidgear.judge.tied import judged_modes, level_of, solved_ties, tied_answer
-from solidgear.judge.ties import SCENE, SECTION, rigid_seats
+from solidgear.judge.ties import SCENE, SECTION, attached
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HEAVY
 from solidgear.ladder.model import SOLID
@@ -54,10 +54,8 @@ def study(
 
     Parameters
     ----------
-    model : str
-        Name of it in the ladder.
     options : mapping, optional
-        Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
+        Of the builder; where they speak of the mesh, that mesh is solved, and of a solid on a list of
         meshes two coarser ones.
     share : float, optional
         Error bars of the judged quantities are wanted below the tolerance of the scene divided by
@@ -68,8 +66,6 @@ def study(
         Count the modes, and solve the other attachments.
     counted : bool
         Whether modes are counted as part of it.
-    progress : callable
-        Told in words what is going on.
     keep : callable
         Given what there is after every mesh, for an interrupt to leave it.
 
@@ -292,11 +288,7 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                 elif attachment == "section" and SECTION in solution.ties:
                     solution.variants[attachment] = solution.ties[SECTION]
                 elif LADDER[solution.model].section_ties:
-                    changed = (
-                        rigid_seats(scene)
-                        if attachment == "rigid"
-                        else scene.with_attachment(attachment)
-                    )
+                    changed = attached(scene, attachment)
                     body = build(changed, solution.model, **solution.options)
                     solution.variants[attachment] = tied_answer(
                         changed, body, as_supports(changed), None, spare, False
