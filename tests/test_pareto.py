@@ -29,20 +29,6 @@ def scene():
     return sg.load(GEOMETRY / "shaft_stepped.toml")
 
 
-def rows():
-    return [
-        Row("beam", "Timoshenko", 1, "timoshenko", {}),
-        Row("harmonic", "harmonic p uniform", 1, "harmonic", {"order": 99}),
-        Row(
-            "harmonic",
-            "harmonic h uniform",
-            1,
-            "harmonic",
-            {"order": 2, "layers": 0, "edge_layers": 0},
-        ),
-    ]
-
-
 def made(points, bar=1e-4, **more):
     """A race of (seconds, unknowns, error) by hand."""
     table = [
@@ -164,22 +150,17 @@ def test_uniform_means_no_grading(scene):
 
 
 # ------------------------------------------------------------------------------------------------- race
-@pytest.fixture(scope="module")
-def raced(scene):
-    return race(scene, rows(), runs=3, sure=1e-2)
-
-
 def test_a_failure_is_a_row_with_its_reason_and_stops_nothing(raced):
-    beam, bad, good = raced.rows
+    _, beam, good, bad, _ = raced.rows
     assert [beam.status, bad.status, good.status] == ["ok", "failed", "ok"]
     assert "order 99" in bad.reason and bad.errors == {} and raced.error(bad, "C_zz") is None
-    assert len(beam.samples) == len(good.samples) == 3 and len(bad.samples) == 1
+    assert len(beam.samples) == len(good.samples) == 2 and len(bad.samples) == 1
     assert raced.complete
 
 
 def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
-    beam = raced.rows[0]
-    body = sg.build(scene, "timoshenko")
+    beam = raced.rows[1]
+    body = sg.build(scene, "timoshenko", **beam.options)
     c = sg.condense(body, scene, scene.port.name).compliance[2, 2]
     f = sg.modes(body, scene, 10).named("bending 1").frequency_hz
     reference = sg.build(scene, "harmonic", **raced.reference["options"])
@@ -196,7 +177,7 @@ def test_like_for_like_is_against_section_ties(scene, raced):
     tied = scene.with_attachment("section")
     reference = sg.build(tied, "harmonic", **raced.reference["options"])
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
-    beam = raced.rows[0]
+    beam = raced.rows[1]
     own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[
         2, 2
     ]
@@ -406,15 +387,6 @@ def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monke
     row = found.rows[0]
     assert row.status == "ok" and row.reason == "found no bending 1"
     assert found.error(row, "bending 1") is None and found.error(row, "C_zz") > 0
-
-
-@pytest.mark.parametrize(
-    "wrong", [{"runs": 0}, {"budget": 0.0}, {"budget": float("nan")}, {"budget": float("inf")}]
-)
-def test_bad_settings_are_refused_before_anything_runs(scene, monkeypatch, wrong):
-    monkeypatch.setattr(racing, "_reference", lambda *_: pytest.fail("it ran"))
-    with pytest.raises(SolidgearError, match=next(iter(wrong))):
-        race(scene, [], **wrong)
 
 
 def test_a_free_shaft_is_charted_by_its_frequency_alone():

@@ -73,7 +73,7 @@ def asking(tolerance, quantities=()):
 
 
 def judged(solutions, tolerance, quantities=(), notices=()):
-    reference, _ = trusted(solutions, tolerance)
+    reference, _ = trusted(solutions, tolerance, JUDGED)
     gaps = deviations(solutions, reference) if reference else []
     return judge(asking(tolerance, quantities), solutions, gaps, notices)
 

@@ -94,22 +94,12 @@ def run_chart(
     budget: float | None = None,
     quiet: bool = False,
 ) -> tuple[Race, bool]:
-    """Run and write the chart of a scene, and put it into the report that an earlier comparison of
-    it left there.
+    """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left
+    there; with whether there was such a report.
 
-    Returns
-    -------
-    race : solidgear.judge.race.pareto.Race
-        After Ctrl-C with what there was, ``complete`` False.
-    reported : bool
-        Whether there was such a report.
-
-    Raises
-    ------
-    SolidgearError
-        For a bad number, a folder that cannot be written, a scene with nothing to chart or a
-        comparison of it by another version of solidgear, before anything is timed; where no case
-        has an answer.
+    SolidgearError for a bad number, a folder that cannot be written, a scene with nothing to chart or a
+    comparison of it by another version of solidgear, before anything is timed; where no case has an
+    answer.
     """
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")

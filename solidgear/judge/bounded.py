@@ -20,6 +20,7 @@ from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import LEAST, ErrorBar
 from solidgear.judge.quantities import Values, in_order, size
 from solidgear.judge.solving import Statics, widened
+from solidgear.judge.steps import METHOD
 from solidgear.quantity import STIFFNESS, Quantity
 from solidgear.scene.coned import coned
 from solidgear.solve.modes import ModeSet, modes
@@ -28,8 +29,6 @@ from solidgear.solve.statics import flexibility
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: where these bars come from, in words
-METHOD = "local problems"
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
 
@@ -58,18 +57,13 @@ def bounded(
     solver: Values,
     later: ModeSet | None = None,
 ) -> Bounded:
-    """Bars of a harmonic body by local problems.
+    """Bars of some numbers of a harmonic body by local problems, from what was condensed and solved of it
+    and the relative error that the solver may have left.
 
     Parameters
     ----------
-    statics : Statics or None
-        What was condensed, None where nothing static is asked for.
-    names : sequence of Quantity
-        Those whose bars are wanted.
-    solver : mapping
-        Relative error that the solver may have left.
     later : ModeSet, optional
-        As for :func:`~solidgear.bounds.harmonic.harmonic_bounds`.
+        Modes in other supports, whose bars will be asked for.
     """
     asked = [q for q in names if q.is_frequency]
     bounds = harmonic_bounds(
@@ -107,29 +101,9 @@ def bounded(
 
 
 def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
-    """Error bars of the frequencies of a harmonic body, which lie above the exact ones, of all
-    families.
-
-    Parameters
-    ----------
-    found : ModeSet
-        Of the body.
-
-    Returns
-    -------
-    dict of str to float
-        Relative, by the names of elastic modes; without those that no other mode of their family was
-        found above.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> from solidgear.body import as_supports
-    >>> scene = sg.load("geometry/cylinder_free.toml")
-    >>> body = sg.build(scene, "harmonic", order=4, layers=0)
-    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 4))
-    >>> bars["bending 1"] < 1e-3
-    True
+    """Error bars of the frequencies of a harmonic body, which lie above the exact ones, of all families:
+    relative, by the names of elastic modes; without those that no other mode of their family was found
+    above.
     """
     names = [m.name for m in found.modes if m.frequency_hz > 0]
     if not names:

@@ -39,7 +39,7 @@ def sequence_bars(
     sizes: Listed[float | None],
     around: Values | None = None,
 ) -> dict[Quantity, ErrorBar]:
-    """Error bars of the finest of some meshes.
+    """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
 
     Parameters
     ----------
@@ -47,16 +47,8 @@ def sequence_bars(
         Tied as the levels are.
     plan : Sequence
         That the meshes are of.
-    model : Model
-        With a :class:`~solidgear.bounds.safety.Safety`.
-    levels : sequence of mappings
-        Quantity to value, coarse to fine.
-    solver : mapping
-        Relative error the solver may have left in the finest level.
     sizes : sequence of float
         Representative size of the cells of every level, m.
-    around : mapping, optional
-        Relative error that the cells around leave.
 
     Returns
     -------
@@ -85,22 +77,11 @@ def sharpest(scene: Scene) -> float:
 
 
 def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:
-    """Changes by features of the quantities that a model has shares of.
+    """Changes by features of the quantities that a model has shares of, relative and positive; empty where
+    it has none.
 
-    Parameters
-    ----------
-    scene : Scene
-        With features.
-    safety : Safety
-        Of the model.
-    values : mapping
-        What it says of the quantities.
-
-    Returns
-    -------
-    dict of Quantity to float
-        Relative and positive; empty where the model has no shares. A bending frequency is held
-        against the nearest one of the plain part: features may change their order and their names.
+    A bending frequency is held against the nearest one of the plain part: features may change their
+    order and their names.
     """
     if not safety.share:
         return {}

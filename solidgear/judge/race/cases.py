@@ -25,12 +25,8 @@ TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
 
 def plan(scene: Scene, full: bool = False) -> list[Row]:
     """Series of every family, uniform and graded, level by level, and the automatic choice by its
-    tolerances; of a model that does not fit the scene one row that says why.
-
-    Parameters
-    ----------
-    full : bool
-        More levels, up to solids of several hundred thousand unknowns.
+    tolerances; of a model that does not fit the scene one row that says why. With more levels when full,
+    up to solids of several hundred thousand unknowns.
     """
     rows = [
         Row(family, label, level, model.name, options)

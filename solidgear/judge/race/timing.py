@@ -49,11 +49,11 @@ def race(
     progress: Callable[[str], None] = lambda _: None,
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
-    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all alike.
+    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all alike; after
+    Ctrl-C with what there was, ``complete`` False.
 
     Parameters
     ----------
-    scene : Scene
     rows : list of Row
         Such as :func:`solidgear.judge.race.cases.plan` makes; they are filled in.
     runs : int
@@ -65,26 +65,15 @@ def race(
         Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
         What a process pays once, for the record.
-    progress : callable
-        Told in words what is going on.
     keep : callable
         Given the race after every run, for writing it down.
-
-    Returns
-    -------
-    Race
-        After Ctrl-C with what there was, ``complete`` False.
 
     Raises
     ------
     SolidgearError
-        If ``runs`` or ``budget`` are not positive, the reference fails or has none of the charted
-        quantities with a bar, or no row has an answer.
+        If the reference fails or has none of the charted quantities with a bar, or no row has an
+        answer.
     """
-    if runs < 1:
-        raise SolidgearError(f"runs = {runs} is not usable; give a whole number of at least 1")
-    if not budget > 0 or not np.isfinite(budget):
-        raise SolidgearError(f"budget = {budget:g} is not usable; give seconds above 0")
     start = time.perf_counter()
     n = max(scene.ask.modes, 10)
     against, compliance = _reference(scene, sure or SURE, n, progress)
