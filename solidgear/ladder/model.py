@@ -267,6 +267,10 @@ class Ladder:
         """
         return tuple(n for n in self.bodies if self[n].concerns(scene))
 
+    def holding(self, scene: Any) -> tuple[str, ...]:
+        """Those with a body of their own that model all of a scene."""
+        return tuple(n for n in self.bodies if not self[n].unfit(scene))
+
     @property
     def judges(self) -> tuple[str, ...]:
         """Models from the one that judges best to the one that judges worst: solids, the cheaper

@@ -241,7 +241,7 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         (),
         f"not of revolution{known}: {names}; all that is told of the shaft is of its plain part",
     )
-    fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
+    fit = LADDER.holding(scene)
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")

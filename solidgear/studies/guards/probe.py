@@ -86,8 +86,7 @@ class Probe:
         """
         if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
             return usual
-        fit = [name for name in LADDER.bodies if not LADDER[name].unfit(self.whole)]
-        return " or ".join(fit) or "a scene with fewer of its features"
+        return " or ".join(LADDER.holding(self.whole)) or "a scene with fewer of its features"
 
     @property
     def beam_fits(self) -> bool:
