@@ -1,9 +1,25 @@
-"""Charts as tests look at them: the words of their marks and their texts."""
+"""Charts as tests look at them: the words of their marks and their texts; cases of a small race."""
 
 import html
 import re
 
+from solidgear.judge.race.pareto import Row
 from solidgear.report.plot import Chart
+
+SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}
+
+
+def few(scene=None, full=False):
+    """Cases of a race: one that fails, and the last better than the bar of a light reference."""
+    coarse = {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5}
+    fine = {"order": 4, "layers": 2, "edge_layers": 1}
+    return [
+        Row("lumped", "lumped", 1, "lumped", {}),
+        Row("beam", "Timoshenko", 1, "timoshenko", {"elements": 1}),
+        Row("harmonic", "harmonic h uniform", 1, "harmonic", coarse),
+        Row("harmonic", "harmonic p graded", 1, "harmonic", {"order": 99}),
+        Row("harmonic", "harmonic p graded", 2, "harmonic", fine),
+    ]
 
 
 def words_of(svg):

@@ -186,6 +186,17 @@ def run(monkeypatch, capsys, tmp_path, no_sudden_end):
     return call
 
 
+@pytest.fixture(scope="session")
+def raced():
+    """A small race on a light reference."""
+    import solidgear as sg
+    from solidgear.judge.race.timing import race
+    from tests.charted import SETUP, few
+
+    scene = sg.load(Path(__file__).parent.parent / "geometry" / "shaft_stepped.toml")
+    return race(scene, few(), runs=2, sure=1e-2, setup=SETUP)
+
+
 @pytest.fixture
 def two_meshes(monkeypatch):
     """A climb that ends with its second mesh, where a tolerance of 1e-8 is far away."""

@@ -209,6 +209,7 @@ def test_what_holds_a_bar_back_is_named(two_meshes):
     found = answer(sg.Scene.from_parts(parts, port=port, bearings=[held]), 1e-8, "C_zz")
     assert not found.reached
     why = found.steps[-1].why
+    assert found.bar > 1e-8 and found.steps[-1].chosen and why.startswith("2 meshes did not do")
     assert why.endswith("most of the bar comes from the shoulder at y = 60 mm, r = 20 mm")
 
 
@@ -263,12 +264,6 @@ def test_beams_are_passed_over_with_the_reason(scenes):
     assert set(passed) == set(LADDER.of("beam"))
     assert all("no error of their own" in why for why in passed.values())
     assert sum(s.chosen for s in found.steps) == 1
-
-
-def test_past_the_last_mesh_the_best_is_given_and_not_called_reached(scenes, two_meshes):
-    found = answer(scenes["pinion_overhung"], 1e-6, "C_zz")
-    assert not found.reached and found.bar > 1e-6
-    assert "2 meshes did not do" in found.steps[-1].why and found.steps[-1].chosen
 
 
 def test_a_finer_mesh_that_fails_leaves_the_answer_of_the_one_before(scenes, builds_until):

@@ -23,9 +23,9 @@ from solidgear.bounds.harmonic import (
 )
 from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import ErrorBar
-from solidgear.judge.bounded import Statics, bounded
+from solidgear.judge.bounded import bounded
 from solidgear.judge.quantities import measure, size
-from solidgear.judge.solving import searched
+from solidgear.judge.solving import Statics, searched
 from solidgear.quantity import Quantity
 from solidgear.scene import STEEL, Fillet, Housing, Material
 from solidgear.scene.coned import coned
@@ -126,7 +126,7 @@ def one(request):
     )
     here, there = (condense(one, supports, "p") for one in (body, fine))
     # what the solver leaves of such small bodies is far below
-    judged = bounded(scene, body, supports, Statics(here, {}), found, MODES, {})
+    judged = bounded(scene, body, supports, Statics(here), found, MODES, {})
     bounds = harmonic_bounds(coned(scene), body, statics=True)
     values, exact = measure(here, found), measure(there, truth)
     return Solved(scene, body, values, judged.error_bars, bounds, fine, exact)

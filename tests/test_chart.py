@@ -12,10 +12,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.cli import chart as command
-from solidgear.judge.race import automatic
 from solidgear.judge.race import timing as racing
+from solidgear.judge.race.answers import answer
+from solidgear.judge.race.cases import AUTO, plan
 from solidgear.judge.race.pareto import Race, Row
 from solidgear.judge.race.timing import race
+from solidgear.quantity import QUANTITIES
 from solidgear.report import race_rows, race_style
 from solidgear.report.panel import SHAPES
 from solidgear.report.race_figure import draw, race_chart
@@ -30,33 +32,14 @@ from solidgear.report.race_rows import (
     write_rows,
 )
 from solidgear.report.race_tables import front_rows, section
-from tests.charted import texts_of, words_of
+from tests.charted import SETUP, few, texts_of, words_of
 from tests.plain import render_page, write_report
 
 ROOT = Path(__file__).parent.parent
 SCENE = ROOT / "geometry" / "shaft_stepped.toml"
 COARSE = {"order": 3, "layers": 0, "edge_layers": 0}
-#: better than the bar of the reference
-FINE = {"order": 4, "layers": 2, "edge_layers": 1}
 #: of the chart in the report
 SPEED = 'aria-label="Error against wall time'
-SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}
-
-
-def few(scene=None, full=False):
-    return [
-        Row("lumped", "lumped", 1, "lumped", {}),
-        Row("beam", "Timoshenko", 1, "timoshenko", {"elements": 1}),
-        Row(
-            "harmonic",
-            "harmonic h uniform",
-            1,
-            "harmonic",
-            {"order": 2, "layers": 0, "edge_layers": 0, "refinement": 0.5},
-        ),
-        Row("harmonic", "harmonic p graded", 1, "harmonic", {"order": 99}),
-        Row("harmonic", "harmonic p graded", 2, "harmonic", FINE),
-    ]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -76,16 +59,7 @@ def light():
         patch.setattr(racing, "SURE", 1e-2)
         patch.setattr(racing, "_reference", once)
         patch.setattr(command, "setup_seconds", lambda: SETUP)
-        patch.setattr(command, "automatic_rows", list)
         yield
-
-
-AUTOMATIC = automatic.automatic_rows()
-
-
-@pytest.fixture(scope="module")
-def raced():
-    return race(sg.load(SCENE), few(), runs=2, setup=SETUP)
 
 
 @pytest.fixture
@@ -110,6 +84,8 @@ def test_what_is_written_is_what_is_read(raced, tmp_path):
     again = read_race(tmp_path)
     assert [asdict(r) for r in again.rows] == [asdict(r) for r in raced.rows]
     assert again == raced
+    machine = json.loads((tmp_path / MACHINE).read_text())
+    assert machine["environment"]["numpy"] and machine["environment"]["cores"]
     assert not list(tmp_path.glob(".*"))
 
 
@@ -133,14 +109,6 @@ def test_rows_hold_every_case_with_runs_times_errors_and_reasons(raced, tmp_path
     )
     # the last case is within the bar of the reference, which is as good as it gets
     assert lines[4]["resolved_C_zz"] == "no" and "seconds" in lines[4]["front_C_zz"]
-
-
-def test_machine_block_says_where_times_and_errors_come_from(raced, tmp_path):
-    write_rows(raced, tmp_path)
-    machine = json.loads((tmp_path / MACHINE).read_text())
-    assert machine["environment"]["numpy"] and machine["environment"]["cores"]
-    assert 0 < machine["reference"]["bands"]["C_zz"] < 1e-2 and machine["reference"]["setting"]
-    assert machine["setup"]["gmsh, first use"] == 0.1 and machine["runs"] == 2
 
 
 @pytest.mark.parametrize(
@@ -214,8 +182,8 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
 def test_the_automatic_choice_is_charted_at_its_largest_system():
     # the finest mesh is solved for bending and last for torsion alone, which has a fifth of it
     scene = sg.load("geometry/shaft_stepped.toml")
-    found = automatic.solved(scene, automatic.AUTO, {"tol": 1e-3}, 10)
-    told = sg.answer(scene, 1e-3, automatic.QUANTITIES)
+    found = answer(scene, AUTO, {"tol": 1e-3}, 10)
+    told = sg.answer(scene, 1e-3, QUANTITIES)
     most = max(step.unknowns or 0 for step in told.steps)
     # a mesh is told with all systems that were solved on it; the largest of three is no less than a third
     assert most / 3 <= found.body.size <= most
@@ -223,8 +191,8 @@ def test_the_automatic_choice_is_charted_at_its_largest_system():
 
 @pytest.mark.slow
 def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
-    rows = [replace(row) for row in AUTOMATIC[:2]]
-    found = race(sg.load(SCENE), rows, runs=1, sure=2e-4, solver=automatic.solved)
+    rows = [row for row in plan(sg.load(SCENE)) if row.model == AUTO][:2]
+    found = race(sg.load(SCENE), rows, runs=1, sure=2e-4)
     # a twentieth of the tighter tolerance
     assert max(found.reference["bands"].values()) < 5e-4
     assert [row.status for row in found.rows] == ["ok", "ok"]

@@ -193,7 +193,7 @@ def test_ratios_notice_a_tie_and_a_shear_coefficient(monkeypatch):
     right = beam_element.shear_coefficient
     monkeypatch.setattr(beam_element, "shear_coefficient", lambda nu, a, b: 1.01 * right(nu, a, b))
     assert not all(line.ok for line in judged("pinion_beam_over_solid", "B"))
-    monkeypatch.setattr(pinion, "rigid_seats", lambda scene: scene)
+    monkeypatch.setattr(pinion, "attached", lambda scene, _: scene)
     assert not any(line.ok for line in judged("pinion_seat_ties", "A"))
 
 

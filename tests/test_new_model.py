@@ -73,6 +73,7 @@ def printed(renderable):
 
 def test_it_is_compared_and_judged(found):
     record = found.record
+    assert (record.models["coarse"].colour, record.models["coarse"].marker) == ("#123456", "X")
     assert list(record.models) == ["coarse", "timoshenko", "harmonic"]
     # fewer elements, marks of the scene included: measured 7 against 40
     assert record.models["coarse"].dofs < 0.6 * record.models["timoshenko"].dofs
@@ -133,11 +134,6 @@ def test_it_is_charted(ladder, scene):
     assert done.rows[0].status == "ok" and 0 < done.rows[0].errors["bending 1"] < 0.2
     texts = texts_of(race_chart(done))
     assert any("coarse" in text for text in texts)
-
-
-def test_it_has_its_own_colour(found):
-    assert found.record.models["coarse"].colour == "#123456"
-    assert found.record.models["coarse"].marker == "X"
 
 
 @pytest.mark.long

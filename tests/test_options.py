@@ -142,16 +142,14 @@ def test_settings_of_the_command_line():
         options(["order=3", "order=5"])
 
 
-def test_a_single_name_or_number_is_a_list_of_one():
-    assert LADDER["harmonic"].checked({"ovalising": 2, "attachments": "rigid"}) == {
-        "ovalising": (2,),
-        "attachments": ("rigid",),
+def test_a_single_name_number_or_place_is_a_list_of_one():
+    given = {
+        "ovalising": 2,
+        "attachments": "rigid",
+        "cuts": (0.12, 0.025, 1),
+        "across": (0.12, 0.01),
     }
-
-
-@pytest.mark.parametrize(("name", "place"), [("cuts", (0.12, 0.025, 1)), ("across", (0.12, 0.01))])
-def test_a_single_place_is_a_list_of_one(name, place):
-    assert LADDER["harmonic"].checked({name: place}) == {name: (place,)}
+    assert LADDER["harmonic"].checked(given) == {name: (one,) for name, one in given.items()}
 
 
 @pytest.mark.parametrize("name", ["cuts", "across"])

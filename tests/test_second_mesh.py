@@ -32,3 +32,11 @@ def test_the_second_mesh_may_be_left_out(run):
         "modes", GEOMETRY / "cylinder_free.toml", "-f", "solid", "--no-bars", "--set=refinement=0.4"
     )
     assert code == 0 and "No bars: the model was given" in out
+
+
+def test_a_mesh_of_the_fewest_cells_has_no_coarser_one_and_no_bar(run, tmp_path):
+    path = tmp_path / "block.toml"
+    material = "material = { E = 2.1e11, nu = 0.3, density = 7850.0 }"
+    path.write_text(f"{material}\nbody = {{ block = [0.02, 0.03, 0.01] }}\n")
+    code, out, _ = run("modes", path, "-f", "solid", "--json", "-n", "2", "--set=refinement=0.05")
+    assert code == 0 and {mode["bar"] for mode in json.loads(out)["modes"]} == {None}

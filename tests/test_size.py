@@ -61,12 +61,12 @@ def test_unknowns_are_those_of_the_body(scene, model, options):
     assert not whole or size.entries == held
 
 
-@pytest.mark.parametrize("name, least", [("pinion_overhung", 1 / 3), ("cylinder_free", 1 / 3)])
-def test_rough_numbers_are_good_to_a_factor_of_three(name, least):
+@pytest.mark.parametrize("name", ["pinion_overhung", "cylinder_free"])
+def test_rough_numbers_are_good_to_a_factor_of_three(name):
     given = {"element": "tet10", "refinement": 0.6}
     solid = LADDER["solid"]
     rough = solid.rough_unknowns(SCENES[name], given)
-    assert least < rough / solid.size(SCENES[name], given).unknowns < 3
+    assert 1 / 3 < rough / solid.size(SCENES[name], given).unknowns < 3
 
 
 def test_small_elements_at_edges_make_many():

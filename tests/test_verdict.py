@@ -11,7 +11,7 @@ from solidgear.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_ver
 from solidgear.judge.quantities import JUDGED
 from solidgear.judge.record import GuardRecord, LevelRecord
 from solidgear.judge.solution import Solution
-from solidgear.judge.solving import Answer
+from solidgear.judge.solving import Answer, Statics
 from solidgear.judge.ties import SCENE, SECTION
 from solidgear.judge.verdict import judge, percent, trusted
 from solidgear.quantity import Quantity
@@ -47,7 +47,7 @@ def tied(c_zz=1.0, bending=100.0, **others):
     found = ModeSet("any", modes, STATIONS, np.eye(6 * len(STATIONS)))
     return Answer(
         SimpleNamespace(size=10, mesh={}),
-        SimpleNamespace(attachment="average", evidence={"residual": 0.0}),
+        Statics(SimpleNamespace(attachment="average", evidence={"residual": 0.0})),
         found,
         {Quantity(q): v for q, v in {"C_zz": c_zz, "bending 1": bending, **others}.items()},
     )
@@ -73,7 +73,7 @@ def asking(tolerance, quantities=()):
 
 
 def judged(solutions, tolerance, quantities=(), notices=()):
-    reference, _ = trusted(solutions, tolerance)
+    reference, _ = trusted(solutions, tolerance, JUDGED)
     gaps = deviations(solutions, reference) if reference else []
     return judge(asking(tolerance, quantities), solutions, gaps, notices)
 

@@ -517,8 +517,8 @@ MUTATIONS = (
         "two points: stiffness as sure as the compliance it is inverted from",
         "solidgear/judge/solving.py",
         "_left",
-        "coupled.evidence['stiffness_error']",
-        "coupled.evidence['residual']",
+        "inverted.evidence['stiffness_error']",
+        "inverted.evidence['residual']",
         "tests/test_point_bars.py::test_stiffness_between_points_carries_what_its_inverse_loses",
     ),
     Mutation(

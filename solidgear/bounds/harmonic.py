@@ -276,21 +276,15 @@ def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) ->
 def vibration_energies(
     scene: Scene, body: Body, fields: Mapping[int, np.ndarray], value: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Energies of the local solutions of modes of something that a body is a part of.
+    """Energies of the local solutions of modes of something that a body is a part of, by the richer space
+    and by one of an order less, rad^2/s^2.
 
     Parameters
     ----------
-    scene : Scene
-        As for :func:`harmonic_bounds`.
     fields : dict of int to (n, k) ndarray
         Unknowns of blocks by their index, of unit mass of the whole.
     value : (k,) ndarray
         Eigenvalues, rad^2/s^2.
-
-    Returns
-    -------
-    whole, less : (k,) ndarray
-        By the richer space, and by one of an order less, rad^2/s^2.
     """
     space, out = richer_space(scene, body), np.zeros((2, len(value)))
     for index, block in _originals(body, ()):

@@ -17,13 +17,10 @@ from solidgear.kernel.local_problems import Cell, condensed, energies, merged
 def local_energies(
     space: RicherSpace, block: Block, loading: Loading
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Products of energy of the local solutions, cell by cell of the mesh.
+    """(ne, k, k) products of energy of the local solutions, cell by cell of the mesh.
 
-    Returns
-    -------
-    whole, lower : (ne, k, k) ndarray
-        Their sum bounds the errors of the displacements, as far as the richer space sees them, and as
-        far as one of an order less does.
+    Their sum bounds the errors of the displacements, as far as the richer space sees them, and as far as
+    one of an order less does.
     """
     work = _Loaded(space, block, loading)
     whole, lower = work.cells()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -18,9 +17,10 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.answer import Answered, Step
 from solidgear.judge.answer import answer as solve
 from solidgear.judge.open_record import OpenNumbers
+from solidgear.judge.record import WhereRecord
 from solidgear.judge.settle import Settled
 from solidgear.judge.steps import ABOVE, BELOW
-from solidgear.judge.where import Whereabouts, where
+from solidgear.judge.where import where
 from solidgear.ladder.registry import LADDER
 from solidgear.models.kinds import PARTS
 from solidgear.quantity import Quantity
@@ -67,7 +67,7 @@ def answer(
     loaded = load(scene)
     for sentence in facing_one_way(loaded):
         print(caution(sentence), file=sys.stderr)
-    places: Whereabouts | None = None
+    places: WhereRecord | None = None
     unplaced = ""
     with run.progress() as progress:
         found = solve(loaded, tol, ask, progress=progress)
@@ -182,7 +182,7 @@ def _absent(missing: Sequence[Quantity]) -> str:
     return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
 
 
-def _places(scene: Scene, found: Answered) -> Whereabouts:
+def _places(scene: Scene, found: Answered) -> WhereRecord:
     """Places of the error of the number with the widest bar, on the finest mesh it was solved on.
 
     Raises
@@ -199,10 +199,10 @@ def _places(scene: Scene, found: Answered) -> Whereabouts:
     widest = max(found.values, key=lambda value: value.bar)
     solved = [step for step in _solved(found) if not step.only or widest.quantity in step.only]
     places = where(scene, widest.quantity, solved[-1].options)
-    return replace(places, total=widest.bar)
+    return places.model_copy(update={"total": widest.bar})
 
 
-def _where_table(places: Whereabouts) -> Table:
+def _where_table(places: WhereRecord) -> Table:
     """Places of the error with their shares of it, the largest first."""
 
     def millimetres(value: float) -> str:
@@ -218,7 +218,7 @@ def _where_table(places: Whereabouts) -> Table:
     return Table("", columns, worth_naming(places.rows))
 
 
-def _sentence(places: Whereabouts) -> str:
+def _sentence(places: WhereRecord) -> str:
     """Sentences on the places with most of the error, the width of the bar, and the cost of
     telling.
     """
@@ -226,16 +226,14 @@ def _sentence(places: Whereabouts) -> str:
     return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
 
 
-def _plain(places: Whereabouts) -> dict[str, Any]:
+def _plain(places: WhereRecord) -> dict[str, Any]:
     """Places as ``--json`` gives them: all but the mesh and the share of every cell, which only a
     picture needs.
     """
-    names = ("quantity", "order", "total", "sentence", "seconds")
-    out = {name: getattr(places, name) for name in names}
-    return out | {"rows": [asdict(row) for row in places.rows]}
+    return places.model_dump(exclude={"model", "points", "cells", "shares"})
 
 
-def _draw(places: Whereabouts, picture: Path) -> None:
+def _draw(places: WhereRecord, picture: Path) -> None:
     """Write a picture of the mesh, every cell with its share of the error."""
     title = f"Bar of {places.quantity} by cells, order {places.order}"
-    draw_where(picture, places.points, places.cells, places.shares, places.rows, title)
+    draw_where(picture, places, title)

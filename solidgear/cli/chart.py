@@ -13,7 +13,6 @@ from solidgear.cli.app import Progress, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.shared import Run, SceneFile
 from solidgear.errors import SolidgearError
-from solidgear.judge.race.automatic import automatic_rows, solved
 from solidgear.judge.race.cases import plan, setup_seconds
 from solidgear.judge.race.pareto import Race
 from solidgear.judge.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
@@ -95,22 +94,12 @@ def run_chart(
     budget: float | None = None,
     quiet: bool = False,
 ) -> tuple[Race, bool]:
-    """Run and write the chart of a scene, and put it into the report that an earlier comparison of
-    it left there.
+    """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left
+    there; with whether there was such a report.
 
-    Returns
-    -------
-    race : solidgear.judge.race.pareto.Race
-        After Ctrl-C with what there was, ``complete`` False.
-    reported : bool
-        Whether there was such a report.
-
-    Raises
-    ------
-    SolidgearError
-        For a bad number, a folder that cannot be written, a scene with nothing to chart or a
-        comparison of it by another version of solidgear, before anything is timed; where no case
-        has an answer.
+    SolidgearError for a bad number, a folder that cannot be written, a scene with nothing to chart or a
+    comparison of it by another version of solidgear, before anything is timed; where no case has an
+    answer.
     """
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
@@ -125,8 +114,7 @@ def run_chart(
             once = setup_seconds()
             found = race(
                 scene,
-                sorted([*plan(scene, full), *automatic_rows()], key=lambda row: row.level),
-                solver=solved,
+                plan(scene, full),
                 runs=runs,
                 budget=budget,
                 sure=FULL_SURE if full else None,

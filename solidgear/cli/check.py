@@ -48,12 +48,8 @@ def check(
 
 
 def print_check(found: dict) -> None:
-    """Facts, cautions, faults and verdicts of one shaft.
-
-    Parameters
-    ----------
-    found : dict
-        As :func:`solidgear.studies.check.check_scene` gives it.
+    """Facts, cautions, faults and verdicts of one shaft, as
+    :func:`solidgear.studies.check.check_scene` gives them.
     """
     told = [record for record in found["records"] if not _spared(record, found["verdicts"])]
     for record in (r for r in told if r["level"] == "fact"):
@@ -98,12 +94,8 @@ def _print_verdicts(models: dict[str, tuple[str, str]]) -> None:
 
 
 def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
-    """The command check on a train: both shafts, then the system.
-
-    Parameters
-    ----------
-    given : dict of str to bool
-        Options of check that speak of one shaft, and whether they were given.
+    """The command check on a train: both shafts, then the system; options that speak of one shaft are
+    refused where they were given.
     """
     # start-up: a shaft has no use for the studies of trains
     from solidgear.cli.train_options import Reduced, refuse_given

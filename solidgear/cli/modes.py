@@ -24,8 +24,8 @@ from solidgear.cli.shared import (
     options,
 )
 from solidgear.errors import SolidgearError, show
+from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.judge.completeness import completeness, cut_short
-from solidgear.judge.second_mesh import second_bars
 from solidgear.judge.settle import bars_of_modes
 from solidgear.report.terminal import modes_table
 from solidgear.report.words import by_plane
@@ -82,7 +82,7 @@ def modes(
     )
     bars = bars_of_modes(loaded, body, found, settled)
     if settled is None and second and body.fidelity in SECOND:
-        bars = second_bars(loaded, body, found, options(model.pairs))
+        bars = coarser_bars(loaded, body, found, options(model.pairs))
     said = cautions(loaded, body)
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency

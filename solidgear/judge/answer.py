@@ -165,18 +165,12 @@ def climbed(
     kind: Callable[..., C],
     progress: Progress,
 ) -> tuple[C, list[Step]]:
-    """The first solid of the ladder that can be solved at all, on the meshes that it takes.
+    """The first solid of the ladder that can be solved at all, on the meshes that it takes; with the steps
+    that were passed over and tried, in the order of the ladder.
 
     Parameters
     ----------
     kind : type of Climb, or what makes one
-
-    Returns
-    -------
-    climb : Climb
-        After its last mesh.
-    steps : list of Step
-        What was passed over and tried, in the order of the ladder.
 
     Raises
     ------

@@ -138,6 +138,13 @@ def step_bars(
     return out
 
 
+def left_over(coarser: float, finer: float, exponent: float) -> float:
+    """Share of a change between two sizes of cells that it leaves, by the exponent of displacement at
+    the sharpest corner.
+    """
+    return 1 / ((coarser / finer) ** (2 * exponent) - 1)
+
+
 def moves_freely(name: Quantity) -> bool:
     """Tell whether a quantity is a frequency of a motion that bearings may leave free."""
     return name.is_frequency and ModeName(name).family in ("axial", "torsion")

@@ -8,7 +8,7 @@ quotient and what Kato and Temple leave of it (:mod:`solidgear.bounds.harmonic`)
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,59 +18,19 @@ from solidgear.body import Body, Supports
 from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import LEAST, ErrorBar
-from solidgear.judge.quantities import Values, in_order, measure, size
-from solidgear.judge.solving import widened
-from solidgear.quantity import ACROSS, STIFFNESS, Quantity
+from solidgear.judge.quantities import Values, in_order, size
+from solidgear.judge.solving import Statics, widened
+from solidgear.judge.steps import METHOD
+from solidgear.quantity import STIFFNESS, Quantity
 from solidgear.scene.coned import coned
-from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
-from solidgear.solve.statics import condense, flexibility
+from solidgear.solve.statics import flexibility
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: where these bars come from, in words
-METHOD = "local problems"
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
-
-
-@dataclass(frozen=True)
-class Statics:
-    """Statics of a body, or of its softest relative."""
-
-    main: Condensed
-    further: Mapping[str, Condensed]
-    coupled: Coupled | None = None
-
-    @classmethod
-    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
-        """Statics that some quantities need: the main point, further ones, and pairs of points."""
-        main = condense(body, supports, scene.port.name)
-        points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
-        further = {point: condense(body, supports, point) for point in points}
-        pairs = {point for q in names for point in q.pair or ()}
-        both = tuple(port.name for port in scene.ports if port.name in pairs)
-        return cls(main, further, condense(body, supports, both) if pairs else None)
-
-    def again(self, body: Body, supports: Supports) -> Statics:
-        """The same of another body."""
-        coupled = self.coupled and condense(
-            body, supports, self.coupled.ports, self.coupled.attachments
-        )
-        return Statics(
-            condense(body, supports, self.main.port, self.main.attachment),
-            {
-                name: condense(body, supports, name, one.attachment)
-                for name, one in self.further.items()
-            },
-            coupled,
-        )
-
-    def values(self) -> dict[Quantity, float]:
-        """All numbers, those of the other plane and between points included."""
-        both = self.further, self.coupled
-        return measure(self.main, None, *both) | measure(None, None, *both, ACROSS)
 
 
 @dataclass(frozen=True)
@@ -97,18 +57,13 @@ def bounded(
     solver: Values,
     later: ModeSet | None = None,
 ) -> Bounded:
-    """Bars of a harmonic body by local problems.
+    """Bars of some numbers of a harmonic body by local problems, from what was condensed and solved of it
+    and the relative error that the solver may have left.
 
     Parameters
     ----------
-    statics : Statics or None
-        What was condensed, None where nothing static is asked for.
-    names : sequence of Quantity
-        Those whose bars are wanted.
-    solver : mapping
-        Relative error that the solver may have left.
     later : ModeSet, optional
-        As for :func:`~solidgear.bounds.harmonic.harmonic_bounds`.
+        Modes in other supports, whose bars will be asked for.
     """
     asked = [q for q in names if q.is_frequency]
     bounds = harmonic_bounds(
@@ -146,29 +101,9 @@ def bounded(
 
 
 def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> dict[str, float]:
-    """Error bars of the frequencies of a harmonic body, which lie above the exact ones, of all
-    families.
-
-    Parameters
-    ----------
-    found : ModeSet
-        Of the body.
-
-    Returns
-    -------
-    dict of str to float
-        Relative, by the names of elastic modes; without those that no other mode of their family was
-        found above.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> from solidgear.body import as_supports
-    >>> scene = sg.load("geometry/cylinder_free.toml")
-    >>> body = sg.build(scene, "harmonic", order=4, layers=0)
-    >>> bars = mode_bars(scene, body, as_supports(scene), sg.modes(body, scene, 4))
-    >>> bars["bending 1"] < 1e-3
-    True
+    """Error bars of the frequencies of a harmonic body, which lie above the exact ones, of all families:
+    relative, by the names of elastic modes; without those that no other mode of their family was found
+    above.
     """
     names = [m.name for m in found.modes if m.frequency_hz > 0]
     if not names:

@@ -79,23 +79,12 @@ def shoulder_cause(
     options: dict,
     tell: Callable[[str], None] = lambda _: None,
 ) -> CauseRecord | None:
-    """Share of the beam-to-solid gap that the steps of the shaft are to blame for.
+    """Share of the beam-to-solid gap that the steps of the shaft are to blame for; None when the shaft has
+    no step, or the plain shaft cannot be made.
 
     The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the
     same scene with every outer radius brought down to the smallest one: what stress cannot fill
     right at a shoulder.
-
-    Parameters
-    ----------
-    beam_gap : dict
-        ``C_zz``, ``K_zz``, ``bending 1`` -> relative gap of the scene itself.
-    options : dict
-        For the harmonic body.
-
-    Returns
-    -------
-    CauseRecord or None
-        None when the shaft has no step, or the plain shaft cannot be made.
     """
     if not scene.steps:
         return None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.body import Body, as_supports
-from solidgear.judge.bounded import Statics, bounded
+from solidgear.judge.bounded import bounded
 from solidgear.judge.question import (
     Question,
     Solved,
@@ -19,7 +19,7 @@ from solidgear.judge.question import (
     shapes,
 )
 from solidgear.judge.refinement import Loop
-from solidgear.judge.solving import Numbers, numbers, searched
+from solidgear.judge.solving import Numbers, Statics, numbers, searched
 from solidgear.ladder import build
 from solidgear.quantity import Quantity
 from solidgear.solve.condensed import Condensed
@@ -118,17 +118,7 @@ class Climb(Loop):
                 spare=self.model.bounded,
                 ovalising=False,
             )
-        values = numbers(
-            statics.main if statics else None,
-            found,
-            statics.further if statics else {},
-            statics.coupled if statics else None,
-        )
-        if statics is not None:
-            values = Numbers(
-                values.quantities | statics.values(),
-                {q: statics.main.evidence["residual"] for q in statics.values()} | values.solver,
-            )
+        values = numbers(statics, found)
         if not self.model.bounded:
             return values, None
         here = self._judged_names(values, names)

@@ -15,15 +15,8 @@ if TYPE_CHECKING:
 
 
 def completeness(evidence: dict, model: str) -> str:
-    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet`
-    carries.
-
-    Parameters
-    ----------
-    evidence : dict
-        With ``count``: modes must have been asked for with it.
-    model : str
-        A beam has no other families than its own, and says so.
+    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet` carries, with
+    which modes were counted; a beam has no other families than its own, and says so.
     """
     bad = [part["why"] for part in evidence["count"] if not part["checked"]]
     if bad:
@@ -41,22 +34,16 @@ def completeness(evidence: dict, model: str) -> str:
 
 
 def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
-    """Warning where the number of modes ends a list below the frequency asked for.
+    """Warning where the number of modes ends a list below the frequency asked for: one sentence, or none.
 
     Parameters
     ----------
-    modes : iterable of Mode
     n : int
         Elastic shapes that were asked for; twins count twice.
     asked_hz : float or None
         Up to where modes were asked for, if anywhere.
     option : str, optional
         What else can be raised than the number in the scene.
-
-    Returns
-    -------
-    list of str
-        One sentence, or none.
     """
     elastic = [m for m in modes if not m.name.rigid]
     if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:

@@ -71,7 +71,8 @@ class Pairing:
 
 
 def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
-    """Pair the modes of a model with those of the reference, by shape and not by name.
+    """Pair the modes of a model with those of the reference, by shape and not by name: one pair for every
+    elastic mode of the reference, in its order; those beyond the end of its list follow.
 
     Every elastic mode of the reference gets the mode whose section motions are most like its own,
     all at once (an assignment), shapes of pairs counted one by one, so that a pair may meet a split
@@ -79,21 +80,7 @@ def pair_modes(model: ModeSet, reference: ModeSet) -> tuple[Pairing, ...]:
     same in both models, it is paired by frequency.  Ovalising and breathing modes, which sections
     do not see, are paired by waves around and rank.
 
-    Parameters
-    ----------
-    model, reference : ModeSet
-        On the same stations.
-
-    Returns
-    -------
-    tuple of Pairing
-        One for every elastic mode of the reference, in its order; those beyond the end of its list
-        follow.
-
-    Raises
-    ------
-    ValueError
-        If the sets were made on different stations.
+    ValueError if the sets were made on different stations.
     """
     if not np.allclose(model.stations, reference.stations):
         raise ValueError("the two mode sets were projected on different stations")
@@ -292,17 +279,10 @@ def subspace_mac(a: np.ndarray, b: np.ndarray, gram: np.ndarray) -> float:
 
 
 def correlate(model: ModeSet, reference: ModeSet) -> MacTable:
-    """Correlate two mode sets, with the section masses of the reference as weights.
+    """Correlate two mode sets, with the section masses of the reference as weights; partners of elastic
+    modes are those most alike.
 
-    Returns
-    -------
-    MacTable
-        Of elastic modes; partners are those most alike.
-
-    Raises
-    ------
-    ValueError
-        If the sets were made on different stations.
+    ValueError if the sets were made on different stations.
     """
     if not np.allclose(model.stations, reference.stations):
         raise ValueError("the two mode sets were projected on different stations")

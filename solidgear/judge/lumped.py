@@ -31,13 +31,7 @@ PREFERRED = ("mode-matched", "guyan")
 def synthesise_all(
     scene: Scene, solutions: Mapping[str, Solution], tell: Callable[[str], None] = lambda _: None
 ) -> dict[str, LumpedRecord]:
-    """Lumped models of every solved body.
-
-    Returns
-    -------
-    dict of str to LumpedRecord
-        Per model; stiffness and first bending are those of the z plane.
-    """
+    """Lumped models of every solved body, by model; stiffness and first bending are those of the z plane."""
     out: dict[str, LumpedRecord] = {}
     for model, solution in solutions.items():
         start = time.perf_counter()
@@ -55,24 +49,12 @@ def synthesise_all(
             static_share=point.static_share,
             total_mass=point.total_mass,
             seconds=time.perf_counter() - start,
-            variants={name: _variant(s) for name, s in found.items()},
+            variants={
+                name: LumpedVariant.model_validate(s).model_copy(update=s.numbers)
+                for name, s in found.items()
+            },
         )
     return out
-
-
-def _variant(s: Synthesis) -> LumpedVariant:
-    return LumpedVariant(
-        mass=s.mass,
-        feasible=s.feasible,
-        first=s.first,
-        frequency_hz=s.frequency_hz,
-        frequency_error=s.frequency_error,
-        slope_error=s.slope_error,
-        kinetic_error=s.kinetic_error,
-        valid_to_hz=s.valid_to_hz,
-        verdict=s.verdict,
-        **s.numbers,
-    )
 
 
 def sources() -> tuple[str, ...]:
@@ -85,21 +67,18 @@ def sources() -> tuple[str, ...]:
 def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None:
     """(source model, variant) that stands for the lumped model."""
     for source in sources():
-        variants = lumped[source].variants if source in lumped else {}
-        for name in PREFERRED:
-            if name in variants and variants[name].feasible and variants[name].first:
-                return source, name
+        variant = preferred(lumped[source].variants) if source in lumped else None
+        if variant is not None:
+            return source, variant
     return None
 
 
-def preferred(made: Mapping[str, Synthesis]) -> Synthesis | None:
+def preferred(made: Mapping[str, Synthesis] | Mapping[str, LumpedVariant]) -> str | None:
     """The variant that stands for the lumped model: mode-matched where it is physical and holds the
     mode as its first, else Guyan; None where neither does.
     """
-    for name in PREFERRED:
-        if made[name].feasible and made[name].first:
-            return made[name]
-    return None
+    good = (name for name in PREFERRED if name in made and made[name].feasible and made[name].first)
+    return next(good, None)
 
 
 def drawn(model: str) -> dict[str, str]:
@@ -127,15 +106,10 @@ def model_record(
 
     Parameters
     ----------
-    lumped : mapping of str to LumpedRecord
-        From :func:`synthesise_all`.
-    models : mapping of str to ModelRecord
-        Records of the others.
     reference_hz : float or None
         First bending of the reference model.
     bar : float or None
         Of the reference's first bending; None where nothing may judge.
-    notices : iterable of GuardRecord
     """
     chosen = representative(lumped)
     if chosen is None:

@@ -38,10 +38,10 @@ Quantities = dict[str, Number]
 
 class Part(BaseModel):
     """Part of a record: fields that are missing, or None where None says nothing, have their
-    default; unknown ones are kept.
+    default; unknown ones are kept. It may be made from an object with attributes of the same names.
     """
 
-    model_config = ConfigDict(extra="allow")
+    model_config = ConfigDict(extra="allow", from_attributes=True)
 
     @field_validator("*", mode="wrap")
     @classmethod

@@ -36,12 +36,7 @@ JUDGED = (
 
 
 def in_words(quantity: Quantity, main: str) -> str:
-    """A quantity with its points in words.
-
-    Parameters
-    ----------
-    main : str
-        Name of the main point where there are several, else nothing.
+    """A quantity with its points in words; the main one is named where there are several.
 
     Examples
     --------
@@ -59,15 +54,8 @@ def in_words(quantity: Quantity, main: str) -> str:
 
 
 def between(names: Iterable[Quantity], points: Sequence[str]) -> tuple[Quantity, ...]:
-    """Terms between some points of quantities that are of a point; of stiffnesses the diagonal too,
-    for it holds all of them.
-
-    Parameters
-    ----------
-    names : iterable of Quantity
-        Of the main point.
-    points : sequence of str
-        In the order of the scene.
+    """Terms between some points of quantities that are of a point; of stiffnesses the diagonal too, for it
+    holds all of them.
 
     Examples
     --------
@@ -86,11 +74,6 @@ def between(names: Iterable[Quantity], points: Sequence[str]) -> tuple[Quantity,
 
 def at_points(names: Iterable[Quantity], points: Iterable[str]) -> tuple[Quantity, ...]:
     """Quantities at the main point, and those of them that are of a point at further ones.
-
-    Parameters
-    ----------
-    names : iterable of Quantity
-    points : iterable of str
 
     Examples
     --------

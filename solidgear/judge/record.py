@@ -259,7 +259,11 @@ class PortRecord(Part):
 
 
 class PlaceRecord(Part):
-    """A place and its share of the error; see :class:`solidgear.judge.where.Row`."""
+    """A place, ``shoulder``, ``seat end of A``, ... or ``elsewhere``, and its share of the error.
+
+    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. Cells whose middle
+    lies within ``reach`` (m) count as of the place, where no other is nearer.
+    """
 
     what: str = ""
     y: Number = None
@@ -269,7 +273,12 @@ class PlaceRecord(Part):
 
 
 class WhereRecord(Part):
-    """Places of the error of a solid; see :class:`solidgear.judge.where.Whereabouts`."""
+    """Places of the error of a number of a solid, the largest share first.
+
+    ``order`` is that of the elements, ``total`` the relative bar of the quantity; of a coupling, it is
+    relative to the geometric mean of its diagonal entries. ``points`` are r and y (m) of the corners
+    of the cells, ``shares`` those of every cell, in sum one.
+    """
 
     model: str = ""
     quantity: str = ""
@@ -296,7 +305,7 @@ class Record(Part):
     ('harmonic', True)
     """
 
-    model_config = ConfigDict(extra="allow", populate_by_name=True)
+    model_config = ConfigDict(populate_by_name=True)
 
     version: int = Field(SCHEMA, alias="schema")
     complete: bool = True

@@ -31,7 +31,7 @@ from solidgear.judge.record import (
     VariantRecord,
 )
 from solidgear.judge.solution import Solution
-from solidgear.judge.solving import ENOUGH, Answer
+from solidgear.judge.solving import ENOUGH, Answer, Statics
 from solidgear.judge.ties import SCENE
 from solidgear.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.ladder.model import LUMPED, SOLID
@@ -42,7 +42,6 @@ from solidgear.solve.mixtures import mixtures
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
-    from solidgear.solve.modes import Mode
 
 
 def recorded(
@@ -60,8 +59,6 @@ def recorded(
     ----------
     failed : dict of str to str
         Models that could not be solved, and why.
-    lumped : dict of str to LumpedRecord
-        From :func:`solidgear.judge.lumped.synthesise_all`.
     complete : bool
         False after an interrupt.
     """
@@ -106,8 +103,8 @@ def recorded(
 
 def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
     port, first = scene.ports[k], next(iter(solutions.values()), None)
-    found = None if first is None else first.ties[SCENE]
-    there = None if found is None else [found.condensed, *found.further.values()][k]
+    found = None if first is None else first.ties[SCENE].statics
+    there = None if found is None else [found.main, *found.further.values()][k]
     return PortRecord(
         name=port.name,
         y=port.y,
@@ -217,9 +214,12 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
-        points=_points(solution.ties[SCENE]),
-        coupled=_coupled(solution.ties[SCENE]),
-        modes=[_mode_record(m) for m in solution.modes.modes],
+        points={
+            name: PointRecord.model_validate(there)
+            for name, there in solution.ties[SCENE].statics.further.items()
+        },
+        coupled=_coupled(solution.ties[SCENE].statics),
+        modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
         band=_bar_summary(solution),
         convergence=_convergence(solution),
         dofs=solution.body.size,
@@ -231,14 +231,7 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
     )
 
 
-def _points(found: Answer) -> dict[str, PointRecord]:
-    return {
-        name: PointRecord(stiffness=there.stiffness, compliance=there.compliance)
-        for name, there in found.further.items()
-    }
-
-
-def _coupled(found: Answer) -> CoupledRecord | None:
+def _coupled(found: Statics) -> CoupledRecord | None:
     both = found.coupled
     if both is None:
         return None
@@ -295,23 +288,12 @@ def _evidence(solution: Solution) -> EvidenceRecord:
     )
 
 
-def _mode_record(mode: Mode) -> ModeRecord:
-    return ModeRecord(
-        name=mode.name,
-        family=mode.family,
-        frequency_hz=mode.frequency_hz,
-        multiplicity=mode.multiplicity,
-        captured=mode.captured,
-        error=mode.error,
-    )
-
-
 def _variant_record(found: Answer) -> VariantRecord:
     return VariantRecord(
         quantities=found.quantities,
-        stiffness=found.condensed.stiffness,
-        compliance=found.condensed.compliance,
-        modes=[_mode_record(m) for m in found.modes.modes],
+        stiffness=found.statics.main.stiffness,
+        compliance=found.statics.main.compliance,
+        modes=[ModeRecord.model_validate(m) for m in found.modes.modes],
     )
 
 

@@ -292,14 +292,12 @@ class Loop(ABC):
         if not self._started():
             return None
         if not self.model.bounded:
-            self.error_bars |= self.error_bars_of(self.levels)
+            values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
+            self.error_bars |= sequence_bars(
+                self.scene, self.plan, self.model, values, solver, self.sizes
+            )
         bars = [self.bar(q) for q in self._known()]
         return max(bars, default=None) if self.error_bars else None
-
-    def error_bars_of(self, levels: list[Numbers]) -> dict[Quantity, ErrorBar]:
-        """Error bars of the finest of two or more meshes of a list."""
-        values = [x.quantities for x in levels], levels[-1].solver
-        return sequence_bars(self.scene, self.plan, self.model, *values, self.sizes)
 
     def bar(self, name: Quantity) -> float:
         """Relative bar of a quantity; infinite where nothing is known."""

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence as Listed
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
-from solidgear.judge.bars import ErrorBar, step_bars
-from solidgear.judge.quantities import Values, measure, size
+from solidgear.judge.bars import ErrorBar, left_over, step_bars
+from solidgear.judge.quantities import Values, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.meshing.corners import SHOULDER, sharpest_corner
-from solidgear.quantity import ACROSS, Quantity
+from solidgear.quantity import Quantity
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def sequence_bars(
     sizes: Listed[float | None],
     around: Values | None = None,
 ) -> dict[Quantity, ErrorBar]:
-    """Error bars of the finest of some meshes.
+    """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
 
     Parameters
     ----------
@@ -46,16 +47,8 @@ def sequence_bars(
         Tied as the levels are.
     plan : Sequence
         That the meshes are of.
-    model : Model
-        With a :class:`~solidgear.bounds.safety.Safety`.
-    levels : sequence of mappings
-        Quantity to value, coarse to fine.
-    solver : mapping
-        Relative error the solver may have left in the finest level.
     sizes : sequence of float
         Representative size of the cells of every level, m.
-    around : mapping, optional
-        Relative error that the cells around leave.
 
     Returns
     -------
@@ -72,8 +65,8 @@ def sequence_bars(
     last = [size or 0.0 for size in sizes[-3:]]
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
-    left_over = 1 / ((last[-2] / last[-1]) ** (2 * sharpest(scene)) - 1)
-    return step_bars(levels, solver, safety, left_over=left_over)
+    share = left_over(last[-2], last[-1], sharpest(scene))
+    return step_bars(levels, solver, safety, left_over=share)
 
 
 def sharpest(scene: Scene) -> float:
@@ -84,22 +77,11 @@ def sharpest(scene: Scene) -> float:
 
 
 def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:
-    """Changes by features of the quantities that a model has shares of.
+    """Changes by features of the quantities that a model has shares of, relative and positive; empty where
+    it has none.
 
-    Parameters
-    ----------
-    scene : Scene
-        With features.
-    safety : Safety
-        Of the model.
-    values : mapping
-        What it says of the quantities.
-
-    Returns
-    -------
-    dict of Quantity to float
-        Relative and positive; empty where the model has no shares. A bending frequency is held
-        against the nearest one of the plain part: features may change their order and their names.
+    A bending frequency is held against the nearest one of the plain part: features may change their
+    order and their names.
     """
     if not safety.share:
         return {}
@@ -125,5 +107,4 @@ def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[Values, list[float]]:
         m.frequency_hz for m in found.modes.modes if m.family == BENDING and m.frequency_hz > 0
     ]
     coupled = condense(found.body, plain, points) if points else None
-    across = measure(None, None, found.further, coupled, ACROSS)
-    return found.quantities | measure(None, None, None, coupled) | across, bending
+    return found.quantities | replace(found.statics, coupled=coupled).values(), bending

@@ -15,6 +15,7 @@ measured as well, and torsion with it (:data:`~solidgear.quantity.ACROSS`).
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -22,11 +23,11 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
-from solidgear.errors import SolidgearError, show
+from solidgear.errors import SolidgearError
 from solidgear.judge.answer import climbed, usable
-from solidgear.judge.body_bars import MODEL, static_bars, stepped_bars
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
+from solidgear.judge.coarser_mesh import coarser_bars, static_bars
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question, mesh_words
 from solidgear.judge.refinement import ONE_MESH, Progress
@@ -132,7 +133,8 @@ def settle(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> Settled:
-    """The cheapest body whose error bars of all that is asked are within a tolerance.
+    """The cheapest body whose error bars of all that is asked are within a tolerance; after the last mesh
+    that could be solved, where none is.
 
     Parameters
     ----------
@@ -146,33 +148,14 @@ def settle(
     before : Settled, optional
         What the same shaft was settled on with other bearings in the same seats: a harmonic solid is
         judged on that body first, with what was already worked out for it.
-    progress : callable
-        Called with a sentence at every step.
-
-    Returns
-    -------
-    Settled
-        After the last mesh that could be solved; ``reached`` says whether it will do.
 
     Raises
     ------
     SolidgearError
-        For a tolerance that is none or that arithmetic does not allow, another question, or a scene
-        that no model can answer.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/shaft_stepped.toml")
-    >>> found = settle(scene, 0.01, "stiffness")
-    >>> found.rung, found.reached, found.largest[1] <= 0.01
-    ('harmonic', True, True)
-    >>> found.body.size == sg.build(scene, found.rung, **found.options).size
-    True
+        For a tolerance that is none or that arithmetic does not allow, or a scene that no model can
+        answer.
     """
     tol = usable(scene.ask.tolerance if tol is None else tol)
-    if ask not in QUESTIONS:
-        raise SolidgearError(f"settle: ask = {show(ask, 40)}; use one of {', '.join(QUESTIONS)}")
     if without_axis(scene):
         if ask != "modes" and scene.port.patch is None:
             raise SolidgearError(
@@ -214,7 +197,7 @@ def bars_of_modes(
     if settled is None:
         return {}
     if without_axis(scene):
-        return stepped_bars(scene, body, found)
+        return coarser_bars(scene, body, found, settled.options)
     bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
         bars = mode_bars(scene, body, as_supports(scene), found)
@@ -223,6 +206,8 @@ def bars_of_modes(
     return bars | {name: settled.bars[name] for name in asked}
 
 
+#: the only model that holds a body without an axis
+MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
 NESTED = (1.0, 2.0, 4.0)
 
@@ -239,13 +224,15 @@ def _settled_body(
     block = scene.body.kind == "block"
     meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
     for mesh in meshes:
+        start = time.perf_counter()
         options = {**LADDER[MODEL].given(scene, {}), **mesh}
         progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
         body = build(scene, MODEL, **options)
-        bars = static_bars(scene, body, points) if ask != "modes" else {}
+        bars = static_bars(scene, body, points, options) if ask != "modes" else {}
         if ask != "stiffness":
             found = modes(body, scene, scene.ask.modes)
-            bars |= {Quantity(name): bar for name, bar in stepped_bars(scene, body, found).items()}
+            told = coarser_bars(scene, body, found, options)
+            bars |= {Quantity(name): bar for name, bar in told.items()}
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
@@ -254,9 +241,19 @@ def _settled_body(
         )
         why = finer if bars else ONE_MESH
         why *= done and not reached
-        setting = mesh_words(options)
+        spent = time.perf_counter() - start
         steps.append(
-            Step(MODEL, setting, True, why, largest, body.size, chosen=done, options=options)
+            Step(
+                MODEL,
+                mesh_words(options),
+                True,
+                why,
+                largest,
+                body.size,
+                spent,
+                chosen=done,
+                options=options,
+            )
         )
         if done:
             break

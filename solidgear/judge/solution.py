@@ -67,7 +67,7 @@ class Solution:
     @property
     def condensed(self) -> Condensed:
         """Statics with the ties of the scene."""
-        return self.ties[SCENE].condensed
+        return self.ties[SCENE].statics.main
 
     @property
     def modes(self) -> ModeSet:

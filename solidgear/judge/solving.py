@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.judge.quantities import measure
 from solidgear.ladder import build
-from solidgear.machine.meter import Meter
-from solidgear.quantity import QUANTITIES, STIFFNESS, Quantity
+from solidgear.quantity import ACROSS, QUANTITIES, STIFFNESS, Quantity
 from solidgear.solve.condensed import Condensed, Coupled
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
+    from solidgear.body.supports import Holding
     from solidgear.scene import Scene
 
 #: shapes that are searched at most for a mode that is asked for
@@ -41,22 +41,78 @@ class Numbers:
     solver: dict[Quantity, float]
 
 
-def numbers(
-    statics: Condensed | None,
-    found: ModeSet | None,
-    further: Mapping[str, Condensed] | None = None,
-    coupled: Coupled | None = None,
-) -> Numbers:
-    """The compared numbers of statics and modes, any of which may not have been solved."""
-    values = measure(statics, found, further, coupled)
-    return Numbers(values, _left(statics, found, coupled, values))
+@dataclass(frozen=True)
+class Statics:
+    """Statics of a body on its bearings.
+
+    Attributes
+    ----------
+    main : Condensed
+        At the main lumped point.
+    further : mapping of str to Condensed
+        At further ones, by name.
+    coupled : Coupled or None
+        Of several points together.
+    """
+
+    main: Condensed
+    further: Mapping[str, Condensed] = field(default_factory=dict)
+    coupled: Coupled | None = None
+
+    @classmethod
+    def at(
+        cls,
+        body: Body,
+        supports: Holding,
+        points: Sequence[str],
+        attachments: Sequence[str | None] | str | None = None,
+    ) -> Statics:
+        """Statics at some points, the main one first, and between all of them."""
+        if attachments is None or isinstance(attachments, str):
+            attachments = [attachments] * len(points)
+        kinds = tuple(attachments)
+        main, *others = (condense(body, supports, *one) for one in zip(points, kinds))
+        coupled = condense(body, supports, tuple(points), kinds) if others else None
+        return cls(main, dict(zip(points[1:], others)), coupled)
+
+    @classmethod
+    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
+        """Statics that some quantities need: the main point, further ones, and pairs of points."""
+        main = condense(body, supports, scene.port.name)
+        points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
+        further = {point: condense(body, supports, point) for point in points}
+        pairs = {point for q in names for point in q.pair or ()}
+        both = tuple(port.name for port in scene.ports if port.name in pairs)
+        return cls(main, further, condense(body, supports, both) if pairs else None)
+
+    def again(self, body: Body, supports: Supports) -> Statics:
+        """The same of another body."""
+        coupled = self.coupled and condense(
+            body, supports, self.coupled.ports, self.coupled.attachments
+        )
+        return Statics(
+            condense(body, supports, self.main.port, self.main.attachment),
+            {
+                name: condense(body, supports, name, one.attachment)
+                for name, one in self.further.items()
+            },
+            coupled,
+        )
+
+    def values(self, found: ModeSet | None = None) -> dict[Quantity, float]:
+        """All numbers, those of the other plane and between points included, and those of modes."""
+        both = self.further, self.coupled
+        return measure(self.main, found, *both) | measure(None, None, *both, ACROSS)
+
+
+def numbers(statics: Statics | None, found: ModeSet | None) -> Numbers:
+    """All numbers of statics and modes, either of which may not have been solved."""
+    values = measure(None, found) if statics is None else statics.values(found)
+    return Numbers(values, _left(statics, found, values))
 
 
 def _left(
-    statics: Condensed | None,
-    found: ModeSet | None,
-    coupled: Coupled | None,
-    values: Iterable[Quantity],
+    statics: Statics | None, found: ModeSet | None, values: Iterable[Quantity]
 ) -> dict[Quantity, float]:
     """Relative error that the solver may have left in every quantity."""
     solver = {}
@@ -65,10 +121,11 @@ def _left(
             mode = found.named(name) if found is not None else None
             if mode is not None:
                 solver[name] = mode.error
-        elif coupled is not None and name.pair and name.kind == STIFFNESS:
-            solver[name] = coupled.evidence["stiffness_error"]
         elif statics is not None:
-            solver[name] = statics.evidence["residual"]
+            inverted = statics.coupled if name.pair and name.kind == STIFFNESS else None
+            solver[name] = statics.main.evidence["residual"]
+            if inverted is not None:
+                solver[name] = inverted.evidence["stiffness_error"]
     return solver
 
 
@@ -78,30 +135,30 @@ class Answer:
 
     Attributes
     ----------
-    condensed : Condensed
-        Statics at the lumped point.
+    statics : Statics
+        At all lumped points, and between them where there are several.
     quantities : dict of Quantity to float
         The compared numbers; see :mod:`solidgear.judge.quantities`.
-    further : dict of str to Condensed
-        Statics at further lumped points.
-    coupled : Coupled or None
-        All lumped points together, where there are several.
     supports : Supports or None
         That hold it.
     """
 
     body: Body
-    condensed: Condensed
+    statics: Statics
     modes: ModeSet
     quantities: dict[Quantity, float]
-    further: dict[str, Condensed] = field(default_factory=dict)
-    coupled: Coupled | None = None
     supports: Supports | None = None
+
+    @classmethod
+    def of(cls, body: Body, supports: Supports, statics: Statics, modes: ModeSet) -> Answer:
+        """With the numbers of its statics and modes."""
+        values = measure(statics.main, modes, statics.further, statics.coupled)
+        return cls(body, statics, modes, values, supports)
 
     @property
     def numbers(self) -> Numbers:
         """Its numbers and what the solver may have left in them; they outlive the body."""
-        left = _left(self.condensed, self.modes, self.coupled, self.quantities)
+        left = _left(self.statics, self.modes, self.quantities)
         return Numbers(self.quantities, left)
 
 
@@ -176,105 +233,35 @@ def solve(
     n: int = ENOUGH,
     *,
     max_frequency: float | None = None,
-    count: bool = False,
-    ovalising: bool = False,
-    meter: Meter | None = None,
     **options: Any,
 ) -> Answer:
-    """Build one model of a scene and solve it as the scene is tied.
-
-    Parameters
-    ----------
-    model : str
-        One that builds a body.
-    n : int
-        Elastic shapes, twins counted twice.
-    max_frequency : float, optional
-        Hz; modes above are left out.
-    count : bool
-        Whether modes are counted by the inertia of a second factor.
-    ovalising : bool
-        Whether families of two waves around and more are searched.
-    meter : Meter, optional
-        Given the seconds of every stage.
-    **options
-        Of the builder.
-
-    Raises
-    ------
-    SolidgearError
-        As the builder, the statics and the modes do.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> found = solve(sg.load("geometry/shaft_stepped.toml"), "timoshenko")
-    >>> list(found.quantities)[:3]
-    ['C_zz', 'C_z,thx', 'C_thx']
+    """Build one model of a scene and solve it as the scene is tied: so many elastic shapes, twins counted
+    twice, up to a frequency in Hz. Errors are those of the builder, the statics and the modes.
     """
-    meter = meter or Meter()
-    with meter.stage("build"):
-        body = build(scene, model, **options)
-    return answered(
-        body,
-        as_supports(scene),
-        [port.name for port in scene.ports],
-        n=n,
-        max_frequency=max_frequency,
-        count=count,
-        ovalising=ovalising,
-        meter=meter,
-    )
+    body = build(scene, model, **options)
+    ports = [port.name for port in scene.ports]
+    return answered(body, as_supports(scene), ports, n, max_frequency=max_frequency)
 
 
 def answered(
     body: Body,
     supports: Supports,
     ports: Sequence[str],
-    attachments: Sequence[str | None] | str | None = None,
-    *,
     n: int = ENOUGH,
-    max_frequency: float | None = None,
-    count: bool = False,
-    ovalising: bool = False,
     wanted: Iterable[str] = (),
-    spare: bool = False,
-    meter: Meter,
+    *,
+    ovalising: bool = False,
+    **options: Any,
 ) -> Answer:
-    """Answer of a body on some supports; parameters as for :func:`solve`.
+    """Answer of a body on some supports.
 
     Parameters
     ----------
     ports : sequence of str
         Names of the lumped points, the main one first.
-    attachments : str or sequence of str, optional
-        Of the lumped points; by default the body's first.
-    wanted : iterable of str
-        Names of modes that are searched for until they are there.
-    spare : bool
-        Whether one more of the same motion is wanted above each.
+    n, wanted, **options
+        As for :func:`searched`.
     """
-    if attachments is None or isinstance(attachments, str):
-        attachments = [attachments] * len(ports)
-    kinds = tuple(attachments)
-    with meter.stage("statics"):
-        condensed, *others = (
-            condense(body, supports, port, kind) for port, kind in zip(ports, kinds)
-        )
-        coupled = condense(body, supports, tuple(ports), kinds) if others else None
-    further = dict(zip(ports[1:], others))
-    with meter.stage("modes"):
-        found = searched(
-            body,
-            supports,
-            n,
-            wanted,
-            spare=spare,
-            max_frequency=max_frequency,
-            count=count,
-            ovalising=ovalising,
-        )
-    # Evidence, not part of the answer: kept apart from what the modes cost.
-    meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
-    values = measure(condensed, found, further, coupled)
-    return Answer(body, condensed, found, values, further, coupled, supports)
+    statics = Statics.at(body, supports, ports)
+    found = searched(body, supports, n, wanted, ovalising=ovalising, **options)
+    return Answer.of(body, supports, statics, found)

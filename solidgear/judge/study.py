@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.judge.bars import ErrorBar
-from solidgear.judge.bounded import Bounded, Statics, bounded
+from solidgear.judge.bounded import Bounded, bounded
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
 from solidgear.judge.record import LevelRecord
@@ -22,7 +22,7 @@ from solidgear.judge.sequence_bars import sequence_bars
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, Answer, Numbers, searched
 from solidgear.judge.tied import judged_modes, level_of, solved_ties, tied_answer
-from solidgear.judge.ties import SCENE, SECTION, rigid_seats
+from solidgear.judge.ties import SCENE, SECTION, attached
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HEAVY
 from solidgear.ladder.model import SOLID
@@ -54,10 +54,8 @@ def study(
 
     Parameters
     ----------
-    model : str
-        Name of it in the ladder.
     options : mapping, optional
-        Builder options; where they speak of the mesh, that mesh is solved, and of a solid on a list of
+        Of the builder; where they speak of the mesh, that mesh is solved, and of a solid on a list of
         meshes two coarser ones.
     share : float, optional
         Error bars of the judged quantities are wanted below the tolerance of the scene divided by
@@ -68,8 +66,6 @@ def study(
         Count the modes, and solve the other attachments.
     counted : bool
         Whether modes are counted as part of it.
-    progress : callable
-        Told in words what is going on.
     keep : callable
         Given what there is after every mesh, for an interrupt to leave it.
 
@@ -261,12 +257,13 @@ def _judged(
     """Bars of an answer by local problems, and of the modes of another one of the same body what they
     have in common.
     """
-    statics = Statics(found.condensed, found.further, found.coupled)
     known = [q for q in dict.fromkeys((*names, *found.quantities)) if q in found.quantities]
     assert found.supports is not None  # of what was just answered
     left = found.numbers.solver
     others = later.modes if later is not None and later.body is found.body else None
-    return bounded(scene, found.body, found.supports, statics, found.modes, known, left, others)
+    return bounded(
+        scene, found.body, found.supports, found.statics, found.modes, known, left, others
+    )
 
 
 def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
@@ -291,11 +288,7 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                 elif attachment == "section" and SECTION in solution.ties:
                     solution.variants[attachment] = solution.ties[SECTION]
                 elif LADDER[solution.model].section_ties:
-                    changed = (
-                        rigid_seats(scene)
-                        if attachment == "rigid"
-                        else scene.with_attachment(attachment)
-                    )
+                    changed = attached(scene, attachment)
                     body = build(changed, solution.model, **solution.options)
                     solution.variants[attachment] = tied_answer(
                         changed, body, as_supports(changed), None, spare, False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.body import Body, Supports, as_supports
 from solidgear.judge.quantities import judged, usual
 from solidgear.judge.record import LevelRecord
-from solidgear.judge.solving import ENOUGH, Answer, answered
+from solidgear.judge.solving import ENOUGH, Answer, Statics, searched
 from solidgear.judge.ties import SCENE, SECTION
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
@@ -42,11 +42,12 @@ def solved_ties(
     extra = {"attachments": kinds} if together else {}
     body = _built(scene, model, {**options, **extra}, meter)
     supports, count = as_supports(scene), body.size >= counted_from
+    as_tied: list[str] = [port.attachment for port in scene.ports]
     if together:
         supports = supports.on_stations(scene.stations)
     ties = {
         SCENE: tied_answer(
-            scene, body, supports, _as_tied(scene) if together else None, meter, count, spare
+            scene, body, supports, as_tied if together else None, meter, count, spare
         )
     }
     if given == {"section"}:
@@ -62,10 +63,6 @@ def solved_ties(
         other = _built(plain, model, options, meter)
         ties[SECTION] = tied_answer(plain, other, as_supports(plain), None, meter, False, spare)
     return ties
-
-
-def _as_tied(scene: Scene) -> list[str]:
-    return [port.attachment for port in scene.ports]
 
 
 def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
@@ -88,19 +85,23 @@ def tied_answer(
 ) -> Answer:
     # Families of two waves and more are reported for the mesh that is; bearings do not move them,
     # nor do error bars rest on them.
-    return answered(
-        body,
-        supports,
-        [port.name for port in scene.ports],
-        attachments,
-        n=max(scene.ask.modes, ENOUGH),
-        max_frequency=scene.ask.max_frequency,
-        count=count,
-        ovalising=count,
-        wanted=judged_modes(scene),
-        spare=spare,
-        meter=meter,
-    )
+    with meter.stage("statics"):
+        ports = [port.name for port in scene.ports]
+        statics = Statics.at(body, supports, ports, attachments)
+    with meter.stage("modes"):
+        found = searched(
+            body,
+            supports,
+            max(scene.ask.modes, ENOUGH),
+            judged_modes(scene),
+            spare=spare,
+            max_frequency=scene.ask.max_frequency,
+            count=count,
+            ovalising=count,
+        )
+    # Evidence, not part of the answer: kept apart from what the modes cost.
+    meter.move("modes", "count", found.evidence.get("count_seconds", 0.0))
+    return Answer.of(body, supports, statics, found)
 
 
 def judged_modes(scene: Scene) -> list[Quantity]:

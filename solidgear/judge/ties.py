@@ -11,13 +11,15 @@ if TYPE_CHECKING:
 SCENE, SECTION = "as scene", "section"
 
 
-def rigid_seats(scene: Scene) -> Scene:
-    """The scene with rigid bearing seats; a lumped point that was rigid becomes averaged, any other
-    keeps its attachment.
+def attached(scene: Scene, attachment: str) -> Scene:
+    """The scene with one attachment everywhere. Where that is rigid it is of bearing seats alone: a
+    lumped point that was rigid becomes averaged, any other keeps its attachment.
 
     Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another
     model.
     """
+    if attachment != "rigid":
+        return scene.with_attachment(attachment)
     bearings = tuple(b.attached("rigid") for b in scene.bearings)
     port, *further = (
         port.with_changes(attachment="average") if port.attachment == "rigid" else port

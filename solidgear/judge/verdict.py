@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.judge.deviations import BEYOND, OPEN, TIES, Deviation, about
-from solidgear.judge.quantities import JUDGED, in_words, judged, usual
+from solidgear.judge.quantities import in_words, judged, usual
 from solidgear.judge.record import GuardRecord, VerdictRecord
 from solidgear.judge.solution import Solution
 from solidgear.judge.ties import SCENE, SECTION
@@ -36,7 +36,7 @@ class Judgement:
 
 
 def trusted(
-    solutions: dict[str, Solution], tolerance: float, names: Iterable[Quantity] = JUDGED
+    solutions: dict[str, Solution], tolerance: float, names: Iterable[Quantity]
 ) -> tuple[str | None, str]:
     """The model that may judge the others, and why there is none: a solid whose error bars of some
     quantities are inside the tolerance.
@@ -69,13 +69,8 @@ def judge(
     gaps: list[Deviation],
     notices: Sequence[GuardRecord] = (),
 ) -> tuple[VerdictRecord, dict[str, Judgement]]:
-    """Validity of every model and the verdict in sentences.
-
-    Parameters
-    ----------
-    gaps : list of Deviation
-        From :func:`deviations`, against the model that :func:`trusted` names or, where there is
-        none, the best there is.
+    """Validity of every model and the verdict in sentences, from the gaps (:func:`deviations`) to the model
+    that :func:`trusted` names or, where there is none, the best there is.
     """
     tolerance = scene.ask.tolerance
     names = judged(scene)
@@ -162,8 +157,8 @@ def _judged(
 
 def _said(gap: Deviation, solutions: dict[str, Solution]) -> str:
     """The quantity of a gap; with its lumped point where there are several."""
-    found = solutions[gap.reference].ties[SCENE]
-    return in_words(gap.quantity, found.condensed.port if found.further else "")
+    found = solutions[gap.reference].ties[SCENE].statics
+    return in_words(gap.quantity, found.main.port if found.further else "")
 
 
 def _why(gap: Deviation, solutions: dict[str, Solution], kind: str, tolerance: float) -> str:

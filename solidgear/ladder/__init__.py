@@ -87,7 +87,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     model = LADDER[fidelity]
     unfit = model.unfit(scene)
     if unfit:
-        fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
+        fit = LADDER.holding(scene)
         use = f"use {' or '.join(fit)}" if fit else way_out(scene)
         raise SolidgearError(f"{unfit}; {use}")
     options = model.checked(model.given(scene, options))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from solidgear.ladder.meshes import FREE, Sequence, least_radius, levels
+from solidgear.ladder.meshes import FREE, Sequence, levels
 from solidgear.ladder.model import SOLID, Model, Options, Series
 from solidgear.models.options import HARMONIC_OPTIONS
 
@@ -44,7 +44,7 @@ class Harmonic(Model):
 
     def series(self, scene: Any, full: bool) -> list[Series]:
         """Refinement at order 2 and rising orders, each on uniform and on graded meshes."""
-        flat = {"layers": 0, "edge_layers": 0, "size": least_radius(scene)}
+        flat = {"layers": 0, "edge_layers": 0, "size": scene.outline.least_radius}
         graded = {"layers": 3, "edge_layers": 1}
         orders = levels((1, 2, 3, 4, 5, 6), (7, 8), full)
         uniform_steps = levels((0.5, 1.0, 2.0, 4.0), (8.0,), full)

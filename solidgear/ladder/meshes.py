@@ -10,12 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from solidgear.models.options import FACTORING_OPTIONS
-
-if TYPE_CHECKING:
-    from solidgear.scene.shaft import Shaft
 
 Options = dict[str, Any]
 
@@ -67,13 +64,7 @@ class Sequence:
 
 
 def fixed_refinements(options: Mapping[str, Any]) -> Sequence:
-    """The mesh that was asked for, and two coarser ones by plain refinement.
-
-    Parameters
-    ----------
-    options : mapping
-        Builder options that were asked for.
-    """
+    """The mesh that was asked for, and two coarser ones by plain refinement."""
     given = options.get("refinement", 1.0)
     return Sequence(
         tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False
@@ -83,8 +74,3 @@ def fixed_refinements(options: Mapping[str, Any]) -> Sequence:
 def levels(quick: tuple, more: tuple, full: bool) -> tuple:
     """Levels of a chart, quick or full."""
     return quick + more if full else quick
-
-
-def least_radius(scene: Shaft) -> float:
-    """Least outer radius of a shaft, m."""
-    return scene.outline.least_radius

@@ -108,24 +108,11 @@ class Model:
         raise NotImplementedError(f"the {self.title} has no body of its own")
 
     def build(self, scene: Any, **options: Any) -> Body:
-        """The free body of a scene.
-
-        Parameters
-        ----------
-        scene : Scene
-        **options
-            Of the builder, within their limits.
-        """
+        """The free body of a scene, by options of the builder within their limits."""
         return self.builder()(scene, **{**self.preset, **options})
 
     def size(self, scene: Any, options: Options) -> Size:
-        """Unknowns and entries of its matrices, counted on the mesh.
-
-        Parameters
-        ----------
-        options : mapping
-            Builder options that were asked for.
-        """
+        """Unknowns and entries of its matrices, counted on the mesh."""
         return self._size(scene, self.defaults() | self.checked(self.given(scene, options)))
 
     def _size(self, scene: Any, options: dict[str, Any]) -> Size:
@@ -145,26 +132,16 @@ class Model:
         return False
 
     def meshes(self, options: Options) -> Sequence:
-        """Its coarser and finer relatives; of solids.
-
-        Parameters
-        ----------
-        options : mapping
-            Builder options that were asked for.
-        """
+        """Its coarser and finer relatives by the options that were asked for; of solids."""
         raise NotImplementedError(f"the {self.title} is solved once")
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
-        """Meshes for a scene, coarse to fine; parameters as for :meth:`size`."""
+        """Meshes for a scene, coarse to fine."""
         return self.meshes({**self.preset, **self.given(scene, options)})
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Lines of a chart of error against cost; its one usual mesh unless told otherwise.
-
-        Parameters
-        ----------
-        full : bool
-            More levels.
+        """Lines of a chart of error against cost, with more levels when full; its one usual mesh unless told
+        otherwise.
         """
         return [(self.family, self.heading, [{}])]
 
@@ -289,6 +266,10 @@ class Ladder:
         scene does not have.
         """
         return tuple(n for n in self.bodies if self[n].concerns(scene))
+
+    def holding(self, scene: Any) -> tuple[str, ...]:
+        """Those with a body of their own that model all of a scene."""
+        return tuple(n for n in self.bodies if not self[n].unfit(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:

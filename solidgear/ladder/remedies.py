@@ -60,19 +60,7 @@ class Remedy:
 def refusal(
     scene: Shaft, name: str, options: Mapping[str, Any], body: Body | None, error: NoRoom
 ) -> NoRoom:
-    """A refusal with the ways out, those that fit first.
-
-    Parameters
-    ----------
-    name : str
-        A model.
-    options : mapping
-        Of its builder, as asked for.
-    body : Body or None
-        If it could be built.
-    error : NoRoom
-        What its mesh, its matrices or its factors said.
-    """
+    """A refusal of the mesh, the matrices or the factors of a model with the ways out, those that fit first."""
     model = LADDER[name]
     if name not in LARGE:
         return error.of_model(name, model.coarser)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from solidgear.elements import ELEMENTS
-from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, least_radius, levels
+from solidgear.ladder.meshes import FREE, Sequence, fixed_refinements, levels
 from solidgear.ladder.model import Options, Series, features_of
 from solidgear.ladder.volume import PER_TETRAHEDRON, Volume
 from solidgear.models.kinds import BODIES, CUTS, CYCLIC, PARTS
@@ -163,7 +163,7 @@ class Solid(Volume):
         even_hexahedra = {
             "layers": 0,
             "edge_layers": 0,
-            "size": 0.6 * least_radius(scene),
+            "size": 0.6 * scene.outline.least_radius,
             "radial_layers": 0,
         }
         return [

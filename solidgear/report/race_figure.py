@@ -29,12 +29,7 @@ ORDERS = "harmonic p graded"
 
 
 def draw(race: Race, path) -> Path:
-    """Draw a race as a PNG.
-
-    Returns
-    -------
-    pathlib.Path
-    """
+    """Draw a race as a PNG."""
     return race_chart(race).write(Path(path))
 
 

@@ -13,7 +13,7 @@ from solidgear.report.plot import BETWEEN, WIDE, Chart
 from solidgear.report.words import percent
 
 if TYPE_CHECKING:
-    from solidgear.judge.record import Record
+    from solidgear.judge.record import Record, WhereRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4
@@ -27,38 +27,27 @@ CLOSE, LARGEST, SMALL = 170.0, 200.0, 0.02
 MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
 
-def draw_where(
-    file: Path,
-    points: np.ndarray,
-    cells: np.ndarray,
-    shares: np.ndarray,
-    rows: Sequence[Any] = (),
-    title: str = "",
-) -> None:
+def draw_where(file: Path, where: WhereRecord, title: str = "") -> None:
     """Write the picture.
 
     Parameters
     ----------
     file : Path
         Its ending, ``.png`` or ``.svg``, says what it becomes.
-    points : (2, n) ndarray
-        r and y of the corners of the cells, m.
-    cells : (4, m) ndarray of int
-    shares : (m,) ndarray
-        Of every cell; their magnitudes are drawn.
-    rows : sequence of Row or PlaceRecord
-        Places, the largest share first; those worth it are named.
+    where : WhereRecord
+        Cells with their shares, whose magnitudes are drawn; places worth it are named.
 
     Raises
     ------
     SolidgearError
         For another ending, or a file that cannot be written.
     """
-    _chart(points, cells, shares, rows, title, WIDE).write(file)
+    _chart(where, title, WIDE).write(file)
 
 
-def _chart(points, cells, shares, rows, title: str, width: float) -> Chart:
-    places = [p for p in worth_naming(rows) if p.y is not None and p.r is not None]
+def _chart(where: WhereRecord, title: str, width: float) -> Chart:
+    points, cells, shares = map(np.array, (where.points, where.cells, where.shares))
+    places = [p for p in worth_naming(where.rows) if p.y is not None and p.r is not None]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
@@ -165,8 +154,7 @@ def where_chart(record: Record, width: float = WIDE) -> Chart | None:
     where = record.where
     if where is None or not where.cells:
         return None
-    cells = np.array(where.points), np.array(where.cells), np.array(where.shares)
-    return _chart(*cells, where.rows, "", width)
+    return _chart(where, "", width)
 
 
 def worth_naming(rows: Sequence[Any]) -> list[Any]:
@@ -174,7 +162,7 @@ def worth_naming(rows: Sequence[Any]) -> list[Any]:
 
     Parameters
     ----------
-    rows : sequence of Row or PlaceRecord
+    rows : sequence of PlaceRecord
         Places with a ``share``, the largest first.
     """
     return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]

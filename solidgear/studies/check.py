@@ -108,31 +108,20 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     }
 
 
-def notices(
-    scene: Scene, solutions: dict[str, Solution], names: tuple[str, ...] | None = None
-) -> list[GuardRecord]:
-    """Notices of the guards on models that are solved, facts left out.
-
-    Parameters
-    ----------
-    names : tuple of str, optional
-        Guards to ask; by default all that a comparison does not answer by itself.
-
-    Returns
-    -------
-    list of GuardRecord
-        Models are those that are solved; none where it is about the data.
+def notices(scene: Scene, solutions: dict[str, Solution]) -> list[GuardRecord]:
+    """Notices on models that are solved, facts left out, of the guards that a comparison does not
+    answer by itself.
     """
     plain = scene.plain
     # quick solutions are of the plain part; what is solved with features is no stand-in for them
     known = solutions if plain is scene else {}
     probes = [Probe(plain, r.body, known, scene) for r in solutions.values()]
     out: dict[str, GuardRecord] = {}
-    if names is None and scene.body is not None and probes:
+    if scene.body is not None and probes:
         heard = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
         for notice in (n for n in heard if n.level != "fact"):
             out[notice.sentence] = _record("round_part", notice, _about(notice, solutions))
-    for name in names or tuple(n for n in _guards(scene) if n not in NOT_IN_COMPARISONS):
+    for name in (n for n in _guards(scene) if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
                 about = _about(notice, solutions)
@@ -158,13 +147,8 @@ def _about(notice: Notice, solutions: dict[str, Solution]) -> list[str]:
 
 
 def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
-    """Sentences of the guards to be heard before the numbers of one model are used; facts and
-    what concerns other models left out.
-
-    Parameters
-    ----------
-    fidelity : str, optional
-        Another model than that of ``body``, whose mesh is then not judged.
+    """Sentences of the guards to be heard before the numbers of one model are used; facts and what concerns
+    other models left out. The mesh of the body is not judged where the numbers are of another model.
     """
     model = fidelity or body.fidelity
     probe, out = Probe(scene.plain, body, whole=scene), []
@@ -257,7 +241,7 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         (),
         f"not of revolution{known}: {names}; all that is told of the shaft is of its plain part",
     )
-    fit = [name for name in LADDER.bodies if not LADDER[name].unfit(scene)]
+    fit = LADDER.holding(scene)
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")

@@ -11,7 +11,6 @@ from solidgear.body import Body, as_supports
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.judge.solving import answered
-from solidgear.machine.meter import Meter
 from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.differences import ROUNDING
@@ -96,7 +95,6 @@ def one_shaft(
         ovalising=True,
         wanted=[q for q in QUANTITIES if q.is_frequency],
         spare=True,
-        meter=Meter(),
     )
     say("how sure its frequencies are")
     bars = bars_of_modes(scene, body, all_modes(found.modes), settled)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import solidgear as sg
 from solidgear import Port, Scene, Segment
-from solidgear.judge.quantities import change, measure
+from solidgear.judge.quantities import change
 from solidgear.judge.solving import solve
 from solidgear.scene import Chamfer, Fillet
 from validation.shipped import GEOMETRY
@@ -35,7 +35,7 @@ def shaft(*blends) -> Scene:
 def values(scene: Scene, layers: int) -> dict[str, float]:
     """Quantities of one scene."""
     found = solve(scene, "harmonic", order=5, layers=layers, edge_layers=2)
-    return measure(found.condensed, found.modes)
+    return found.quantities
 
 
 def main() -> None:

@@ -10,7 +10,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from solidgear.judge.race.pareto import Row
+from solidgear.judge.race.pareto import AUTOMATIC, Row
 from solidgear.ladder.registry import LADDER
 
 if TYPE_CHECKING:
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+#: name of the automatic choice among models in rows of a chart, and its tolerances
+AUTO = "auto"
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+
 
 def plan(scene: Scene, full: bool = False) -> list[Row]:
-    """Series of every family, uniform and graded, level by level; of a model that does not fit the
-    scene one row that says why.
-
-    Parameters
-    ----------
-    full : bool
-        More levels, up to solids of several hundred thousand unknowns.
+    """Series of every family, uniform and graded, level by level, and the automatic choice by its
+    tolerances; of a model that does not fit the scene one row that says why. With more levels when full,
+    up to solids of several hundred thousand unknowns.
     """
     rows = [
         Row(family, label, level, model.name, options)
@@ -40,6 +40,10 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
         Row(model.family, model.heading, 1, model.name, {}, "failed", why)
         for model, why in unfit
         if why
+    ]
+    rows += [
+        Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
+        for level, tol in enumerate(TOLERANCES, start=1)
     ]
     return sorted(rows, key=lambda row: row.level)
 

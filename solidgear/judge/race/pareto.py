@@ -143,15 +143,8 @@ class Race:
 def front(cost: Sequence[float | None], error: Sequence[float | None]) -> list[int]:
     """Places of the points that no other beats: none is at least as good in both and better in one.
 
-    Parameters
-    ----------
-    cost, error : sequence of float or None
-        Points with None or NaN take no part.  Of equal points the first stands for all.
-
-    Returns
-    -------
-    list of int
-        In ascending order of cost.
+    In ascending order of cost; points with None or NaN take no part, and of equal ones the first stands
+    for all.
     """
     known = [
         (c, e, k)

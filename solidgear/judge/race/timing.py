@@ -13,20 +13,16 @@ import logging
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.judge.lumped import preferred, sources
+from solidgear.judge.race.answers import answer
 from solidgear.judge.race.pareto import CHARTED, Race, Row
 from solidgear.judge.settle import settle
-from solidgear.judge.solving import Answer, solve
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
-from solidgear.quantity import FIRST_BENDING, Quantity
-from solidgear.reduction.effective_mass import synthesise
+from solidgear.quantity import Quantity
 
 log = logging.getLogger(__name__)
 #: relative error bar of the reference, below what tells models apart; one of a millionth
@@ -42,15 +38,10 @@ CHEAP = (LUMPED, BEAM)
 GROWTH = 3.0
 
 
-#: solves a scene as a row asks for it: scene, name of the model, its options, elastic shapes
-Solve = Callable[[Any, str, dict, int], Answer]
-
-
 def race(
     scene,
     rows: list[Row],
     *,
-    solver: Solve | None = None,
     runs: int = 5,
     budget: float = BUDGET,
     sure: float | None = None,
@@ -58,16 +49,13 @@ def race(
     progress: Callable[[str], None] = lambda _: None,
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
-    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all alike.
+    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all alike; after
+    Ctrl-C with what there was, ``complete`` False.
 
     Parameters
     ----------
-    scene : Scene
     rows : list of Row
         Such as :func:`solidgear.judge.race.cases.plan` makes; they are filled in.
-    solver : callable, optional
-        Of the rows, where they have models that the ladder does not know; by default
-        :func:`answer`.
     runs : int
         Of each case; cases above 8 s get at most three, above 20 s one.
     budget : float
@@ -77,28 +65,16 @@ def race(
         Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
         What a process pays once, for the record.
-    progress : callable
-        Told in words what is going on.
     keep : callable
         Given the race after every run, for writing it down.
-
-    Returns
-    -------
-    Race
-        After Ctrl-C with what there was, ``complete`` False.
 
     Raises
     ------
     SolidgearError
-        If ``runs`` or ``budget`` are not positive, the reference fails or has none of the charted
-        quantities with a bar, or no row has an answer.
+        If the reference fails or has none of the charted quantities with a bar, or no row has an
+        answer.
     """
-    if runs < 1:
-        raise SolidgearError(f"runs = {runs} is not usable; give a whole number of at least 1")
-    if not budget > 0 or not np.isfinite(budget):
-        raise SolidgearError(f"budget = {budget:g} is not usable; give seconds above 0")
     start = time.perf_counter()
-    solver = solver or answer
     n = max(scene.ask.modes, 10)
     against, compliance = _reference(scene, sure or SURE, n, progress)
     found = Race(
@@ -114,12 +90,12 @@ def race(
 
     def timed(row: Row, turn: int) -> None:
         progress(f"run {turn + 1} of {runs}: {row.series}, level {row.level}")
-        _run(scene, row, n, against, compliance, solver)
+        _run(scene, row, n, against, compliance)
         spent()
         keep(found)
 
     try:
-        first = _warm_up(scene, found, n, progress, solver, spent)
+        first = _warm_up(scene, found, n, progress, spent)
         while waiting := [row for row in found.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
@@ -154,27 +130,6 @@ def race(
         why = next((row.reason for row in found.rows), "no case was given")
         raise SolidgearError(f"nothing to chart: no case has an answer; the first: {why}")
     return found
-
-
-def answer(scene, model: str, options: dict, n: int) -> Answer:
-    """Answer of one model; the lumped one rests on the best beam, and has a first bending of its
-    own.
-
-    Raises
-    ------
-    SolidgearError
-        Where the model cannot be made.
-    """
-    if LADDER[model].family != LUMPED:
-        return solve(scene, model, n, **options)
-    found = solve(scene, sources()[0], n, **options)
-    _, made = synthesise(found.body, scene, scene.port.name, found.modes)
-    chosen = preferred(made)
-    if chosen is None or chosen.frequency_hz is None:
-        raise SolidgearError(
-            "no lumped mass is positive and has the first bending mode as its first"
-        )
-    return replace(found, quantities={**found.quantities, FIRST_BENDING: chosen.frequency_hz})
 
 
 def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
@@ -218,15 +173,15 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
         "bands": {q: made.bars[q] for q in have},
         "like_for_like": {q: like[q] for q in have if q in like},
     }
-    return record, found.condensed.compliance
+    return record, found.statics.main.compliance
 
 
-def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver: Solve) -> None:
+def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None:
     """One more run of a row; the first fills in its numbers."""
     gc.collect()
     start = time.perf_counter()
     try:
-        found = solver(scene, row.model, row.options, n)
+        found = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
         row.status, row.reason = "failed", _why(error)
@@ -246,14 +201,14 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray, solver:
     row.values = {q: values[q] for q in against["values"] if q in values}
     row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
     if row.family in CHEAP and against["like_for_like"]:
-        like = solver(scene.with_attachment("section"), row.model, row.options, n).quantities
+        like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
             q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
         }
     missing = [q for q in against["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
-    whole = scaled_error(found.condensed.compliance, compliance)
+    whole = scaled_error(found.statics.main.compliance, compliance)
     if whole is not None:
         row.errors["C 6x6"] = whole
 
@@ -278,7 +233,7 @@ def _kind(row: Row) -> tuple:
 
 
 def _warm_up(
-    scene, found: Race, n: int, progress, solver: Solve, spent: Callable[[], float]
+    scene, found: Race, n: int, progress, spent: Callable[[], float]
 ) -> dict[tuple, float]:
     """The first case of every kind once, outside the rows: first calls pay for imports and caches;
     seconds by kind, infinite for those that half the budget does not reach.
@@ -293,7 +248,7 @@ def _warm_up(
         progress(f"warm-up: {row.series}")
         start = time.perf_counter()
         try:
-            solver(scene, row.model, row.options, n)
+            answer(scene, row.model, row.options, n)
         except Exception as error:  # reported when its own turn comes
             log.debug("warm-up of %s: %s", row.series, error)
         first[_kind(row)] = time.perf_counter() - start

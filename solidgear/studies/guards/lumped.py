@@ -64,11 +64,12 @@ def lumped_against_solid(probe: Probe) -> Notices:
         _, found = probe.lumped
     except SolidgearError:
         return  # `effective_mass` says so
-    lumped, solid = preferred(found), probe.solution("harmonic")
+    variant, solid = preferred(found), probe.solution("harmonic")
+    own = None if variant is None else found[variant].frequency_hz
     truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
-    if not truth or lumped is None or lumped.frequency_hz is None:
+    if not truth or own is None:
         return
-    gap = lumped.frequency_hz / truth - 1
+    gap = own / truth - 1
     bars = solid.error_bars.get(SCENE, {})
     bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
     kind = gap_verdict(gap, bar, tolerance)

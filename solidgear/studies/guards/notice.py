@@ -88,13 +88,6 @@ def slip_in_units(
         Least and largest value of a part that can be made.
     legend : str
         Symbols in the names, in brackets behind them.
-
-    Examples
-    --------
-    >>> print(slip_in_units([("E in Pa", 2.1e5, "segment 'seat'")], {"E in Pa": (1e8, 1.5e12)}, ""))
-    ... # doctest: +NORMALIZE_WHITESPACE
-    probably a slip in units: E in Pa of segment 'seat' is 2.1e+05, outside 1e+08 to 1.5e+12;
-    check the number and its unit
     """
     out = []
     for name, value, where in found:

@@ -23,7 +23,7 @@ from solidgear.judge.quantities import Values, judged
 from solidgear.judge.solution import Solution
 from solidgear.judge.solving import ENOUGH, solve
 from solidgear.judge.study import study
-from solidgear.judge.ties import rigid_seats
+from solidgear.judge.ties import attached
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
@@ -33,7 +33,7 @@ from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
 from solidgear.scene.outline import TOUCH
-from solidgear.solve.modes import ModeSet, modes
+from solidgear.solve.modes import modes
 from solidgear.studies.guards.notice import LUMPED_ON
 
 if TYPE_CHECKING:
@@ -81,18 +81,12 @@ class Probe:
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
-        """Advice in place of a model that does not hold: the usual advice, or, where features
-        of the scene forbid its models, those that hold them.
-
-        Parameters
-        ----------
-        *models : str
-            What it speaks of; by default the harmonic solid.
+        """Advice in place of a model that does not hold: the usual advice, or, where features of the scene
+        forbid the models that it speaks of, by default the harmonic solid, those that hold them.
         """
         if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
             return usual
-        fit = [name for name in LADDER.bodies if not LADDER[name].unfit(self.whole)]
-        return " or ".join(fit) or "a scene with fewer of its features"
+        return " or ".join(LADDER.holding(self.whole)) or "a scene with fewer of its features"
 
     @property
     def beam_fits(self) -> bool:
@@ -150,22 +144,11 @@ class Probe:
             return self.body.mesh
         return self.solutions[model].body.mesh if model in self.solutions else {}
 
-    def beam(self, model: str) -> tuple[Body, ModeSet, Values]:
-        """A beam tied as in the scene: body, modes and compared numbers."""
-        solution = self.solution(model)
-        return solution.body, solution.modes, solution.quantities
-
-    def _tied(self, attachment: str | None) -> Values:
+    def _tied(self, attachment: str) -> Values:
         """Numbers of a harmonic solid, on one mesh for all, with one attachment (``rigid``: at the
-        bearings), or as the scene has it (None).
+        bearings).
         """
-        if attachment is None:
-            return self.solution("harmonic").quantities
-        scene = (
-            rigid_seats(self.scene)
-            if attachment == "rigid"
-            else self.scene.with_attachment(attachment)
-        )
+        scene = attached(self.scene, attachment)
         n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
         return solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC).quantities
 
@@ -183,17 +166,17 @@ class Probe:
     @property
     def first_bending(self) -> float | None:
         """First bending of the Timoshenko beam on its bearings, Hz."""
-        return self.beam("timoshenko")[2].get(FIRST_BENDING)
+        return self.solution("timoshenko").quantities.get(FIRST_BENDING)
 
     @cached_property
     def lumped(self) -> tuple[LumpedPoint, dict[str, Synthesis]]:
         """Lumped point and lumped models of the Timoshenko beam; SolidgearError where there is
         nothing to lump.
         """
-        body, found, _ = self.beam(LUMPED_ON)
+        beam = self.solution(LUMPED_ON)
         try:
             with np.errstate(divide="raise", invalid="raise"):
-                return synthesise(body, self.supports, self.scene.port.name, found)
+                return synthesise(beam.body, self.supports, self.scene.port.name, beam.modes)
         except FloatingPointError:
             raise SolidgearError(
                 "first bending leaves the lumped point at rest in the z plane, in which masses "
@@ -205,7 +188,6 @@ class Probe:
         """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
         None without a lumped model.
         """
-        body, _, _ = self.beam(LUMPED_ON)
         try:
             point, _ = self.lumped
         except SolidgearError:
@@ -227,7 +209,7 @@ class Probe:
         return next(
             (
                 m.frequency_hz
-                for m in modes(body, held, FEW).modes
+                for m in modes(self.solution(LUMPED_ON).body, held, FEW).modes
                 if m.family == "bending" and m.frequency_hz > 0
             ),
             None,
@@ -278,7 +260,7 @@ class Probe:
         uneven = max(uneven, np.abs(held[np.ix_(x, z)]).max(initial=0.0))
         if uneven == 0.0:
             return 0.0
-        body, _, _ = self.beam("timoshenko")
+        body = self.solution("timoshenko").body
         apart = replace(body, mesh=body.mesh | {"pair_tolerance": 0.0})
         found = [
             m.frequency_hz

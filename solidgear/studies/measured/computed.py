@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from solidgear.body import Body, as_supports
-from solidgear.judge.body_bars import stepped_bars
 from solidgear.judge.bounded import mode_bars
+from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.judge.settle import Settled, bars_of_modes, settle
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
@@ -118,14 +118,14 @@ def computed_up_to(
         alike = surface(scene) == surface(before.scene)
         body = before.body if alike else build(scene, rung, **options)
     progress("modes and how sure they are")
-    listed, bars = _barred(scene, body, limit, settled)
+    listed, bars = _barred(scene, body, limit, options, settled)
     while LADDER[rung].bounded and _largest(listed, bars, highest) > tolerance:
         if options.get("order", 3) + STEP > HIGHEST:
             break
         options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: bars of all modes")
         body = build(scene, rung, **options)
-        listed, bars = _barred(scene, body, limit, settled)
+        listed, bars = _barred(scene, body, limit, options, settled)
     return Computed(scene, body, tuple(listed), tuple(bars), rung, options, limit)
 
 
@@ -152,7 +152,7 @@ def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
     scene, body = computed.scene, computed.body
     found = _modes(scene, body, limit, 2 * len(computed.modes))
     known = {str(mode.name): bar for mode, bar in zip(computed.modes, computed.bars)}
-    bars = known | _bars(scene, body, found, None)
+    bars = known | _bars(scene, body, found, computed.options, None)
     usual = max((bar for bar in bars.values() if math.isfinite(bar)), default=math.inf)
     told = [
         usual if math.isinf(bars.get(str(m.name), math.inf)) else bars[str(m.name)]
@@ -162,21 +162,23 @@ def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
 
 
 def _barred(
-    scene: Scene, body: Body, limit: float, settled: Settled | None
+    scene: Scene, body: Body, limit: float, options: Mapping[str, Any], settled: Settled | None
 ) -> tuple[list[Mode], list[float]]:
     """Modes of a body and their bars."""
     found = _modes(scene, body, limit)
-    told = _bars(scene, body, found, settled)
+    told = _bars(scene, body, found, options, settled)
     listed = _elastic(found)
     return listed, [told.get(str(mode.name), math.inf) for mode in listed]
 
 
-def _bars(scene: Scene, body: Body, found: ModeSet, settled: Settled | None) -> dict[str, float]:
+def _bars(
+    scene: Scene, body: Body, found: ModeSet, options: Mapping[str, Any], settled: Settled | None
+) -> dict[str, float]:
     """Relative bars by the names of modes."""
     if LADDER[body.fidelity].bounded:
         return mode_bars(scene, body, as_supports(scene), found)
     if without_axis(scene):
-        return stepped_bars(scene, body, found)
+        return coarser_bars(scene, body, found, options)
     return bars_of_modes(scene, body, found, settled)
 
 

@@ -13,7 +13,6 @@ from solidgear.judge.settle import Settled
 from solidgear.judge.solving import answered
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.meter import Meter
 from solidgear.models.limits import number
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
@@ -136,9 +135,7 @@ class SceneTask(FileTask):
         """Numbers of one model on the mesh that was asked for, without bars."""
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
-        found = answered(
-            body, as_supports(scene), [scene.port.name], n=self.n, ovalising=True, meter=Meter()
-        )
+        found = answered(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
         out: dict[str, Any] = {
             "model": self.model,
             "unknowns": body.size,

@@ -9,7 +9,7 @@ import time
 
 from solidgear.body import as_supports
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.second_mesh import second_bars
+from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.solve.modes import modes
@@ -51,7 +51,7 @@ def judged(seed: int, element: str, refinement: float) -> Found:
     body = build(scene, "solid", **options)
     found = modes(body, scene, scene.ask.modes)
     alone = time.process_time()
-    bars = second_bars(scene, body, found, options)
+    bars = coarser_bars(scene, body, found, options)
     share = (time.process_time() - alone) / (alone - start)
     exact = build(scene, "harmonic", **TRUTH)
     true = modes(exact, scene, scene.ask.modes + MORE)

@@ -30,7 +30,6 @@ from solidgear.judge.quantities import size
 from solidgear.judge.sequence_bars import RIGID_EDGE
 from solidgear.judge.solving import Answer, answered, solve
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.meter import Meter
 from solidgear.meshing.corners import SHOULDER
 from solidgear.meshing.cuts import mirror_plane
 from solidgear.models.sector.body import sector
@@ -226,6 +225,6 @@ def _affordable(elements: Callable[[float], int], most: int) -> float:
 
 def _answered(build: Callable[[], Any], scene: sg.Scene) -> Answer:
     body = build()
-    found = answered(body, as_supports(scene), (scene.port.name,), n=8, meter=Meter())
+    found = answered(body, as_supports(scene), (scene.port.name,), n=8)
     body.cache.clear()  # its factors
     return found

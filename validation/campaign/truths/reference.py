@@ -24,10 +24,10 @@ import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.judge.quantities import measure, size
+from solidgear.judge.solving import Statics
 from solidgear.quantity import QUANTITIES, STIFFNESS
 from solidgear.scene import Scene
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import condense
 from validation.campaign.truths.corner_mesh import TooFine, corner_mesh
 from validation.campaign.truths.spectral import spectral
 
@@ -92,16 +92,15 @@ def solved(scene: Scene, body, **options) -> dict:
     """Statics at and between all points and modes of a body, as plain data."""
     supports = as_supports(scene)
     names = tuple(port.name for port in scene.ports)
-    condensed = condense(body, supports, names[0])
-    further = {name: condense(body, supports, name) for name in names[1:]}
-    coupled = condense(body, supports, names) if further else None
+    statics = Statics.at(body, supports, names)
+    main, coupled = statics.main, statics.coupled
     found = modes(body, supports, max(scene.ask.modes, 10) + EXTRA_MODES, **options)
     return {
-        "values": measure(condensed, found, further, coupled),
+        "values": measure(main, found, statics.further, coupled),
         "modes": [plain_mode(mode) for mode in found.modes],
         "gram": found.gram.tolist(),
         # eigenvalues err by the square of the shapes' error, of which the residual is the size
-        "noise": float(max(condensed.evidence["residual"], found.evidence["residual"] ** 2)),
+        "noise": float(max(main.evidence["residual"], found.evidence["residual"] ** 2)),
         # what the inverse of several points makes of it
         "inverted": coupled.evidence["stiffness_error"] if coupled else 0.0,
         "unknowns": body.size,

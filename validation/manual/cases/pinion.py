@@ -6,7 +6,7 @@ import json
 
 import solidgear as sg
 from solidgear.judge.quantities import measure
-from solidgear.judge.ties import rigid_seats
+from solidgear.judge.ties import attached
 from validation.common import ROOT
 from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.models import frequencies
@@ -182,7 +182,7 @@ def _attachments() -> Answer:
     for width in WIDTHS:
         averaged = sg.load(SCENE).with_seat_width(width / 1000)
         found = []
-        for scene in (rigid_seats(averaged), averaged):
+        for scene in (attached(averaged, "rigid"), averaged):
             body = sg.build(scene, "harmonic", **FINE)
             found.append(frequencies(sg.modes(body, scene, n=6), "bending")[0])
             size = max(size, body.size)
