@@ -99,7 +99,7 @@ def test_half_a_loaded_row_of_many_balls_lives_a_million_turns_at_its_rating():
 
 def test_all_elements_alike_in_closed_form():
     # pushed along y every ball presses with F / (Z sin a), and both rings feel just that
-    row = BallRow(14, 11.9e-3, 60e-3, math.radians(40), 1, 0.52, 0.53)
+    row = BallRow(14, 11.9e-3, 60e-3, math.radians(40))
     inside = Inside(14, 11.9e-3, 0.0, 60e-3, math.radians(40), (0.52, 0.53))
     bearing = RollingBearing((row,))
     load = (0, 2000.0, 0, 0, 0, 0)
@@ -111,7 +111,7 @@ def test_all_elements_alike_in_closed_form():
 
 def test_slices_alike_are_one_roller_but_for_its_edges():
     # straight rollers pushed along y: with no edge stress n slices live as the whole roller does
-    row = RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.25, profile="straight")
+    row = RollerRow(16, 12e-3, 0.1, length=18e-3, angle=0.25, profile="straight")
     inside = Inside(16, 12e-3, 18e-3, 0.1, 0.25, (0.5, 0.5))
     bearing = RollingBearing((row,))
     load = (0, 9000.0, 0, 0, 0, 0)
@@ -127,7 +127,7 @@ def test_slices_alike_are_one_roller_but_for_its_edges():
 def test_a_slice_is_judged_at_the_load_of_a_row_of_its_like():
     # half of a row of straight rollers: every slice but those at the ends feels the radial load
     # itself, which is what the fatigue limit of a bearing is told for; constants of three digits
-    row = RollerRow(400, 1e-3, 1e-3, 0.2, profile="straight")
+    row = RollerRow(400, 1e-3, 0.2, length=1e-3, profile="straight")
     inside = Inside(400, 1e-3, 1e-3, 0.2, 0.0, (0.5, 0.5))
     bearing = RollingBearing((row, row))
     rows = bearing.contacts(bearing.motion([6000.0, 0, 0, 0, 0, 0], held=(1, 3, 5)))

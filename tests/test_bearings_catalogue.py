@@ -102,9 +102,8 @@ def test_clearance_by_class_fit_and_temperature():
 
 
 def single(side, height, preload=0.0, first=0.0):
-    return BallRow(
-        14, 11.9e-3, 60e-3, math.radians(40), side, 0.52, 0.52, 0.0, preload, height, first
-    )
+    where = {"preload": preload, "height": height, "first": first}
+    return BallRow(14, 11.9e-3, 60e-3, math.radians(40), side, outer=0.52, **where)
 
 
 @pytest.mark.parametrize(

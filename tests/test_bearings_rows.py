@@ -98,7 +98,7 @@ def test_contact_constant_between_sphere_and_cylinder():
 def test_rollers_in_closed_form():
     # pushed along y all slices of straight rollers press alike
     straight = RollingBearing(
-        (RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.25, side=-1, profile="straight"),)
+        (RollerRow(16, 12e-3, 0.1, length=18e-3, angle=0.25, side=-1, profile="straight"),)
     )
     push, s, c = 11e-6, np.sin(0.25), np.cos(0.25)
     motion = np.array([0, -push, 0, 0, 0, 0])
@@ -119,7 +119,7 @@ def test_a_radial_row_of_many_rollers_meets_the_load_integral():
     # J of Sjovall: F = n c d^p (1 / 2 pi) integral of cos^(p + 1) over the loaded half
     from scipy.integrate import quad
 
-    row = RollerRow(400, 1e-3, 10e-3, 0.2, profile="straight")
+    row = RollerRow(400, 1e-3, 0.2, length=10e-3, profile="straight")
     integral = quad(lambda t: np.cos(t) ** (19 / 9), -np.pi / 2, np.pi / 2, epsabs=1e-13)[0]
     load = 400 * line_constant(10e-3) * 5e-6 ** (10 / 9) * integral / (2 * np.pi)
     assert row.load(np.array([5e-6, 0, 0, 0, 0, 0]))[0] == pytest.approx(load, rel=1e-6)
@@ -129,7 +129,7 @@ def test_a_radial_row_of_many_rollers_meets_the_load_integral():
 def test_rollers_at_right_angles_to_the_load_carry_nothing_and_stiffen_nothing(count):
     """Pushed towards any roller, those a quarter turn away just touch, whatever rounding says."""
     push = 5e-6
-    row = RollerRow(count, 9e-3, 10e-3, 46.5e-3, profile="straight")
+    row = RollerRow(count, 9e-3, 46.5e-3, length=10e-3, profile="straight")
     # by whole numbers: rollers strictly within a quarter turn of the load
     c = np.cos([2 * np.pi * k / count for k in range(-count, count) if 4 * abs(k) < count])
     each = 10 / 9 * line_constant(10e-3) * (push * c) ** (1 / 9)
@@ -147,7 +147,7 @@ def test_rollers_at_right_angles_to_the_load_carry_nothing_and_stiffen_nothing(c
 
 def test_a_roller_is_in_contact_however_little_the_ring_moves():
     """Rounding is judged by the motion, not by a length: stiffness goes with its ninth root."""
-    row = RollerRow(12, 9e-3, 10e-3, 46.5e-3, profile="straight")
+    row = RollerRow(12, 9e-3, 46.5e-3, length=10e-3, profile="straight")
     large, small = (row.tangent(np.array([push, 0, 0, 0, 0, 0])) for push in (1e-6, 1e-15))
     assert np.allclose(10 * small, large, rtol=1e-9, atol=1e-12 * large[0, 0])
 
@@ -265,7 +265,9 @@ def test_stiffness_grows_with_load(name, power):
     # small beside the approach, so straight ones are taken
     row = ROWS[name]
     if name == "tapered":
-        row = RollerRow(16, 12e-3, 18e-3, 0.1, angle=np.radians(15), side=-1, profile="straight")
+        row = RollerRow(
+            16, 12e-3, 0.1, length=18e-3, angle=np.radians(15), side=-1, profile="straight"
+        )
     bearing = RollingBearing((row,))
     loads = row.side * np.geomspace(1e-3, 1e3, 13)
     along = [bearing.tangent(bearing.motion([0, f, 0, 0, 0, 0]))[1, 1] for f in loads]
@@ -284,7 +286,7 @@ def test_what_a_bearing_cannot_carry():
 def test_random_loads_are_carried():
     pair = RollingBearing(
         tuple(
-            RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.26, side=side, height=0.02 * side)
+            RollerRow(16, 12e-3, 0.1, length=18e-3, angle=0.26, side=side, height=0.02 * side)
             for side in (-1, 1)
         )
     )

@@ -26,42 +26,18 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.bearings.hertz import (
-    POINT_POWER,
-    STEEL_E,
-    STEEL_NU,
-    Point,
-    point_contact,
-)
-from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, symmetric
+from solidgear.bearings.hertz import POINT_POWER, Point, point_contact
+from solidgear.bearings.row import FELT, Contacts, Elements, felt, products, six, symmetric
 
 
-@dataclass(frozen=True)
-class BallRow:
-    """One row of balls; lengths in m, angles in rad, order (x, y, z, thx, thy, thz).
+@dataclass(frozen=True, kw_only=True)
+class BallRow(Elements):
+    """One row of balls.
 
     Attributes
     ----------
-    count : int
-        Balls.
-    diameter, pitch : float
-        Of a ball, and of the circle of their centres.
-    angle : float
-        Nominal contact angle; 0 for a deep groove.
-    side : {1, -1}
-        Which way the shaft is held by a contact angle: towards +y or -y.
     inner, outer : float
         Groove radius over ball diameter; above 0.5.
-    clearance : float
-        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
-    preload : float
-        How far the inner ring has been pushed into contact along y, m.
-    height : float
-        Of the balls' centres along y from the reference point.
-    first : float
-        Azimuth of the first ball, from x towards z.
-    E, nu : float
-        Of balls and rings.
 
     Examples
     --------
@@ -74,24 +50,8 @@ class BallRow:
     True
     """
 
-    count: int
-    diameter: float
-    pitch: float
-    angle: float = 0.0
-    side: int = 1
     inner: float = 0.52
     outer: float = 0.53
-    clearance: float = 0.0
-    preload: float = 0.0
-    height: float = 0.0
-    first: float = 0.0
-    E: float = STEEL_E
-    nu: float = STEEL_NU
-
-    @cached_property
-    def azimuth(self) -> np.ndarray:
-        """(count,) rad."""
-        return azimuths(self.count, self.first)
 
     @property
     def free(self) -> float:

@@ -12,9 +12,6 @@ from solidgear.bearings.row import Contacts
 from solidgear.bearings.sliding import FURTHEST, balanced, condensed
 from solidgear.errors import SolidgearError
 
-#: of a push; six are common
-MOST_STEPS = 100
-
 
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     """A row whose rings are pushed together until it presses with a force along y.
@@ -43,20 +40,13 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     >>> round(float(tight.load(np.zeros(6))[1]), 6)
     500.0
     """
-    still, low, high = np.zeros(6), 0.0, FURTHEST
-    tight, push = replace(row, preload=high), high
-    if row.side * tight.load(still)[1] < force:
+    still, most = np.zeros(6), row.side * FURTHEST
+    if row.side * replace(row, preload=FURTHEST).load(still)[1] < force:
         raise SolidgearError(f"no push along y preloads this row with {force:g} N")
-    for _ in range(MOST_STEPS):
-        missing, slope = force - row.side * tight.load(still)[1], tight.tangent(still)[1, 1]
-        low, high = (push, high) if missing > 0 else (low, push)
-        # Newton, or half of what is left where that leads out of it or nothing presses yet
-        further = push + missing / slope if slope > 0 else -1.0
-        before, push = push, further if low <= further <= high else (low + high) / 2
-        tight = replace(row, preload=float(push))
-        if abs(push - before) <= 1e-14 * push:
-            break
-    return tight
+    low, high = np.array(min(0.0, most)), np.array(max(0.0, most))
+    # a push of the inner ring is a motion of it along y
+    found = balanced(row.load, row.tangent, still, low, high, lambda y: np.full_like(y, row.side * force))
+    return replace(row, preload=float(row.side * found[1]))
 
 
 @dataclass(frozen=True)

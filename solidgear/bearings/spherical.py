@@ -27,7 +27,7 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.row import felt
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SphericalRow(RollerRow):
     """One of the two rows of a spherical roller bearing.
 
@@ -38,7 +38,7 @@ class SphericalRow(RollerRow):
 
     Examples
     --------
-    >>> row = SphericalRow(14, 25e-3, 20.76e-3, 135.077e-3, angle=np.radians(12))
+    >>> row = SphericalRow(14, 25e-3, 135.077e-3, length=20.76e-3, angle=np.radians(12))
     >>> round(row.sphere * 1e3, 1), round(row.contour * 1e3, 1)
     (81.5, 79.9)
     >>> bool(row.tangent(np.array([2e-5, 0, 0, 0, 0, 0]))[3:].any())

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from math import fsum, isclose, pi
+from collections.abc import Mapping
+from math import pi
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.errors import SceneError, listed, nearest
+from solidgear.errors import SceneError
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.typed import Model
@@ -127,89 +127,3 @@ def _as_points(value: Any) -> Any:
 Operation = Annotated[
     tuple[OperatingPoint, ...], BeforeValidator(_as_points), Field(max_length=MOST_POINTS)
 ]
-
-
-def operation_problems(
-    points: Sequence[OperatingPoint],
-    turns: Mapping[str, float],
-    torque_turns: Mapping[str, float],
-    ends: tuple[str, str],
-    ports: Mapping[str, Sequence[str]],
-) -> Iterator[SceneError]:
-    """Problems of operating points among themselves, against the teeth, and of forces nowhere.
-
-    Parameters
-    ----------
-    turns, torque_turns : mapping of str to float
-        Of all shafts in the same time, and of those that the torque passes over the share of the power
-        that each carries.
-    ends : (str, str)
-        Shafts where it comes in and goes out.
-    ports : mapping of str to sequence of str
-        Ports of each shaft.
-
-    Yields
-    ------
-    SceneError
-    """
-    for k, point in enumerate(points):
-        if point.of not in torque_turns:
-            reason = f"is no shaft that the torque passes; write one of {listed(torque_turns)}"
-            hint = nearest(point.of, torque_turns)
-            yield SceneError(reason + hint, path=("operation", k, "of"))
-            continue
-        yield from _against_teeth(point, turns, torque_turns, ends, k)
-        for i, force in enumerate(point.force):
-            side, _, port = force.at.partition(".")
-            if port not in ports.get(side, ()):
-                known = ", ".join(f"{s}.{p}" for s, names in ports.items() for p in names)
-                path = ("operation", k, "force", i, "at")
-                yield SceneError(f"names no port of a shaft; known here: {known}", path=path)
-    yield from _duty(points)
-
-
-def _against_teeth(
-    point: OperatingPoint,
-    turns: Mapping[str, float],
-    torque_turns: Mapping[str, float],
-    ends: tuple[str, str],
-    k: int,
-) -> Iterator[SceneError]:
-    """Torque and speed of the other end that are not those of the teeth."""
-    other = ends[0] if point.of == ends[1] else ends[1]
-    torque, speed = point.torque_of(other, torque_turns), point.speed_of(other, turns)
-    given, ratio = point.output_torque, turns[ends[0]] / turns[ends[1]]
-    if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
-        yield SceneError(
-            f"{point.torque:.6g} N m on the {point.of} are balanced by {abs(torque):.6g} N m on "
-            f"the {other} (teeth {ratio:.4f} to 1, no losses); correct one, or leave it out",
-            path=("operation", k, "output_torque"),
-        )
-    if point.output_speed is None:
-        return
-    if speed is None:
-        reason = "needs a speed to be held against; write speed as well"
-        yield SceneError(reason, path=("operation", k, "output_speed"))
-    elif not isclose(point.output_speed, speed, rel_tol=TYPED):
-        yield SceneError(
-            f"the teeth turn the {other} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
-            path=("operation", k, "output_speed"),
-        )
-
-
-def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
-    """A duty table that is not whole."""
-    for key in ("share", "hours"):
-        given = [getattr(point, key) for point in points]
-        if any(given) and None in given:
-            lacking = given.index(None)
-            reason = f"this key is missing; a duty table gives {key} for every point"
-            yield SceneError(reason, path=("operation", lacking, key))
-            return
-    shares = [point.share for point in points if point.share is not None]
-    if shares and abs(fsum(shares) - 1) > TYPED:
-        yield SceneError(
-            f"the shares of {len(shares)} operating points sum to {fsum(shares):.6g}; they must "
-            "sum to 1",
-            path=("operation", 0, "share"),
-        )

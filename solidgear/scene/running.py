@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import isclose, pi
+from collections.abc import Iterator, Sequence
+from math import fsum, isclose, pi
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest
 from solidgear.scene.layout import RATIO_TYPED
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import operation_problems
+from solidgear.scene.operation import TYPED, OperatingPoint
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
@@ -60,13 +60,13 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """
     if not train.operation:
         return
-    ports = {side: [s.name for s in own.scene.stations] for side, own in train.shafts.items()}
-    ends = train.reference, train.load.shaft
     if not any(flow is None or flow for flow in train.flows.values()):
-        reason = f"engine and load both turn with the {ends[0]}: no mesh carries their torque"
+        reason = f"engine and load both turn with the {train.reference}: no mesh carries their torque"
         yield SceneError(reason, path=(*train.rotor_path(train.loads[0]), "shaft"))
         return
-    yield from operation_problems(train.operation, train.turns, train.torque_turns, ends, ports)
+    for k, point in enumerate(train.operation):
+        yield from (one.located(None, prefix=("operation", k)) for one in _point(train, point))
+    yield from _duty(train.operation)
     for side, own in train.shafts.items():
         scene = own.scene
         held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
@@ -77,6 +77,66 @@ def running_problems(train: Train) -> Iterator[SceneError]:
                 path=("operation",),
             )
         yield from _speeds(train, side, scene)
+
+
+def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
+    """Problems of an operating point against the teeth, and of forces nowhere."""
+    if point.of not in train.torque_turns:
+        known = train.torque_turns
+        reason = f"is no shaft that the torque passes; write one of {listed(known)}"
+        yield SceneError(reason + nearest(point.of, known), path=("of",))
+        return
+    yield from _against_teeth(train, point)
+    ports = {side: [s.name for s in own.scene.stations] for side, own in train.shafts.items()}
+    for i, force in enumerate(point.force):
+        side, _, port = force.at.partition(".")
+        if port not in ports.get(side, ()):
+            known_ports = ", ".join(f"{s}.{p}" for s, names in ports.items() for p in names)
+            reason = f"names no port of a shaft; known here: {known_ports}"
+            yield SceneError(reason, path=("force", i, "at"))
+
+
+def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
+    """Torque and speed of the other end that are not those of the teeth."""
+    first, last = train.reference, train.load.shaft
+    other = first if point.of == last else last
+    torque, speed = point.torque_of(other, train.torque_turns), point.speed_of(other, train.turns)
+    given = point.output_torque
+    if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
+        yield SceneError(
+            f"{point.torque:.6g} N m on the {point.of} are balanced by {abs(torque):.6g} N m on "
+            f"the {other} (teeth {train.ratio:.4f} to 1, no losses); correct one, or leave it out",
+            path=("output_torque",),
+        )
+    if point.output_speed is None:
+        return
+    if speed is None:
+        yield SceneError(
+            "needs a speed to be held against; write speed as well", path=("output_speed",)
+        )
+    elif not isclose(point.output_speed, speed, rel_tol=TYPED):
+        yield SceneError(
+            f"the teeth turn the {other} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
+            path=("output_speed",),
+        )
+
+
+def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
+    """A duty table that is not whole."""
+    for key in ("share", "hours"):
+        given = [getattr(point, key) for point in points]
+        if any(given) and None in given:
+            lacking = given.index(None)
+            reason = f"this key is missing; a duty table gives {key} for every point"
+            yield SceneError(reason, path=("operation", lacking, key))
+            return
+    shares = [point.share for point in points if point.share is not None]
+    if shares and abs(fsum(shares) - 1) > TYPED:
+        yield SceneError(
+            f"the shares of {len(shares)} operating points sum to {fsum(shares):.6g}; they must "
+            "sum to 1",
+            path=("operation", 0, "share"),
+        )
 
 
 def _speeds(train: Train, side: str, scene: Scene) -> Iterator[SceneError]:
