@@ -23,10 +23,6 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     force : float
         N.
 
-    Returns
-    -------
-    BallRow or RollerRow
-
     Raises
     ------
     SolidgearError
@@ -45,7 +41,9 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
         raise SolidgearError(f"no push along y preloads this row with {force:g} N")
     low, high = np.array(min(0.0, most)), np.array(max(0.0, most))
     # a push of the inner ring is a motion of it along y
-    found = balanced(row.load, row.tangent, still, low, high, lambda y: np.full_like(y, row.side * force))
+    found = balanced(
+        row.load, row.tangent, still, low, high, lambda y: np.full_like(y, row.side * force)
+    )
     return replace(row, preload=float(row.side * found[1]))
 
 

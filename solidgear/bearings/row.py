@@ -64,7 +64,6 @@ class Elements:
 
     Attributes
     ----------
-    count : int
     diameter, pitch : float
         Of an element (mean), and of the circle of their centres.
     angle : float

@@ -100,12 +100,7 @@ class Acting(Group):
 
 
 def refuse(options: dict[str, str | None], what: str, file: Path, instead: str) -> None:
-    """Refuse options that are for something else.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Refuse options that are for something else."""
     for option, given in options.items():
         if given is not None:
             raise SolidgearError(f"{option} is for {what}, and {file} is none: {instead}")

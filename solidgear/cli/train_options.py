@@ -203,10 +203,6 @@ def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
         Such options, and whether they were given.
     instead : str
         What to do for a train, in words.
-
-    Raises
-    ------
-    SolidgearError
     """
     for option, there in given.items():
         if there:

@@ -23,7 +23,6 @@ class Pair(NamedTuple):
 
     Attributes
     ----------
-    arrangement : {'back_to_back', 'face_to_face'}
     bearings : tuple of int
         Places of both in the list of a file.
     """

@@ -13,7 +13,6 @@ def attached_stations(
 
     Parameters
     ----------
-    stations : iterable of Port, Bearing or PointMass
     attachments : sequence of str, optional
         Ways in place of their own; the middle of an end face is a section all the same.
 

@@ -34,7 +34,6 @@ class Corner:
         Kind is fillet or chamfer.
     y, r : float
         Of the sharp edge, m.
-    surface : {'outer', 'bore'}
     root : bool
         Material is added; at a rim it is taken away.
     owner : int
@@ -251,10 +250,8 @@ class Fillet(_Blend):
 
     Attributes
     ----------
-    name : str
     y : float
         Place of the edge, m: a step, or an end face.
-    surface : {'outer', 'bore'}
     edge : {'root', 'rim'} or None
         Root adds material in the corner of a step, rim rounds off its edge; by default the root,
         and the rim at an end face.

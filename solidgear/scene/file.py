@@ -118,10 +118,6 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     part_of : callable
         Reads the part that a [body] names, and recognises the body of revolution inside it.
 
-    Returns
-    -------
-    Scene
-
     Raises
     ------
     SceneError

@@ -41,7 +41,6 @@ class HeadInertia(Model):
         kg.
     torsional, bending : float
         About the shaft and across it, at the lumped point, kg m^2.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     mass: Mass
@@ -55,7 +54,6 @@ class Gear(Model):
 
     Attributes
     ----------
-    hand : {'left', 'right'} or None
     loaded_side : {'concave', 'convex', 'left', 'right'} or None
         Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
         of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771).
@@ -70,7 +68,6 @@ class Gear(Model):
         Of cylindrical gears, in modules.
     apex : {'start', 'end'}
         Towards which end of the shaft the pitch apex lies.
-    head : HeadInertia or None
     """
 
     teeth: Teeth
@@ -148,7 +145,6 @@ class Member(Gear):
 
     Attributes
     ----------
-    scene : Scene
     scene_load : {'added', 'replaced'} or None
         As of `Shaft`.
     """

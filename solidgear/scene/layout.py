@@ -42,12 +42,7 @@ class PerTurn(float):
 
 
 def layout_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of names, of meshes between shafts that are not there, and of shafts left out.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of names, of meshes between shafts that are not there, and of shafts left out."""
     for name in train.shafts:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
             reason = f"a shaft cannot be called {name!r}; give it another name, without dots"

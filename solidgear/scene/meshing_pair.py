@@ -12,12 +12,7 @@ from solidgear.scene.layout import RATIO_TYPED
 
 
 def pair_problems(pair: Pair) -> Iterator[SceneError]:
-    """Problems of two gears that mesh, with paths from ``pinion``, ``gear`` or ``mesh``.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of two gears that mesh, with paths from ``pinion``, ``gear`` or ``mesh``."""
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     hands = (pinion.hand, gear.hand)
     curved = any(m.spiral_angle or m.helix_angle for m in (pinion, gear))

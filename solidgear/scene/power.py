@@ -66,12 +66,7 @@ def carried_of(train: Train) -> dict[str, float]:
 
 
 def share_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of how a torque divides among engines or loads.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of how a torque divides among engines or loads."""
     for kind, names in (("engine", train.engines), ("load", train.loads)):
         given = [train.rotors[name].share for name in names]
         path = (*train.rotor_path(names[0]), "share")

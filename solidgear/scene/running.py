@@ -16,12 +16,7 @@ if TYPE_CHECKING:
 
 
 def spring_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of torsional springs: ports that are not there, places off their shafts.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of torsional springs: ports that are not there, places off their shafts."""
     for name, rotor in train.rotors.items():
         spring, scene = rotor.spring, train.shafts[rotor.shaft].scene
         ports = [s.name for s in scene.stations]
@@ -52,16 +47,13 @@ def _on_the_shaft(train: Train, rotor: str, side: str) -> Iterator[SceneError]:
 
 
 def running_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
     if not train.operation:
         return
     if not any(flow is None or flow for flow in train.flows.values()):
-        reason = f"engine and load both turn with the {train.reference}: no mesh carries their torque"
+        reason = (
+            f"engine and load both turn with the {train.reference}: no mesh carries their torque"
+        )
         yield SceneError(reason, path=(*train.rotor_path(train.loads[0]), "shaft"))
         return
     for k, point in enumerate(train.operation):

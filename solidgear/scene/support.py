@@ -27,10 +27,6 @@ HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0
 def held_matrix(hold: str) -> np.ndarray:
     """(6, 6) stiffness that stands for a way of holding.
 
-    Parameters
-    ----------
-    hold : {'clamped', 'pinned'}
-
     Returns
     -------
     (6, 6) ndarray

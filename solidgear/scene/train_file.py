@@ -55,10 +55,6 @@ def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train
         are read as they are written, without a stiffness of catalogue bearings, which
         :func:`solidgear.load_train` works out.
 
-    Returns
-    -------
-    Train
-
     Raises
     ------
     SceneError

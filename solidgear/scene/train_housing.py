@@ -71,7 +71,6 @@ class Mount(Model):
         6x6 about its place, SI; the constructor also takes named entries.
     loss : float
         Loss factor, twice a damping ratio.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     name: str = ""
@@ -207,12 +206,7 @@ class TrainHousing(Model):
 
 
 def housing_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of the housing of a train: shafts that are not there or stand in another, and names.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of the housing of a train: shafts that are not there or stand in another, and names."""
     if train.housing is None:
         return
     for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):

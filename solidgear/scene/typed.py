@@ -158,11 +158,6 @@ class Model(BaseModel, metaclass=_Shown):
         -------
         Model
             Of the same class.
-
-        Raises
-        ------
-        SceneError
-            As by the constructor.
         """
         fields = type(self).model_fields
         changes = {self._own(key, changes): value for key, value in changes.items()}

@@ -37,7 +37,6 @@ class Uncertain(Model):
 
     Attributes
     ----------
-    path : str
     said : str
         The range as the file states it.
     low, high : float

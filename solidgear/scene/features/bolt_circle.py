@@ -18,7 +18,6 @@ class BoltCircle(OnSegment):
 
     Attributes
     ----------
-    name, segment : str
     count : int
         3 to 400.
     diameter : float
@@ -31,11 +30,6 @@ class BoltCircle(OnSegment):
         The face of the segment that they are drilled from.
     angle : float
         Where the first hole lies, rad: 0 is +z.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
 
     Examples
     --------

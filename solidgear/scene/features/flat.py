@@ -17,18 +17,12 @@ class Flat(Long):
 
     Attributes
     ----------
-    name, segment : str
     y, length : float
         Start and length along the shaft, m.
     depth : float
         Below the crown of the cylinder, m.
     angle : float
         As for :class:`Keyway`.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
 
     Examples
     --------

@@ -19,7 +19,6 @@ class Keyway(Long):
 
     Attributes
     ----------
-    name : str
     segment : str
         Of the shaft, a cylinder.
     y : float
@@ -28,14 +27,8 @@ class Keyway(Long):
         With its round ends, m.
     width, depth : float
         m; the depth is that below the crown of the cylinder (t1 of DIN 6885).
-    ends : {'round', 'square'}
     angle : float
         Where it lies around the shaft, rad: 0 is +z, a quarter turn is +x.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
 
     Examples
     --------

@@ -175,7 +175,6 @@ class Teeth(_Toothed):
 
     Attributes
     ----------
-    name, segment : str
     count : int
         3 to 400.
     addendum, dedendum : float
@@ -211,11 +210,6 @@ class Teeth(_Toothed):
 
 class Spline(_Toothed):
     """Teeth on a cylinder, fields as those of :class:`Teeth`.
-
-    Raises
-    ------
-    SceneError
-        As :class:`Teeth`.
 
     Examples
     --------
