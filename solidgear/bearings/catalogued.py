@@ -35,14 +35,6 @@ class Catalogued:
         What of the inside was not given.
     clearance : float
         Radial, at work, m.
-
-    Examples
-    --------
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> made = catalogued(Catalogue(designation="7208 B", arrangement="back_to_back",
-    ...                             preload="300 N", load_rating="34.5 kN"))
-    >>> len(made.bearing.rows), made.estimated
-    (2, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
     """
 
     bearing: RollingBearing

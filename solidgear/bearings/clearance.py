@@ -57,12 +57,6 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
     ------
     SceneError
         A class of a bearing that has none.
-
-    Examples
-    --------
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> clearance_range(Catalogue(designation="6208", clearance="C3"))
-    (1.5e-05, 3.3e-05)
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
@@ -86,16 +80,7 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
 
 
 def mounting_change(data: Catalogue, inside: Inside) -> float:
-    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft.
-
-    Examples
-    --------
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> data = Catalogue(designation="6206", load_rating="19.5 kN", shaft_interference="10 um")
-    >>> round(mounting_change(data, inner_geometry(data).middle) * 1e6, 1)
-    -8.2
-    """
+    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft."""
     reach = inside.diameter * math.cos(inside.angle)
     inner, outer = inside.pitch - reach, inside.pitch + reach
     # interference only: a loose fit changes nothing

@@ -87,19 +87,6 @@ def equilibrium(
     ------
     SolidgearError
         If nothing holds the shaft against a load.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import solidgear as sg
-    >>> from solidgear.bearings.ball import BallRow
-    >>> from solidgear.bearings.rolling import RollingBearing
-    >>> body = sg.build(sg.load("geometry/shaft_stepped.toml"), "timoshenko")
-    >>> balls = RollingBearing((BallRow(count=9, diameter=12e-3, pitch=60e-3),))
-    >>> found = equilibrium(body, [Mounted("A", balls), Mounted("B", balls)],
-    ...                     {"port": [0, 0, 2000.0, 0, 0, 0]})
-    >>> round(float(found.load["A"][2] + found.load["B"][2]), 6)
-    2000.0
     """
     shaft = _OnBody(body, bearings, loads, housing)
     try:

@@ -108,19 +108,6 @@ def equivalent_load(
         Of all rows.
     load : (6,) ndarray
         Of the shaft on the bearing, N; moments are not felt by this load.
-
-    Examples
-    --------
-    A 6208 under 3.2 kN and 1.8 kN, 4.38 kN in the catalogue that has this example:
-
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> from solidgear.bearings.rating import ratings
-    >>> data = Catalogue(designation="6208", load_rating="32.5 kN", static_rating="17.8 kN",
-    ...                  elements=9, element_diameter="12 mm", pitch_diameter="60 mm")
-    >>> inside = inner_geometry(data).middle
-    >>> found = equivalent_load(data, inside, ratings(data, inside), [3200, 1800, 0, 0, 0, 0])
-    >>> round(found.load), round(found.e, 2)
-    (4391, 0.3)
     """
     radial, axial = math.hypot(load[0], load[2]), abs(float(load[1]))
     e, low, high = factors(data, inside, _depth(data, inside, axial / rated.static))
@@ -150,13 +137,6 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
     Factors
         Of rows without a contact angle that are rollers, the radial load alone, of thrust balls the
         axial one.
-
-    Examples
-    --------
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> pair = Catalogue(designation="7208 B", arrangement="back_to_back")
-    >>> [round(v, 2) for v in factors(pair, inner_geometry(pair).middle, 0.0).high]
-    [0.57, 0.93]
     """
     if inside.thrust:
         return Factors(0.0, (0.0, 1.0), (0.0, 1.0))

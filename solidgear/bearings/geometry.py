@@ -82,15 +82,6 @@ def inner_geometry(data: Catalogue) -> Geometry:
     ------
     SceneError
         A load rating that no inside of these boundary dimensions has.
-
-    Examples
-    --------
-    The 6206 of catalogues, with nothing of its inside told:
-
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> found = inner_geometry(Catalogue(designation="6206", load_rating="19.5 kN"))
-    >>> found.middle.elements, round(found.middle.diameter * 1e3, 2)  # in truth 9 of 9.525 mm
-    (9, 9.41)
     """
     make = _balls if data.balls else _rollers
     middle = make(data, "middle")

@@ -27,14 +27,6 @@ def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     ------
     SolidgearError
         If no push brings that force.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> row = BallRow(count=14, diameter=12e-3, pitch=60e-3, angle=0.436)
-    >>> tight = pushed(row, 500.0)
-    >>> round(float(tight.load(np.zeros(6))[1]), 6)
-    500.0
     """
     still, most = np.zeros(6), row.side * FURTHEST
     if row.side * replace(row, preload=FURTHEST).load(still)[1] < force:
@@ -61,16 +53,6 @@ class SprungRow:
         Pushed by the spring's force.
     spring : float
         N/m.
-
-    Examples
-    --------
-    The softer the spring, the more the force stays what it was:
-
-    >>> import numpy as np
-    >>> row = pushed(BallRow(count=14, diameter=12e-3, pitch=60e-3, angle=0.436), 500.0)
-    >>> away = np.array([0.0, -2e-6, 0.0, 0.0, 0.0, 0.0])
-    >>> [round(float(SprungRow(row, k).load(away)[1])) for k in (1e4, 1e12)]
-    [500, 340]
     """
 
     row: BallRow | RollerRow

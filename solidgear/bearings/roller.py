@@ -42,14 +42,6 @@ class RollerRow(Elements):
         That of ISO/TS 16281, 5.3.3, or none.
     slices : int
         ISO/TS 16281 asks for 30 or more.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> row = RollerRow(count=13, diameter=9e-3, length=10e-3, pitch=46.5e-3)
-    >>> loaded = row.contacts(np.array([5e-6, 0, 0, 0, 0, 0])).load > 0
-    >>> int(loaded.sum())  # those within a quarter turn of x
-    7
     """
 
     length: float

@@ -44,12 +44,6 @@ class Corner:
         +1 if the plane face beside the edge lies at larger radius, -1 otherwise.
     axial, radial : float
         Extent along the shaft and across it, m.
-
-    Examples
-    --------
-    >>> corner = Corner("f", "fillet", 0.1, 0.02, "outer", True, 1, 1, 1, 0.004, 0.004)
-    >>> corner.on_face, corner.on_cylinder
-    ((0.024, 0.1), (0.02, 0.10400000000000001))
     """
 
     name: str

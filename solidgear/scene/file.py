@@ -41,7 +41,7 @@ from solidgear.scene.rules import (
 )
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.toml_file import FileOrder, describes_train, name_of, parse, place_of
+from solidgear.scene.toml_file import FileOrder, describes_train, name_of, of_tables, parse, place_of
 from solidgear.scene.typed import Gathered, Holds, Model
 from solidgear.scene.uncertain import stated
 
@@ -109,27 +109,8 @@ class _PartFile(_File):
 
 
 def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
-    """Read and resolve a scene file.
-
-    Parameters
-    ----------
-    path : str or path
-        A TOML file; ``geometry/pinion_overhung.toml`` describes the format.
-    part_of : callable
-        Reads the part that a [body] names, and recognises the body of revolution inside it.
-
-    Raises
-    ------
-    SceneError
-        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
-        what would be right: one line for each problem, in the order of the file.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/pinion_overhung.toml")
-    >>> [bearing.name for bearing in scene.bearings], scene.port.name
-    (['1', '2'], 'pinion')
+    """A scene file as it is written, bearings of catalogue data without their stiffness; `part_of`
+    reads the part that a [body] names.
     """
     where = os.fspath(path)
     return scene_of(parse(where), where, part_of)
@@ -145,12 +126,9 @@ def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
     try:
         return _Reading(dict(raw), where, part_of).scene()
     except SceneError as error:
-        found = error.problems
-        if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
-            found = tuple(one.located(None, path=_of_the_one_port(one.path)) for one in found)
-        problems = {
-            (one.path, one.reason): one for one in found
-        }  # both ends of a cylinder are one diameter
+        found = of_tables(error, raw).problems
+        # both ends of a cylinder are one diameter
+        problems = {(one.path, one.reason): one for one in found}
         order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
@@ -160,10 +138,6 @@ def _drop_tag(path: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
     tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
     return (*path[:2], *path[3:]) if tagged else path
-
-
-def _of_the_one_port(path: tuple) -> tuple:
-    return ("port", *path[2:]) if path[:1] == ("port",) and path[1:2] == (0,) else path
 
 
 class _Row(NamedTuple):

@@ -27,13 +27,7 @@ OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)
 
 
 def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
-    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them.
-
-    Examples
-    --------
-    >>> rigid_motions({"kxx": 1e8, "kzz": 1e8})
-    ('y', 'thx', 'thy', 'thz')
-    """
+    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them."""
     rigid = [k for k, name in enumerate(OWN) if name not in entries]
     for name in entries:
         i, j, _ = STIFFNESS_NAMES.get(name, (-1, -1, ""))

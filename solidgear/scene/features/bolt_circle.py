@@ -30,11 +30,6 @@ class BoltCircle(OnSegment):
         The face of the segment that they are drilled from.
     angle : float
         Where the first hole lies, rad: 0 is +z.
-
-    Examples
-    --------
-    >>> from solidgear.scene import BoltCircle
-    >>> BoltCircle(name="bolts", segment="flange", count=6, diameter="11 mm", circle="90 mm").depth
     """
 
     sort: ClassVar[str] = "cyclic"

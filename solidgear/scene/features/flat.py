@@ -23,12 +23,6 @@ class Flat(Long):
         Below the crown of the cylinder, m.
     angle : float
         As for :class:`Keyway`.
-
-    Examples
-    --------
-    >>> from solidgear.scene import Flat
-    >>> Flat(name="flat", segment="shaft", y=0.1, length=0.05, depth=0.004).reach(0.03)[0]
-    0.1
     """
 
     kind: Literal["flat"] = "flat"
