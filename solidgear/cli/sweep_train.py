@@ -10,7 +10,6 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import Group, caution, say
-from solidgear.cli.shaft_settings import of_shafts
 from solidgear.cli.shared import Run
 from solidgear.cli.sweep_rows import (
     FEW,
@@ -22,7 +21,7 @@ from solidgear.cli.sweep_rows import (
     refusals,
     rows_there,
 )
-from solidgear.cli.train_options import Pair, Reduced
+from solidgear.cli.train_options import Pair, Reduced, of_shafts
 from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import parse
 from solidgear.studies.sweep.train_run import TrainSummary

@@ -10,8 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.cli.app import Group
-from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
-from solidgear.cli.shared import MODEL
+from solidgear.cli.shared import MODEL, options_by_name
 from solidgear.errors import SceneError, SolidgearError, listed, show
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.toml_file import parse
@@ -21,6 +20,7 @@ from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.studies.loading import load_train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import at_point
+from solidgear.studies.train.shaft import checked_rung
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -30,6 +30,14 @@ MODELS = (
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
+ShaftSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
+        "pinion.order=3, gear.elements=40; solidgear options lists them.",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -194,19 +202,27 @@ class Driven(Mix):
         return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
 
 
-def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
-    """Refuse options that speak of one shaft.
+def of_shafts(
+    pairs: list[str] | None, models: Mapping[str, str]
+) -> dict[str | tuple[str, str], dict[str, Any]]:
+    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts.
 
     Parameters
     ----------
-    given : dict of str to bool
-        Such options, and whether they were given.
-    instead : str
-        What to do for a train, in words.
+    models : mapping of str to str
+        By shaft; of a lumped or rigid one the options are those of the body it comes from.
+
+    Raises
+    ------
+    SolidgearError
+        For a model, an option or a value that there is not.
     """
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(f"{option} is for one shaft, and {train} is a train: {instead}")
+    out: dict[str | tuple[str, str], dict[str, Any]] = {}
+    given = options_by_name(pairs, models, "side", "pinion.order=3")
+    for side, options in given.items():
+        kind, base = checked_rung(models[side])
+        out[side, base or kind] = LADDER[base or kind].checked(options)
+    return out
 
 
 def _harmonics(text: str) -> tuple[int, ...]:

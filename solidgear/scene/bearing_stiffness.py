@@ -6,9 +6,10 @@ Order (x, y, z, thx, thy, thz), SI.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BeforeValidator
 
 from solidgear.errors import TOLD, SceneError, nearest, show
 from solidgear.frames import DOF_NAMES
@@ -131,6 +132,10 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in K.tolist())
 
 
+#: a checked 6x6 stiffness
+Matrix = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+
+
 def one_stiffness(table: Mapping[str, Any]) -> None:
     """Refuse a bearing in a file that is described twice."""
     given = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
@@ -142,8 +147,3 @@ def one_stiffness(table: Mapping[str, Any]) -> None:
             "out",
             path=("axial_series",),
         )
-
-
-def matrix_or_none(value: Any) -> Any:
-    """A checked stiffness, if there is one."""
-    return None if value is None else checked_matrix(value)

@@ -41,7 +41,14 @@ from solidgear.scene.rules import (
 )
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.toml_file import FileOrder, describes_train, name_of, of_tables, parse, place_of
+from solidgear.scene.toml_file import (
+    FileOrder,
+    describes_train,
+    name_of,
+    of_tables,
+    parse,
+    place_of,
+)
 from solidgear.scene.typed import Gathered, Holds, Model
 from solidgear.scene.uncertain import stated
 

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene.bearing_stiffness import matrix_or_none, one_stiffness
+from solidgear.scene.bearing_stiffness import Matrix, one_stiffness
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.housing import Elastic, elastic
 from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
@@ -122,7 +122,7 @@ class Bearing(Placed):
     name: str
     y: Position
     seat_width: PositiveLength
-    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(matrix_or_none)] = None
+    matrix: Matrix | None = None
     catalogue: Catalogue | None = None
     axial_series: AxialSeries = ()
     housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None

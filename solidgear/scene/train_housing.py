@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.bearing_stiffness import Matrix
 from solidgear.scene.housing_matrices import HousingMatrices
 from solidgear.scene.mesh_cycle import Vector
 from solidgear.scene.stations import Status
@@ -76,7 +76,7 @@ class Mount(Model):
     name: str = ""
     position: Vector | None = None
     at: str | None = None
-    stiffness: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    stiffness: Matrix
     loss: Loss = 0.1
     status: Status = "assumed"
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from solidgear.errors import SceneError
-from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.features.cut import Frame, Long
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import PositiveLength
 
@@ -29,7 +29,7 @@ class Flat(Long):
     depth: PositiveLength
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from deep(self.depth, here, "flat")
+        yield from self._deep(here)
 
     def half_width(self, radius: float) -> float:
         return math.sqrt(radius**2 - self.floor(radius) ** 2)

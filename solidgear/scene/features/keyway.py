@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST
-from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.features.cut import Frame, Long
 from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import PositiveLength
@@ -45,7 +45,7 @@ class Keyway(Long):
     ends: Literal["round", "square"] = "round"
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from deep(self.depth, here, "keyway")
+        yield from self._deep(here)
         if self.width >= here.outer0:
             yield SceneError(
                 f"a keyway wider than the radius, {here.outer0:.6g} m, is no keyway",
