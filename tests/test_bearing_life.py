@@ -25,7 +25,7 @@ from solidgear.bearings.rating import (
     static_ball_rating,
     static_factor,
 )
-from solidgear.bearings.reference_life import damage, edge_stress, raceways, reference_life
+from solidgear.bearings.reference_life import damage, edge_stress, raceways
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.errors import SceneError
@@ -63,7 +63,7 @@ def groove(clearance=0.0, **more):
 def lived(bearing, inside, rating, load, **how):
     """Reference life under a load, in 1e6 revolutions."""
     rows = bearing.contacts(bearing.motion(load))
-    return reference_life(rows, raceways(inside, rating), **how) / 1e6
+    return damage(rows, raceways(inside, rating), **how).life / 1e6
 
 
 @pytest.mark.parametrize("clearance, load, known", PUBLISHED)
@@ -172,7 +172,7 @@ def lives_at_rating(text, share):
         lives = []
         for bearing in (turned(made, place) for place in (0, 0.25, 0.5, 0.75)):
             motion = bearing.motion([share * dynamic, 0, 0, 0, 0, 0], held=(1, 3, 5))
-            lives.append(reference_life(bearing.contacts(motion), capacity))
+            lives.append(damage(bearing.contacts(motion), capacity).life)
         found.append(np.mean(lives) / 1e6 * share ** (3 if data.balls else 10 / 3))
     return np.array(found)
 

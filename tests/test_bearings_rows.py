@@ -152,15 +152,6 @@ def test_a_roller_is_in_contact_however_little_the_ring_moves():
     assert np.allclose(10 * small, large, rtol=1e-9, atol=1e-12 * large[0, 0])
 
 
-@row_of_each_kind
-def test_load_is_the_slope_of_energy(row):
-    motions, h = random_motions(50), 1e-9
-    for k, step in enumerate(np.eye(6) * h):
-        slope = (row.energy(motions + step) - row.energy(motions - step)) / (2 * h)
-        # truncation of a central difference over a nanometre, where contacts come and go
-        assert np.allclose(slope, row.load(motions)[:, k], atol=0.3)
-
-
 def reference_load(row, motion):
     """The same physics written anew, one element at a time, of complex motions as well."""
     x, y, z, tx, _, tz = motion

@@ -97,11 +97,6 @@ class BallRow(Elements):
         safe = np.where(length > 0, length, 1.0)
         return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
 
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy of the contacts, J, of motions (..., 6)."""
-        approach = self._stretch(motion)[3]
-        return self.constant / (POINT_POWER + 1) * (approach ** (POINT_POWER + 1)).sum(axis=-1)
-
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load that holds the inner ring at motions (..., 6), N and N m."""
         radial, axial, _, approach = self._stretch(motion)

@@ -63,14 +63,14 @@ class SprungRow:
         """As of the row."""
         return self.row.pitch
 
-    def _seen(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Motion of the inner ring as the sliding outer ring sees it, and that ring's own."""
+    def _seen(self, motion: np.ndarray) -> np.ndarray:
+        """Motion of the inner ring as the sliding outer ring sees it."""
         motion = np.asarray(motion, float)
         rest = float(self.row.load(np.zeros(6))[1])
         # the spring takes what the row presses beyond its preload: k w = F(q - w) - F(0)
         y = motion[..., 1]
         most = abs(rest) / self.spring
-        seen = balanced(
+        return balanced(
             self.row.load,
             self.row.tangent,
             motion,
@@ -79,22 +79,15 @@ class SprungRow:
             lambda t: rest + self.spring * (y - t),
             self.spring,
         )
-        return seen, y - seen[..., 1]
-
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy of contacts and spring, J, from the state at rest."""
-        seen, ring = self._seen(motion)
-        rest = float(self.row.load(np.zeros(6))[1])
-        return self.row.energy(seen) + self.spring / 2 * ring**2 + rest * ring
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load that holds the inner ring at motions (..., 6)."""
-        return self.row.load(self._seen(motion)[0])
+        return self.row.load(self._seen(motion))
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """Its derivative, (..., 6, 6)."""
-        return condensed(self.row.tangent(self._seen(motion)[0]), self.spring)
+        return condensed(self.row.tangent(self._seen(motion)), self.spring)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
         """Loads of all elements."""
-        return self.row.contacts(self._seen(motion)[0])
+        return self.row.contacts(self._seen(motion))

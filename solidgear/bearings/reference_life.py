@@ -134,26 +134,6 @@ def edge_stress(slices: int) -> np.ndarray:
     return 1 - 0.01 / np.log(1.985 * np.maximum(place, 1e-300))
 
 
-def reference_life(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> float:
-    """Basic reference rating life of rows of one make that turn together, in revolutions.
-
-    Parameters
-    ----------
-    rows : sequence of Contacts
-        Loads of their elements at one motion.
-    capacity : Raceways
-        Of each row.
-    turning : {'inner', 'outer'}
-        The ring that turns against the load.
-
-    Returns
-    -------
-    float
-        For 90 % reliability; infinite where nothing is loaded.
-    """
-    return damage(rows, capacity, turning).life
-
-
 @dataclass(frozen=True)
 class Damage:
     """Damage of the rows of a bearing in a million revolutions, slice by slice.
@@ -172,7 +152,7 @@ class Damage:
 
     @property
     def life(self) -> float:
-        """Reference life, revolutions; infinite where nothing is loaded."""
+        """Basic reference rating life for 90 % reliability, revolutions; infinite where nothing is loaded."""
         return self.modified(np.ones_like(self.each)) if self.each.any() else math.inf
 
     def modified(self, factor: np.ndarray) -> float:
@@ -197,12 +177,16 @@ class Damage:
 
 
 def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> Damage:
-    """Damage of rows that turn together.
+    """Damage of rows of one make that turn together.
 
     Parameters
     ----------
-    rows, capacity, turning
-        As of :func:`reference_life`.
+    rows : sequence of Contacts
+        Loads of their elements at one motion.
+    capacity : Raceways
+        Of each row.
+    turning : {'inner', 'outer'}
+        The ring that turns against the load.
     """
     law = capacity.law
     inner = np.array([row.on_inner for row in rows]) / capacity.inner

@@ -102,11 +102,6 @@ class RollerRow(Elements):
         largest = np.abs(own) @ self._reach
         return np.where(found > ROUNDING * (largest[..., None] + np.abs(self._start)), found, 0.0)
 
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy of the contacts, J, of motions (..., 6)."""
-        factor = self.constant / self.slices / (LINE_POWER + 1)
-        return factor * (self._approach(motion) ** (LINE_POWER + 1)).sum(axis=-1)
-
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load that holds the inner ring at motions (..., 6), N and N m."""
         press = self.constant / self.slices * self._approach(motion) ** LINE_POWER
