@@ -17,9 +17,9 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
-from solidgear.scene.between import preload_problems
 from solidgear.scene.catalogue import Catalogue, Kind
 from solidgear.scene.designation import boundary
+from solidgear.scene.rules import preload_problems
 from solidgear.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from solidgear.errors import SceneError
-from solidgear.scene.operation import TYPED
+from solidgear.scene.units import TYPED
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from math import acos, atan, cos, isclose, pi, tan
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene.gears import Member
@@ -30,8 +31,6 @@ WORDS = {
     "gear": ("module", "helix_angle", "profile_shift"),
     "mesh": ("centre_distance",),
 }
-#: numbers of both wheels, typed with four digits, are the same
-TYPED = 1e-3
 
 
 @dataclass(frozen=True)

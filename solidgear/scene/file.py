@@ -15,9 +15,9 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BeforeValidator, model_validator
 
 from solidgear.errors import SceneError
+from solidgear.scene import rules
 from solidgear.scene.arrangement import Arrangement, Pair, facing, pairs
 from solidgear.scene.ask import Ask
-from solidgear.scene.between import problems_between
 from solidgear.scene.blends import BLENDS
 from solidgear.scene.body_file import BodyTable, with_port
 from solidgear.scene.catalogue import BearingLoad
@@ -30,15 +30,6 @@ from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.places import Placed, Places
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.recognised import Reader, Recognised, unread, with_seats
-from solidgear.scene.rules import (
-    MOST_BEARINGS,
-    MOST_MASSES,
-    MOST_SEGMENTS,
-    no_such_point,
-    question_problems,
-    shaft_problems,
-    too_many,
-)
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
 from solidgear.scene.toml_file import (
@@ -54,7 +45,7 @@ from solidgear.scene.uncertain import stated
 
 Table = dict[str, Any]
 #: entries of the lists of a file
-MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
+MOST = {"segment": rules.MOST_SEGMENTS, "bearing": rules.MOST_BEARINGS, "mass": rules.MOST_MASSES}
 
 
 class _Ask(Ask):
@@ -228,7 +219,7 @@ class _Reading:
         for key, most in MOST.items():
             if isinstance(raw.get(key), list) and len(raw[key]) > most:
                 what = "masses" if key == "mass" else f"{key}s"
-                raise SceneError(too_many(what, len(raw[key]), most), path=(key,))
+                raise SceneError(rules.too_many(what, len(raw[key]), most), path=(key,))
         try:
             return kind(**with_port(raw)), set()
         except SceneError as error:
@@ -274,7 +265,7 @@ class _Reading:
         else:
             laid = lay_out(self.file.segment, self._material(), self.places)
             segments, path_of = laid.segments, laid.path
-        found = shaft_problems(segments)
+        found = rules.shaft_problems(segments)
         if found:
             raise SceneError.of(one.located(None, path=path_of(one.path)) for one in found)
         return segments
@@ -328,7 +319,7 @@ class _Reading:
         known = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
         named = not any(one.path[0] == "port" for one in self.problems)
         if ports and named and wanted is not None and wanted not in known:
-            reason = no_such_point(wanted, known)
+            reason = rules.no_such_point(wanted, known)
             self.problems.append(SceneError(reason, path=("ask", "port")))
         main = [row for row, name in zip(ports, known) if name == wanted][:1]
         return main + [row for row in ports if row not in main]
@@ -340,9 +331,9 @@ class _Reading:
         whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
         things = {key: [row.thing for row in of] for key, of in sound.items()}
-        found = [*problems_between(self.segments, **things, whole=whole)]
+        found = [*rules.problems_between(self.segments, **things, whole=whole)]
         if whole and things["ports"]:
-            found += question_problems(things["ports"], self.file.ask.quantities)
+            found += rules.question_problems(things["ports"], self.file.ask.quantities)
         self.problems += [one.located(None, path=_in_file(one.path, sound)) for one in found]
 
 

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from solidgear.scene.gears import Member
     from solidgear.scene.train import Joint, Train
 
-#: a ratio that is typed with four digits may differ from that of the teeth by this
-RATIO_TYPED = 1e-3
 #: names that mean something else in a file, in a result or in an order
 RESERVED = (
     "caution cautions cause contact coordinates damping error facts faults files free ground kept "

@@ -17,8 +17,6 @@ from solidgear.scene.units import Speed, Torque
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
 #: m/s^2, standard gravity (ISO 80000-3)
 GRAVITY = 9.80665
-#: torques, speeds and shares that are typed with four digits may differ by this
-TYPED = 1e-3
 #: operating points of one train
 MOST_POINTS = 1000
 

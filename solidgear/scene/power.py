@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError
 from solidgear.scene.layout import outward
-from solidgear.scene.operation import TYPED
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
@@ -31,8 +31,8 @@ def shares_of(train: Train) -> dict[str, float]:
 
 
 def flows_of(train: Train) -> dict[str, float | None]:
-    """Share of the power that every mesh or stage passes from its first shaft to its second; None in a
-    loop.
+    """Share of the power that every mesh or stage passes from its first shaft to its second, by the
+    tree of them; None where a loop of meshes divides it by stiffness.
     """
     brought = dict.fromkeys(train.shafts, 0.0)
     for name, share in shares_of(train).items():

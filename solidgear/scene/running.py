@@ -7,9 +7,9 @@ from math import fsum, isclose, pi
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.layout import RATIO_TYPED
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import TYPED, OperatingPoint
+from solidgear.scene.operation import OperatingPoint
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
@@ -137,7 +137,7 @@ def _speeds(train: Train, side: str, scene: Scene) -> Iterator[SceneError]:
         own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
         for k, point in enumerate(train.operation):
             speed = point.speed_of(side, train.turns) if point.of in train.turns else None
-            if own and speed is not None and not isclose(own, speed, rel_tol=RATIO_TYPED):
+            if own and speed is not None and not isclose(own, speed, rel_tol=TYPED):
                 yield SceneError(
                     f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
                     f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import model_validator
 
 from solidgear.errors import SceneError, SolidgearError, listed
-from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft
+from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft, pair_problems
 from solidgear.scene.layout import (
     PerTurn,
     ends_of,
@@ -22,7 +22,6 @@ from solidgear.scene.layout import (
     turns_of,
     with_flanks,
 )
-from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint, Operation
 from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
@@ -182,10 +181,9 @@ class Train(Model):
             return ()
         return tuple(s for s in self.housing.carries or self.shafts if s in self.shafts)
 
-    @cached_property
-    def turns(self) -> dict[str, float]:
-        """Turns of every shaft in one turn of the engine's, by the teeth."""
-        return turns_of(self)
+    turns = cached_property(turns_of)
+    flows = cached_property(flows_of)
+    carried = cached_property(carried_of)
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
@@ -266,20 +264,6 @@ class Train(Model):
                 return pair
         known = listed(pair.label.strip() or pair.name for pair in self.drivers)
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
-
-    @cached_property
-    def flows(self) -> dict[str, float | None]:
-        """Share of the power that every mesh or stage passes from its first shaft to its second, by the
-        tree of them; None where a loop of meshes divides it by stiffness.
-        """
-        return flows_of(self)
-
-    @cached_property
-    def carried(self) -> dict[str, float]:
-        """Share of the power by shaft that it passes; of one in a loop of meshes that of its own
-        engines and loads.
-        """
-        return carried_of(self)
 
     @property
     def torque_turns(self) -> dict[str, float]:

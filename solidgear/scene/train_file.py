@@ -28,13 +28,12 @@ from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_housing import HOUSING, TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Gathered, Model
+from solidgear.scene.units import TYPED
 
 #: reads the scene of a side from a file, told whether the shaft stands alone.
 ReadShaft = Callable[[str, Path, bool], Scene]
 
 CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
-#: a normal typed with four digits has a length off by this; it is brought to unit length
-NORMAL_TYPED = 1e-3
 MOST_CELLS = 100_000
 
 
@@ -321,7 +320,7 @@ def _cell(row: Mapping[str, Any], line: int, where: str) -> dict[str, Any]:
         value.append(number)
     normal, force = value[3:6], value[6]
     length = sqrt(sum(v * v for v in normal))
-    if abs(length - 1) > NORMAL_TYPED:
+    if abs(length - 1) > TYPED:
         reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
         raise SceneError(reason, where=where)
     if force < 0:

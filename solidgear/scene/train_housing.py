@@ -17,15 +17,13 @@ from solidgear.scene.housing_matrices import HousingMatrices
 from solidgear.scene.mesh_cycle import Vector
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
-from solidgear.scene.units import Loss, Mass, quantity
+from solidgear.scene.units import TYPED, Loss, Mass, quantity
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
 
 #: what the housing is called among the parts of a train, and its centre of mass among its points
 HOUSING, CENTRE = "housing", "centre"
-#: moments of inertia that are typed with four digits may break the triangle inequality by this
-TYPED = 1e-3
 #: loss factor of castings with their joints, where none is told
 LOSS = 0.01
 
