@@ -298,21 +298,6 @@ def test_refused_in_one_sentence(run, tmp_path, name):
     refused(run(*arguments), tmp_path, *words)
 
 
-def test_bad_scene_is_refused_by_every_command(run, tmp_path):
-    bad = tmp_path / "bad.toml"
-    bad.write_text(
-        Path(SCENE)
-        .read_text(encoding="utf-8")
-        .replace('diameter = "90 mm"', 'diameter = "-90 mm"'),
-        encoding="utf-8",
-    )
-    for command in (["stiffness"], ["modes"], ["check"], ["render"], ["compare", "--out", "out"]):
-        done = run(command[0], bad, *command[1:])
-        assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
-        assert "bad.toml" in done.err and "-90 mm" in done.err
-        assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
-
-
 @pytest.mark.parametrize("out", ["occupied", "occupied/deeper"])
 def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
     (tmp_path / "occupied").write_text("a file")

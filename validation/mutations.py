@@ -543,7 +543,7 @@ MUTATIONS = (
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
-        "tests/test_scene.py::test_series_springs_are_a_harmonic_sum_when_y_is_alone",
+        "tests/test_scene.py::test_series_spring_condenses_the_couplings_of_y",
     ),
     Mutation(
         "lumped point 1 mm off",
