@@ -46,17 +46,8 @@ _SPHERICAL = {
 
 
 def clearance_range(data: Catalogue) -> tuple[float, float]:
-    """Least and largest radial internal clearance before mounting, m.
-
-    Returns
-    -------
-    float, float
-        Equal where the clearance is a length.
-
-    Raises
-    ------
-    SceneError
-        A class of a bearing that has none.
+    """Least and largest radial internal clearance before mounting, m, equal where it is told as a
+    length; refuses a class of a bearing that has none.
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
@@ -92,12 +83,8 @@ def mounting_change(data: Catalogue, inside: Inside) -> float:
 
 
 def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> float:
-    """Radial internal clearance once mounted and warm, m.
-
-    Parameters
-    ----------
-    share : float
-        Place in the range of a clearance class, 0 to 1.
+    """Radial internal clearance once mounted and warm, m, at a place in the range of its class, 0
+    to 1.
     """
     low, high = clearance_range(data)
     return low + share * (high - low) + mounting_change(data, inside)

@@ -76,12 +76,8 @@ class Geometry(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def inner_geometry(data: Catalogue) -> Geometry:
-    """Inner geometry of a bearing by its catalogue data.
-
-    Raises
-    ------
-    SceneError
-        A load rating that no inside of these boundary dimensions has.
+    """Inner geometry of a bearing by its catalogue data; refuses a load rating that no inside of
+    these boundary dimensions has.
     """
     make = _balls if data.balls else _rollers
     middle = make(data, "middle")

@@ -55,14 +55,8 @@ def reliability_factor(reliability: float) -> float:
 
 
 def reference_viscosity(speed: float, pitch: float) -> float:
-    """Viscosity nu_1 that a bearing asks for, m^2/s.
-
-    Parameters
-    ----------
-    speed : float
-        rad/s.
-    pitch : float
-        Diameter of the circle of the elements' centres, m.
+    """Viscosity nu_1, m^2/s, that a bearing asks for at a speed, rad/s, and a diameter of the
+    circle of the elements' centres, m.
     """
     turns, size = speed * 30 / math.pi, pitch * 1e3
     factor = 45000 * turns**-0.83 if turns < 1000 else 4500 * turns**-0.5

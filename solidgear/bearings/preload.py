@@ -14,19 +14,8 @@ from solidgear.errors import SolidgearError
 
 
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
-    """A row whose rings are pushed together until it presses with a force along y.
-
-    Parameters
-    ----------
-    row : BallRow or RollerRow
-        With a contact angle.
-    force : float
-        N.
-
-    Raises
-    ------
-    SolidgearError
-        If no push brings that force.
+    """A row with a contact angle whose rings are pushed together until it presses with a force
+    along y, N; refuses a force that no push brings.
     """
     still, most = np.zeros(6), row.side * FURTHEST
     if row.side * replace(row, preload=FURTHEST).load(still)[1] < force:

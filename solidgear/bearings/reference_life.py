@@ -91,12 +91,8 @@ class Raceways(NamedTuple):
 
 
 def raceways(inside: Inside, rating: float) -> Raceways:
-    """Capacities of both raceways of a row.
-
-    Parameters
-    ----------
-    rating : float
-        Basic dynamic radial load rating of this row alone, N.
+    """Capacities of both raceways of a row, of the basic dynamic radial load rating of this row
+    alone, N.
 
     Examples
     --------
@@ -177,16 +173,8 @@ class Damage:
 
 
 def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> Damage:
-    """Damage of rows of one make that turn together.
-
-    Parameters
-    ----------
-    rows : sequence of Contacts
-        Loads of their elements at one motion.
-    capacity : Raceways
-        Of each row.
-    turning : {'inner', 'outer'}
-        The ring that turns against the load.
+    """Damage of rows of one make that turn together, from the loads of their elements at one
+    motion and the capacity of each; `turning` is the ring that turns against the load.
     """
     law = capacity.law
     inner = np.array([row.on_inner for row in rows]) / capacity.inner

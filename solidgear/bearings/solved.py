@@ -139,13 +139,7 @@ def solved(
 
 
 def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
-    """Bearings of a scene that catalogue data describe, by name.
-
-    Raises
-    ------
-    SceneError
-        Data that make no bearing.
-    """
+    """Bearings of a scene that catalogue data describe, by name."""
     made = {}
     for k, bearing in enumerate(scene.bearings):
         if bearing.catalogue is None:

@@ -57,12 +57,8 @@ class Acting(Group):
     ] = None
 
     def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
-        """A shaft under its load, or a train and its operating point.
-
-        Raises
-        ------
-        SolidgearError
-            For options of the one on a file of the other, and a train without operating point.
+        """A shaft under its load, or a train and its operating point; refuses options of the one
+        on a file of the other, and a train without operating point.
         """
         if is_train(file):
             what = f"a shaft, and {file} is none: a train takes --torque"

@@ -135,12 +135,7 @@ REFERRING = ("scene", "step", "mesh", "contact_cells")
 
 
 def shipped() -> dict[str, Path]:
-    """Scene files by name.
-
-    Raises
-    ------
-    SolidgearError
-        Where the installation has none.
+    """Scene files by name; refuses an installation that has none.
 
     Examples
     --------

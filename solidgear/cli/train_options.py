@@ -131,13 +131,7 @@ class Pair(Group):
         return self.of(train.shafts, train.name)
 
     def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
-        """Models of shafts, of a train by that name.
-
-        Raises
-        ------
-        SolidgearError
-            For a shaft that it does not have.
-        """
+        """Models of shafts, of a train by that name; refuses a shaft that it does not have."""
         given = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
         for text in self.shafts or []:
             side, equals, model = text.partition("=")
@@ -205,17 +199,8 @@ class Driven(Mix):
 def of_shafts(
     pairs: list[str] | None, models: Mapping[str, str]
 ) -> dict[str | tuple[str, str], dict[str, Any]]:
-    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts.
-
-    Parameters
-    ----------
-    models : mapping of str to str
-        By shaft; of a lumped or rigid one the options are those of the body it comes from.
-
-    Raises
-    ------
-    SolidgearError
-        For a model, an option or a value that there is not.
+    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts; of a lumped
+    or rigid shaft those of the body it comes from.
     """
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
     given = options_by_name(pairs, models, "side", "pinion.order=3")

@@ -161,12 +161,8 @@ class _Blend(Placed):
         raise NotImplementedError
 
     def corner(self, segments: Sequence[Segment]) -> Corner:
-        """Its edge on a shaft.
-
-        Raises
-        ------
-        SceneError
-            Where there is no such edge, or it cannot be rounded; the path is that of a field.
+        """Its edge on a shaft; refuses, under one of its fields, where there is none or it cannot
+        be rounded.
         """
         outer = self.surface == "outer"
         i, low, high = self._place(segments)

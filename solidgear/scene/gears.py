@@ -206,11 +206,6 @@ class Pair:
     def rolling(self) -> Pair:
         """The same with pitch radii and angles of parallel shafts where their wheels roll on each
         other: what module, helix angle, profile shifts and centre distance come to.
-
-        Raises
-        ------
-        SceneError
-            For a centre distance or profile shifts that no pressure angle meets.
         """
         return replace(self, **rolling(self.pinion, self.gear, self.mesh))
 

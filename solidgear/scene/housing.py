@@ -115,13 +115,8 @@ class Elastic(Model):
         return self.with_changes(matrix=np.array(self.matrix) * factor)
 
     def beneath_one(self, stiffness: np.ndarray, what: str = "the housing") -> np.ndarray:
-        """(6, 6) stiffness of a bearing that stands in it, both at one point.
-
-        Parameters
-        ----------
-        stiffness : (6, 6) ndarray
-        what : str
-            That it is called in an error.
+        """(6, 6) stiffness of a bearing that stands in it, both at one point; `what` it is called
+        in an error.
         """
         return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
 

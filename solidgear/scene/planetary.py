@@ -241,12 +241,8 @@ class Stage:
 
     @cached_property
     def teeth(self) -> PlanetaryTeeth:
-        """Its teeth, transverse.
-
-        Raises
-        ------
-        SceneError
-            For teeth that do not mesh or assemble, planets that overlap, or another ratio.
+        """Its teeth, transverse; refuses those that do not mesh or assemble, planets that overlap,
+        or another ratio.
         """
         assert self.sun.module is not None
         table, helix = self.table, self.sun.helix_angle or 0.0
@@ -369,12 +365,8 @@ def turned(train: Train, name: str, by: float) -> Train:
 
 
 def named_pair(train: Train, word: str | None) -> Pair:
-    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`.
-
-    Raises
-    ------
-    SolidgearError
-        Of a mesh of planets, whose teeth have no backlash.
+    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`;
+    refuses one of planets, whose teeth have no backlash.
     """
     found = train.named_mesh(word)
     if isinstance(found, PlanetMesh):

@@ -25,12 +25,7 @@ HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0
 
 
 def held_matrix(hold: str) -> np.ndarray:
-    """(6, 6) stiffness that stands for a way of holding.
-
-    Returns
-    -------
-    (6, 6) ndarray
-        N/m and N m/rad.
+    """(6, 6) stiffness that stands for a way of holding, N/m and N m/rad.
 
     Examples
     --------

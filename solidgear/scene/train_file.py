@@ -42,14 +42,9 @@ def _as_written(side: str, path: Path, alone: bool) -> Scene:
 
 
 def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
-    """Read a train file; the shafts it names lie relative to it.
-
-    Parameters
-    ----------
-    shaft : callable, optional
-        Reads the scene of a side from its file, and is told whether the shaft stands alone:
-        bearings of a shaft whose train has an [operation] settle with the train. By default scenes
-        are read as they are written.
+    """Read a train file; the shafts it names lie relative to it. `shaft` reads the scene of a side
+    from its file, and is told whether the shaft stands alone: bearings of a shaft whose train has
+    an [operation] settle with the train.
     """
     where = os.fspath(path)
     return train_of(parse(where), where, shaft)

@@ -89,18 +89,7 @@ class BoltCircle(OnSegment):
             )
 
     def reach(self, here: Segment) -> tuple[float, float]:
-        """Ends of the holes along the shaft.
-
-        Parameters
-        ----------
-        here : Segment
-            Its own.
-
-        Returns
-        -------
-        (float, float)
-            m.
-        """
+        """Ends of the holes along the shaft, m, in their own segment."""
         if self.depth is None:
             return here.y0, here.y1
         if self.side == "start":
