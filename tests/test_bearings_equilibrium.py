@@ -29,11 +29,6 @@ PAIR = RollingBearing(
 )
 
 
-@pytest.fixture(autouse=True)
-def at_the_root(monkeypatch, request):
-    monkeypatch.chdir(request.config.rootpath)
-
-
 @pytest.fixture(scope="module")
 def three():
     """A shaft on three seats: statically indeterminate."""

@@ -812,7 +812,7 @@ MUTATIONS = (
         "RollerRow._normal",
         "height = self.height + self.along * c",
         "height = self.height + 0.0 * self.along",
-        "tests/test_bearings_rows.py::test_rollers_in_closed_form",
+        "tests/test_manual.py::test_case[roller_row-A]",
     ),
     Mutation(
         "bearing: a tilt about z moves the wrong way",
@@ -828,7 +828,7 @@ MUTATIONS = (
         "BallRow.start",
         "radial = self.free * np.cos(self.angle) - self.clearance / 2",
         "radial = self.free * np.cos(self.angle) - self.clearance / 4",
-        "tests/test_bearings_rows.py::test_published_displacements",
+        "tests/test_manual.py::test_case[ball_bearing_displacement-A]",
     ),
     Mutation(
         "bearing: gyroscopic moment does not follow the angle",

@@ -180,12 +180,6 @@ def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
         if bearing.name not in made:
             out.append(Mounted(bearing.name, Linear(np.array(bearing.stiffness))))
             continue
-        spring = None
-        if bearing.axial_series:
-            spring = 1 / sum(1 / k for k in bearing.axial_series)
-        out.append(
-            Mounted(
-                bearing.name, made[bearing.name].bearing, spring=spring, housing=bearing.housing
-            )
-        )
+        own, spring = made[bearing.name].bearing, bearing.spring
+        out.append(Mounted(bearing.name, own, spring=spring, housing=bearing.housing))
     return out

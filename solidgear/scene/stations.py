@@ -49,9 +49,6 @@ def _few_springs(springs: Any) -> Any:
     return springs
 
 
-AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
-
-
 class Bearing(Placed):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
@@ -124,7 +121,7 @@ class Bearing(Placed):
     seat_width: PositiveLength
     matrix: Matrix | None = None
     catalogue: Catalogue | None = None
-    axial_series: AxialSeries = ()
+    axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)] = ()
     housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
     attachment: Attachment = "average"
     status: Status = "assumed"
@@ -256,10 +253,9 @@ class Bearing(Placed):
             If it is to come from catalogue data that are not solved yet.
         """
         K = np.array(self._solved_matrix())
-        if self.axial_series:
+        if (spring := self.spring) is not None:
             # the ring between bearing and spring carries no load of its own: condense its y out,
             # couplings included
-            spring = 1 / sum(1 / k for k in self.axial_series)
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
         if self.support == "floating":
             K = sliding(K)
@@ -267,6 +263,11 @@ class Bearing(Placed):
             K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
         K.flags.writeable = False
         return K
+
+    @property
+    def spring(self) -> float | None:
+        """Its springs in series as one, N/m."""
+        return 1 / sum(1 / k for k in self.axial_series) if self.axial_series else None
 
     def _solved_matrix(self) -> tuple[tuple[float, ...], ...]:
         if self.matrix is None:

@@ -23,10 +23,14 @@ from solidgear.scene.layout import (
     with_flanks,
 )
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.operation import (
+    OperatingPoint,
+    Operation,
+    running_problems,
+    spring_problems,
+)
 from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.scene.power import carried_of, flows_of, share_problems
-from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.statuses import statuses_of
 from solidgear.scene.train_housing import TrainHousing, housing_problems
@@ -181,9 +185,10 @@ class Train(Model):
             return ()
         return tuple(s for s in self.housing.carries or self.shafts if s in self.shafts)
 
-    turns = cached_property(turns_of)
-    flows = cached_property(flows_of)
-    carried = cached_property(carried_of)
+    @cached_property
+    def turns(self) -> dict[str, float]:
+        """Turns of every shaft in one turn of the engine's, by the teeth."""
+        return turns_of(self)
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
@@ -264,6 +269,20 @@ class Train(Model):
                 return pair
         known = listed(pair.label.strip() or pair.name for pair in self.drivers)
         raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
+
+    @cached_property
+    def flows(self) -> dict[str, float | None]:
+        """Share of the power that every mesh or stage passes from its first shaft to its second, by the
+        tree of them; None where a loop of meshes divides it by stiffness.
+        """
+        return flows_of(self)
+
+    @cached_property
+    def carried(self) -> dict[str, float]:
+        """Share of the power by shaft that it passes; of one in a loop of meshes that of its own
+        engines and loads.
+        """
+        return carried_of(self)
 
     @property
     def torque_turns(self) -> dict[str, float]:
