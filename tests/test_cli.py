@@ -8,6 +8,7 @@ import subprocess
 import sys
 from contextlib import nullcontext
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -30,9 +31,10 @@ FIXED = [*HARMONIC, *LIGHT["harmonic"]]
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 
 
-class Done:
-    def __init__(self, code, out, err):
-        self.code, self.out, self.err = code, out, err
+class Done(NamedTuple):
+    code: int
+    out: str
+    err: str
 
 
 @pytest.fixture
