@@ -25,7 +25,7 @@ from solidgear.bearings.rating import (
     static_ball_rating,
     static_factor,
 )
-from solidgear.bearings.reference_life import damage, edge_stress, raceways, reference_life
+from solidgear.bearings.reference_life import damage, edge_stress, raceways
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.errors import SceneError
@@ -63,7 +63,7 @@ def groove(clearance=0.0, **more):
 def lived(bearing, inside, rating, load, **how):
     """Reference life under a load, in 1e6 revolutions."""
     rows = bearing.contacts(bearing.motion(load))
-    return reference_life(rows, raceways(inside, rating), **how) / 1e6
+    return damage(rows, raceways(inside, rating), **how).life / 1e6
 
 
 @pytest.mark.parametrize("clearance, load, known", PUBLISHED)
@@ -99,7 +99,7 @@ def test_half_a_loaded_row_of_many_balls_lives_a_million_turns_at_its_rating():
 
 def test_all_elements_alike_in_closed_form():
     # pushed along y every ball presses with F / (Z sin a), and both rings feel just that
-    row = BallRow(14, 11.9e-3, 60e-3, math.radians(40), 1, 0.52, 0.53)
+    row = BallRow(14, 11.9e-3, 60e-3, math.radians(40))
     inside = Inside(14, 11.9e-3, 0.0, 60e-3, math.radians(40), (0.52, 0.53))
     bearing = RollingBearing((row,))
     load = (0, 2000.0, 0, 0, 0, 0)
@@ -111,7 +111,7 @@ def test_all_elements_alike_in_closed_form():
 
 def test_slices_alike_are_one_roller_but_for_its_edges():
     # straight rollers pushed along y: with no edge stress n slices live as the whole roller does
-    row = RollerRow(16, 12e-3, 18e-3, 0.1, angle=0.25, profile="straight")
+    row = RollerRow(16, 12e-3, 0.1, length=18e-3, angle=0.25, profile="straight")
     inside = Inside(16, 12e-3, 18e-3, 0.1, 0.25, (0.5, 0.5))
     bearing = RollingBearing((row,))
     load = (0, 9000.0, 0, 0, 0, 0)
@@ -127,7 +127,7 @@ def test_slices_alike_are_one_roller_but_for_its_edges():
 def test_a_slice_is_judged_at_the_load_of_a_row_of_its_like():
     # half of a row of straight rollers: every slice but those at the ends feels the radial load
     # itself, which is what the fatigue limit of a bearing is told for; constants of three digits
-    row = RollerRow(400, 1e-3, 1e-3, 0.2, profile="straight")
+    row = RollerRow(400, 1e-3, 0.2, length=1e-3, profile="straight")
     inside = Inside(400, 1e-3, 1e-3, 0.2, 0.0, (0.5, 0.5))
     bearing = RollingBearing((row, row))
     rows = bearing.contacts(bearing.motion([6000.0, 0, 0, 0, 0, 0], held=(1, 3, 5)))
@@ -172,7 +172,7 @@ def lives_at_rating(text, share):
         lives = []
         for bearing in (turned(made, place) for place in (0, 0.25, 0.5, 0.75)):
             motion = bearing.motion([share * dynamic, 0, 0, 0, 0, 0], held=(1, 3, 5))
-            lives.append(reference_life(bearing.contacts(motion), capacity))
+            lives.append(damage(bearing.contacts(motion), capacity).life)
         found.append(np.mean(lives) / 1e6 * share ** (3 if data.balls else 10 / 3))
     return np.array(found)
 

@@ -14,12 +14,6 @@ from solidgear.errors import SceneError
 from solidgear.scene.file import load as read
 from solidgear.scene.support import sliding
 
-
-@pytest.fixture(autouse=True)
-def at_the_root(monkeypatch, request):
-    monkeypatch.chdir(request.config.rootpath)
-
-
 FELT = [0, 1, 2, 3, 5]
 ACROSS = np.ix_([0, 2, 3, 5], [0, 2, 3, 5])
 GROOVE = (BallRow(9, 12e-3, 60e-3, clearance=12e-6),)

@@ -17,9 +17,9 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.errors import SceneError
-from solidgear.scene.between import preload_problems
 from solidgear.scene.catalogue import Catalogue, Kind
 from solidgear.scene.designation import boundary
+from solidgear.scene.rules import preload_problems
 from solidgear.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
@@ -102,9 +102,8 @@ def test_clearance_by_class_fit_and_temperature():
 
 
 def single(side, height, preload=0.0, first=0.0):
-    return BallRow(
-        14, 11.9e-3, 60e-3, math.radians(40), side, 0.52, 0.52, 0.0, preload, height, first
-    )
+    where = {"preload": preload, "height": height, "first": first}
+    return BallRow(14, 11.9e-3, 60e-3, math.radians(40), side, outer=0.52, **where)
 
 
 @pytest.mark.parametrize(

@@ -20,18 +20,13 @@ from tests.dense import whole
 
 SCENE = "geometry/gearbox_catalogue.toml"
 BALLS = RollingBearing((BallRow(count=9, diameter=9.525e-3, pitch=46e-3, clearance=8e-6),))
-ROLLERS = RollingBearing((RollerRow(13, 9e-3, 10e-3, 46.5e-3, clearance=15e-6),))
+ROLLERS = RollingBearing((RollerRow(13, 9e-3, 46.5e-3, length=10e-3, clearance=15e-6),))
 PAIR = RollingBearing(
     tuple(
         BallRow(14, 11.9e-3, 60e-3, 0.698, side, preload=4e-6, height=9e-3 * -side)
         for side in (1, -1)
     )
 )
-
-
-@pytest.fixture(autouse=True)
-def at_the_root(monkeypatch, request):
-    monkeypatch.chdir(request.config.rootpath)
 
 
 @pytest.fixture(scope="module")

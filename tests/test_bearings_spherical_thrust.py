@@ -18,7 +18,7 @@ from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.designation import boundary
 
 #: Harris and Kotzalas, Essential Concepts, ch. 2: a 22317
-HARRIS = SphericalRow(14, 25e-3, 20.76e-3, 135.077e-3, angle=math.radians(12))
+HARRIS = SphericalRow(14, 25e-3, 135.077e-3, length=20.76e-3, angle=math.radians(12))
 GIVEN = {
     "elements": 14,
     "element_diameter": "25 mm",

@@ -10,7 +10,7 @@ from validation.thesis.bearings import PAGE, PUBLISHED, REAL, demand, inverse, r
 
 
 def test_the_inverse_finds_the_row_that_made_a_matrix():
-    row = RollerRow(22, 14e-3, 30e-3, 0.13, angle=0.24, profile="straight", slices=400)
+    row = RollerRow(22, 14e-3, 0.13, length=30e-3, angle=0.24, profile="straight", slices=400)
     stiffness = row.tangent(np.array([0, 20e-6, 0, 0, 0, 0]))
     found = inverse(stiffness[0, 0], stiffness[1, 1], stiffness[0, 5], stiffness[5, 5])
     assert found.angle == pytest.approx(0.24, rel=1e-12)

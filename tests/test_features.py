@@ -52,12 +52,11 @@ OBLIQUE = HOLE.with_changes(inclination="30 deg")
 SKEW = OBLIQUE.with_changes(inclination="-45 deg", offset="5 mm", angle="40 deg")
 
 
-def mesh_of(scene, refinement=0.6, half=True):
-    wanted = [(s, s.attachment) for s in scene.stations]
-    plan = tetrahedra_plan(
-        scene, wanted, size=None, graded_size=None, refinement=refinement, around=16
-    )
-    return wanted, meshed(scene, plan, refinement, half)
+def mesh_of(scene, refinement=0.6, around=16, seats=True):
+    """Stations that its mesh ends at, and the mesh."""
+    wanted = [(s, s.attachment) for s in scene.stations] if seats else []
+    sizes = {"size": None, "graded_size": None, "refinement": refinement, "around": around}
+    return wanted, meshed(scene, tetrahedra_plan(scene, wanted, **sizes), refinement, True)
 
 
 @pytest.mark.parametrize("feature", [KEY, KEY.with_changes(ends="square"), FLAT, OBLIQUE], ids=str)
@@ -80,10 +79,6 @@ def test_volume_against_closed_form(feature):
 
 def mirrored_whole(made: FeaturedMesh) -> FeaturedMesh:
     """The whole part made of the elements of its half and their images, joined on the plane."""
-    from dataclasses import replace
-
-    from skfem import MeshTet1, MeshTet2
-
     mesh, axis = made.mesh, made.plane
     flip = np.ones((3, 1))
     flip[axis] = -1
@@ -266,9 +261,7 @@ def test_seats_keep_straightened_faces_beside_a_flat(cut):
     port = sg.Port(y=0.03, lo=0.0, hi=0.06069)
     bearings = [sg.Bearing(name="A", y=0.0948, seat_width=0.012, hold="clamped")]
     scene = sg.Scene.from_parts([head, stub], port=port, bearings=bearings, features=(flat,))
-    wanted = [(s, s.attachment) for s in scene.stations]
-    plan = tetrahedra_plan(scene, wanted, size=None, graded_size=None, refinement=0.35, around=12)
-    made = meshed(scene, plan, 0.35, True)
+    _, made = mesh_of(scene, 0.35, around=12)
     keep = ~made.cut | (not cut)
     solid = _isoparametric(without(made.mesh, keep), "tet10", made.segment[keep])
     facets = Seats(solid, scene.segments, clipped=False)(port, "average")
@@ -351,8 +344,7 @@ def test_ends_of_a_keyway_are_round_on_coarse_meshes_too():
     key = Keyway(name="k", segment="rod", y=0.1, length=0.044, width=0.021, depth=0.0158)
     rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.095)
     scene = sg.Scene.from_parts([rod], features=(key,))
-    plan = tetrahedra_plan(scene, [], size=None, graded_size=None, refinement=0.25, around=12)
-    made = meshed(scene, plan, 0.25, True)
+    _, made = mesh_of(scene, 0.25, around=12, seats=False)
     cut = 2 * check_mesh(without(made.mesh, made.cut)).volume
     assert cut == pytest.approx(key.volume(0.0475, 0.0), rel=4e-3)
 
@@ -365,8 +357,7 @@ def test_a_wide_hole_is_meshed_at_every_refinement(refinement):
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     hole = CrossHole(name="h", segment="rod", y=0.1, diameter=0.02)
     scene = sg.Scene.from_parts([rod], features=(hole,))
-    plan = tetrahedra_plan(scene, [], size=None, graded_size=None, refinement=refinement, around=12)
-    made = meshed(scene, plan, refinement, True)
+    _, made = mesh_of(scene, refinement, around=12, seats=False)
     cut = 2 * check_mesh(without(made.mesh, made.cut)).volume
     assert cut == pytest.approx(made.removed, rel=3e-3)
 
@@ -381,13 +372,12 @@ def test_a_cut_of_another_volume_is_refused(monkeypatch):
         return without(mesh, keep)
 
     scene = shaft(KEY)
-    plan = tetrahedra_plan(scene, [], size=None, graded_size=None, refinement=0.4, around=12)
-    meshed(scene, plan, 0.4, True)
+    mesh_of(scene, 0.4, around=12, seats=False)
     monkeypatch.setattr(featured, "without", loses_some)
     with pytest.raises(
         MeshError, match=r'elements of "key" miss [\d.]+ % of .* more than 1%: raise'
     ):
-        meshed(scene, plan, 0.4, True)
+        mesh_of(scene, 0.4, around=12, seats=False)
 
 
 def test_elements_keep_their_middle_nodes_in_large_meshes():

@@ -61,16 +61,6 @@ def test_overhung_pinion_against_closed_forms(overhung):
     ) == (None, 10, 10e3, 0.05)
 
 
-def test_overhung_pinion_is_the_shaft_of_the_reference_numbers(overhung):
-    # rounded as printed with them
-    assert [round(b.y, 5) for b in overhung.bearings] == [0.09625, 0.24625]
-    assert (
-        round(overhung.length, 5),
-        round(overhung.port.y, 6),
-        round(overhung.segments[0].outer0, 4),
-    ) == (0.27625, 0.029123, 0.0430)
-
-
 def test_neighbours_meet_exactly(overhung):
     for a, b in zip(overhung.segments, overhung.segments[1:]):
         assert a.y1 == b.y0
@@ -126,28 +116,16 @@ def test_stiffness_names_and_matrix_are_inverse():
     ] == [(0, 0), (1, 2), (0, 5), (2, 3), (4, 4), (3, 5)]
 
 
-def test_series_springs_are_a_harmonic_sum_when_y_is_alone():
-    bearing = Bearing(
-        name="b",
-        y=0.1,
-        seat_width=0.02,
-        stiffness={"kxx": 5e8, "kyy": 2e9, "kthz": 1e5},
-        axial_series=("4e8 N/m", 1e9),
-    )
-    expected = np.diag([5e8, 1 / (1 / 2e9 + 1 / 4e8 + 1 / 1e9), 0, 0, 0, 1e5])
-    np.testing.assert_allclose(bearing.stiffness, expected, rtol=1e-13)
-
-
 def test_series_spring_condenses_the_couplings_of_y():
     rng = np.random.default_rng(0)
     A = rng.normal(size=(6, 6))
-    K, spring = A @ A.T, 0.7
+    K, spring = A @ A.T, 0.7  # two of 1.4 behind one another
     big = np.zeros((7, 7))  # the ring's own y is the last degree of freedom
     inner = [0, 6, 2, 3, 4, 5]
     big[np.ix_(inner, inner)] += K
     big[np.ix_([1, 6], [1, 6])] += spring * np.array([[1, -1], [-1, 1]])
     condensed = big[:6, :6] - np.outer(big[:6, 6], big[6, :6]) / big[6, 6]
-    bearing = Bearing(name="b", y=0, seat_width=1, stiffness=K, axial_series=(spring,))
+    bearing = Bearing(name="b", y=0, seat_width=1, stiffness=K, axial_series=("1.4 N/m", 1.4))
     np.testing.assert_allclose(bearing.stiffness, condensed, atol=1e-12)
 
 
@@ -351,18 +329,6 @@ def test_shipped_scenes_load_and_are_json(path):
     for row, bearing in zip(data["bearings"], scene.bearings, strict=True):
         np.testing.assert_array_equal(row["stiffness"], bearing.stiffness)
     assert scene == sg.load(path)
-
-
-def test_the_six_scenes_are_there():
-    assert {p.stem for p in GEOMETRY.glob("*.toml")} >= {
-        "pinion_overhung",
-        "pinion_straddle",
-        "gear_shaft",
-        "intermediate_shaft",
-        "shaft_stepped",
-        "cylinder_free",
-        "shaft_hollow",
-    }
 
 
 def test_straddled_pinion():

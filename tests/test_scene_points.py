@@ -163,15 +163,6 @@ def test_slips(kind, tmp_path):
     assert "\n" not in str(caught.value) and str(tmp_path) in str(caught.value)
 
 
-def test_one_port_keeps_its_sentences(tmp_path):
-    text = (GEOMETRY / "gear_shaft.toml").read_text(encoding="utf-8")
-    path = tmp_path / "bad.toml"
-    path.write_text(text.replace('at = "ring.mid_face"', 'at = "ring.midface"'), encoding="utf-8")
-    with pytest.raises(SceneError) as caught:
-        sg.load(path)
-    assert caught.value.field == "port.at"
-
-
 def test_a_scene_in_python():
     scene = sg.load(GEOMETRY / "intermediate_shaft.toml")
     with pytest.raises(SceneError, match="is the entry kyy of a housing's stiffness"):

@@ -263,6 +263,7 @@ def test_double_brackets_where_there_is_one(table, tmp_path):
         (GOOD.encode("utf-16"), "UTF-16"),
         ("title = 'Welle für Öl'".encode("latin-1"), "not UTF-8 text (byte 16)"),
         (b"title" + b".a" * 1000 + b" = 1", "more than 100 full stops"),
+        (b"a = " + b"[" * 5000, "nested too deeply"),
         (b"material = " + b"{a=" * 60 + b"1" + b"}" * 60, "material.a"),
         (b"[material]\nE = 0x" + b"f" * 5000, "material.E = 0xfff"),
         (b"[material]\nE = " + b"9" * 5000, "thousands of digits"),
@@ -318,16 +319,11 @@ def test_values_of_any_size_and_depth_are_shown():
 
 
 TRAPS = {
-    '"3,5 mm"': "decimals take a point",
     '"1,000 mm"': "decimals take a point",
-    '"3.5"': "has no unit",
-    "true": "must be a number",
-    "inf": "finite",
     '"nan mm"': "finite",
     "1979-05-27": "must be a number",
     "12:00:00": "must be a number",
     "123456789012345678901234567890": "larger than 1e+24",
-    '"3.5 kg"': "not a unit of length",
     '"3.5 K"': "not a unit of length",
     "[1]": "must be a number",
     "{a = 1}": "must be a number",

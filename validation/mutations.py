@@ -543,7 +543,7 @@ MUTATIONS = (
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
-        "tests/test_scene.py::test_series_springs_are_a_harmonic_sum_when_y_is_alone",
+        "tests/test_scene.py::test_series_spring_condenses_the_couplings_of_y",
     ),
     Mutation(
         "lumped point 1 mm off",
@@ -551,7 +551,7 @@ MUTATIONS = (
         "lay_out",
         "(lo + hi) / 2",
         "(lo + hi) / 2 + 1e-3",
-        "tests/test_scene.py::test_overhung_pinion_is_the_shaft_of_the_reference_numbers",
+        "tests/test_scene.py::test_overhung_pinion_against_closed_forms",
     ),
     Mutation(
         "shift not refined away in statics",
@@ -812,7 +812,7 @@ MUTATIONS = (
         "RollerRow._normal",
         "height = self.height + self.along * c",
         "height = self.height + 0.0 * self.along",
-        "tests/test_bearings_rows.py::test_rollers_in_closed_form",
+        "tests/test_manual.py::test_case[roller_row-A]",
     ),
     Mutation(
         "bearing: a tilt about z moves the wrong way",
@@ -828,7 +828,7 @@ MUTATIONS = (
         "BallRow.start",
         "radial = self.free * np.cos(self.angle) - self.clearance / 2",
         "radial = self.free * np.cos(self.angle) - self.clearance / 4",
-        "tests/test_bearings_rows.py::test_published_displacements",
+        "tests/test_manual.py::test_case[ball_bearing_displacement-A]",
     ),
     Mutation(
         "bearing: gyroscopic moment does not follow the angle",

@@ -24,7 +24,6 @@ UNITS = {
     "Angle": "rad",
     "PositiveLoad": "N",
     "AxialSpring": "N/m",
-    "AxialSeries": "N/m",
     "Speed": "rad/s",
     "TemperatureRise": "K",
 }

@@ -89,17 +89,9 @@ class Foot:
 
 
 def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
-    """A housing as the equilibrium takes it.
-
-    Parameters
-    ----------
-    moves : (6, k) ndarray, optional
-        Of the ring for unit motions in which the housing gives; by default both are at one point.
-
-    Returns
-    -------
-    Foot
-        Without turning about y where nothing resists that: no bearing brings a torque.
+    """A housing as the equilibrium takes it, by the (6, k) motion of the ring for unit motions in
+    which it gives (by default both are at one point); without turning about y where nothing
+    resists that: no bearing brings a torque.
     """
     moves = np.eye(6)[:, housing.gives] if moves is None else moves
     keep = [k for k, c in enumerate(housing.gives) if c != 4 or housing.own[k, k] > 0]
@@ -288,19 +280,8 @@ class Balance:
 def common_feet(
     housing: float | Housing | None, places: Mapping[int, float]
 ) -> list[Mapping[int, Foot]]:
-    """Feet of bearings in a housing of all of them.
-
-    Parameters
-    ----------
-    housing : float or Housing or None
-        A number is a spring along y, N/m.
-    places : mapping of int to float
-        Place along the shaft, m, of each bearing.
-
-    Returns
-    -------
-    list of mapping of int to Foot
-        As :class:`Balance` takes them: one, or none without a housing.
+    """Feet of bearings at places along the shaft (m) in a housing of all of them, as
+    :class:`Balance` takes them; a number is a spring along y, N/m.
     """
     if housing is None or not places:
         return []
@@ -309,14 +290,8 @@ def common_feet(
 
 
 def not_held(sums: np.ndarray, direction: np.ndarray) -> str:
-    """Sentence on a load that no bearing holds.
-
-    Parameters
-    ----------
-    sums : (5,) ndarray
-        Of all loads on the shaft, N and N m, in the order of `FIVE`.
-    direction : (5 p,) ndarray
-        In which its places went.
+    """Sentence on a load that no bearing holds: the sum of all loads (5,) on the shaft, N and N m
+    in the order of `FIVE`, and the direction (5 p,) in which its places went.
     """
     component = DOF_NAMES[FIVE[int(np.argmax(np.abs(direction))) % 5]]
     pushes = " and ".join(

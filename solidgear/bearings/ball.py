@@ -26,72 +26,22 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.bearings.hertz import (
-    POINT_POWER,
-    STEEL_E,
-    STEEL_NU,
-    Point,
-    point_contact,
-)
-from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, symmetric
+from solidgear.bearings.hertz import POINT_POWER, Point, point_contact
+from solidgear.bearings.row import FELT, Contacts, Elements, felt, products, six, symmetric
 
 
-@dataclass(frozen=True)
-class BallRow:
-    """One row of balls; lengths in m, angles in rad, order (x, y, z, thx, thy, thz).
+@dataclass(frozen=True, kw_only=True)
+class BallRow(Elements):
+    """One row of balls.
 
     Attributes
     ----------
-    count : int
-        Balls.
-    diameter, pitch : float
-        Of a ball, and of the circle of their centres.
-    angle : float
-        Nominal contact angle; 0 for a deep groove.
-    side : {1, -1}
-        Which way the shaft is held by a contact angle: towards +y or -y.
     inner, outer : float
         Groove radius over ball diameter; above 0.5.
-    clearance : float
-        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
-    preload : float
-        How far the inner ring has been pushed into contact along y, m.
-    height : float
-        Of the balls' centres along y from the reference point.
-    first : float
-        Azimuth of the first ball, from x towards z.
-    E, nu : float
-        Of balls and rings.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> row = BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3)
-    >>> push = np.array([15.11e-6, 0, 0, 0, 0, 0])
-    >>> round(float(row.load(push)[0]))
-    1000
-    >>> bool(np.all(row.tangent(push)[4] == 0))  # no torsion
-    True
     """
 
-    count: int
-    diameter: float
-    pitch: float
-    angle: float = 0.0
-    side: int = 1
     inner: float = 0.52
     outer: float = 0.53
-    clearance: float = 0.0
-    preload: float = 0.0
-    height: float = 0.0
-    first: float = 0.0
-    E: float = STEEL_E
-    nu: float = STEEL_NU
-
-    @cached_property
-    def azimuth(self) -> np.ndarray:
-        """(count,) rad."""
-        return azimuths(self.count, self.first)
 
     @property
     def free(self) -> float:
@@ -147,11 +97,6 @@ class BallRow:
         safe = np.where(length > 0, length, 1.0)
         return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
 
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy of the contacts, J, of motions (..., 6)."""
-        approach = self._stretch(motion)[3]
-        return self.constant / (POINT_POWER + 1) * (approach ** (POINT_POWER + 1)).sum(axis=-1)
-
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load that holds the inner ring at motions (..., 6), N and N m."""
         radial, axial, _, approach = self._stretch(motion)
@@ -192,13 +137,6 @@ class ThrustBallRow(BallRow):
     """Balls between two washers, at a contact angle of 90 degrees.
 
     The washers are free across the shaft: a motion there presses no ball, and moves no angle.
-
-    Examples
-    --------
-    >>> row = ThrustBallRow(24, 7.144e-3, 60e-3, inner=0.54, outer=0.54, angle=np.pi / 2)
-    >>> push = np.array([50e-6, 5e-6, 0, 0, 0, 0])
-    >>> bool(np.isclose(row.load(push)[1], 24 * row.constant * 5e-6**1.5)), float(row.load(push)[0])
-    (True, 0.0)
     """
 
     def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ import numpy as np
 from solidgear.bearings.ball import BallRow, ThrustBallRow
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
-from solidgear.bearings.geometry import Geometry, Inside, inner_geometry
+from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
@@ -35,14 +35,6 @@ class Catalogued:
         What of the inside was not given.
     clearance : float
         Radial, at work, m.
-
-    Examples
-    --------
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> made = catalogued(Catalogue(designation="7208 B", arrangement="back_to_back",
-    ...                             preload="300 N", load_rating="34.5 kN"))
-    >>> len(made.bearing.rows), made.estimated
-    (2, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
     """
 
     bearing: RollingBearing
@@ -58,7 +50,6 @@ def catalogued(
     clearance_share: float = 0.5,
     preload_factor: float = 1.0,
     floats: bool = False,
-    geometry: Geometry | None = None,
 ) -> Catalogued:
     """The bearing that catalogue data describe.
 
@@ -72,15 +63,13 @@ def catalogued(
         Times the preload, force or displacement.
     floats : bool
         One of its rings slides along y.
-    geometry : Geometry, optional
-        As :func:`solidgear.bearings.geometry.inner_geometry` found it before.
 
     Raises
     ------
     SceneError
         Data that describe no bearing, or a preload beyond its static rating.
     """
-    geometry = geometry or inner_geometry(data)
+    geometry = inner_geometry(data)
     inside: Inside = getattr(geometry, end)
     clearance = clearance_at_work(data, inside, clearance_share)
     _within_rating(data, inside, preload_factor)

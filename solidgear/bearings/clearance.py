@@ -46,23 +46,8 @@ _SPHERICAL = {
 
 
 def clearance_range(data: Catalogue) -> tuple[float, float]:
-    """Least and largest radial internal clearance before mounting, m.
-
-    Returns
-    -------
-    float, float
-        Equal where the clearance is a length.
-
-    Raises
-    ------
-    SceneError
-        A class of a bearing that has none.
-
-    Examples
-    --------
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> clearance_range(Catalogue(designation="6208", clearance="C3"))
-    (1.5e-05, 3.3e-05)
+    """Least and largest radial internal clearance before mounting, m, equal where it is told as a
+    length; refuses a class of a bearing that has none.
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
@@ -86,16 +71,7 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
 
 
 def mounting_change(data: Catalogue, inside: Inside) -> float:
-    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft.
-
-    Examples
-    --------
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> data = Catalogue(designation="6206", load_rating="19.5 kN", shaft_interference="10 um")
-    >>> round(mounting_change(data, inner_geometry(data).middle) * 1e6, 1)
-    -8.2
-    """
+    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft."""
     reach = inside.diameter * math.cos(inside.angle)
     inner, outer = inside.pitch - reach, inside.pitch + reach
     # interference only: a loose fit changes nothing
@@ -107,12 +83,8 @@ def mounting_change(data: Catalogue, inside: Inside) -> float:
 
 
 def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> float:
-    """Radial internal clearance once mounted and warm, m.
-
-    Parameters
-    ----------
-    share : float
-        Place in the range of a clearance class, 0 to 1.
+    """Radial internal clearance once mounted and warm, m, at a place in the range of its class, 0
+    to 1.
     """
     low, high = clearance_range(data)
     return low + share * (high - low) + mounting_change(data, inside)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from solidgear.errors import SceneError
-from solidgear.scene.operation import TYPED
+from solidgear.scene.units import TYPED
 
 
 @dataclass(frozen=True)
@@ -71,15 +71,6 @@ def duty_life(points: Sequence[DutyPoint]) -> DutyLife:
     ------
     SceneError
         No points, shares that do not sum to one, shares beside hours, or numbers below zero.
-
-    Examples
-    --------
-    A tenth of the time under a load that is lived through in 1e7 turns, and the rest in 1e9:
-
-    >>> table = [DutyPoint(1e7, 100.0, share=0.1), DutyPoint(1e9, 100.0, share=0.9)]
-    >>> found = duty_life(table)
-    >>> round(found.revolutions / 1e6, 2), found.worst, round(found.damage[0], 3)
-    (91.74, 0, 0.917)
     """
     shares = _shares(points)
     rates = [share * point.turns / point.life for share, point in zip(shares, points)]

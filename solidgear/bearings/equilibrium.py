@@ -87,81 +87,51 @@ def equilibrium(
     ------
     SolidgearError
         If nothing holds the shaft against a load.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import solidgear as sg
-    >>> from solidgear.bearings.ball import BallRow
-    >>> from solidgear.bearings.rolling import RollingBearing
-    >>> body = sg.build(sg.load("geometry/shaft_stepped.toml"), "timoshenko")
-    >>> balls = RollingBearing((BallRow(count=9, diameter=12e-3, pitch=60e-3),))
-    >>> found = equilibrium(body, [Mounted("A", balls), Mounted("B", balls)],
-    ...                     {"port": [0, 0, 2000.0, 0, 0, 0]})
-    >>> round(float(found.load["A"][2] + found.load["B"][2]), 6)
-    2000.0
     """
-    shaft = _OnBody(body, bearings, loads, housing)
+    bearings = tuple(bearings)
+    indices = [body.port_index(b.port, b.attachment) for b in bearings]
+    if len(set(indices)) < len(bearings):
+        raise SolidgearError("two bearings on one port: mount them as rows of one bearing")
+    names = [b.port for b in bearings]
+    for name in loads:
+        if name not in names:
+            names.append(name)
+            indices.append(body.port_index(name))
+    if not indices:
+        raise SolidgearError("no bearing and no load: there is nothing to settle")
+    rows = [6 * index + c for index in indices for c in FIVE]
+    balance = Balance(
+        between(
+            flexibility(body).matrix[np.ix_(rows, rows)],
+            body.rigid_ports[rows],
+            np.tile([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length], len(indices)),
+        ),
+        bearings,
+        common_feet(housing, {k: body.ports[indices[k]].y for k in range(len(bearings))}),
+    )
+    outside = np.zeros((len(names), 5))
+    for name, load in loads.items():
+        outside[names.index(name)] += np.asarray(load, float)[list(FIVE)]
+    target = balance.elastic.basis.T @ outside.ravel()
     try:
-        found = shaft.balance.settle(shaft.target, None if start is None else start._state)
+        found = balance.settle(target, None if start is None else start._state)
     except NothingHolds as error:
-        raise SolidgearError(shaft.not_held(error.direction)) from None
-    return shaft.equilibrium(found.motion, found.unbalanced, found.iterations)
-
-
-class _OnBody:
-    """Ports of a body that carry bearings and loads."""
-
-    def __init__(self, body: Body, bearings, loads, housing):
-        bearings = tuple(bearings)
-        places = {(b.port, b.attachment): body.port_index(b.port, b.attachment) for b in bearings}
-        if len(set(places.values())) < len(bearings):
-            raise SolidgearError("two bearings on one port: mount them as rows of one bearing")
-        self.names = [b.port for b in bearings]
-        indices = [places[b.port, b.attachment] for b in bearings]
-        for name in loads:
-            if name not in self.names:
-                self.names.append(name)
-                indices.append(body.port_index(name))
-        if not indices:
-            raise SolidgearError("no bearing and no load: there is nothing to settle")
-        rows = [6 * index + c for index in indices for c in FIVE]
-        self.balance = Balance(
-            between(
-                flexibility(body).matrix[np.ix_(rows, rows)],
-                body.rigid_ports[rows],
-                np.tile([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length], len(indices)),
-            ),
-            bearings,
-            common_feet(housing, {k: body.ports[indices[k]].y for k in range(len(bearings))}),
-        )
-        self.loads = np.zeros(len(rows))
-        for name, load in loads.items():
-            at = 5 * self.names.index(name)
-            self.loads[at : at + 5] += np.asarray(load, float)[list(FIVE)]
-
-    @property
-    def target(self) -> np.ndarray:
-        """Loads on the motions between the ports."""
-        return self.balance.elastic.basis.T @ self.loads
-
-    def not_held(self, direction: np.ndarray) -> str:
-        """Error of a search that found no equilibrium."""
-        return not_held(self.loads.reshape(-1, 5).sum(axis=0), direction)
-
-    def equilibrium(self, at: np.ndarray, unbalanced: float, iterations: int) -> Equilibrium:
-        """The equilibrium by names."""
-        motion = {name: np.zeros(6) for name in self.names}
-        for name, five in zip(self.names, self.balance.places(at).reshape(-1, 5)):
-            motion[name][list(FIVE)] = five
-        bearings = self.balance.bearings
-        relative, carried = (
-            {b.port: value for b, value in zip(bearings, values)}
-            for values in self.balance.carried(at)
-        )
-        tangent = {b.port: b.bearing.tangent(relative[b.port]) for b in bearings}
-        lost = tuple(name for name, load in carried.items() if not load.any())
-        names = tuple(self.names)
-        return Equilibrium(
-            names, motion, relative, carried, tangent, lost, unbalanced, iterations, at
-        )
+        raise SolidgearError(not_held(outside.sum(axis=0), error.direction)) from None
+    motion = {name: np.zeros(6) for name in names}
+    for name, five in zip(names, balance.places(found.motion).reshape(-1, 5)):
+        motion[name][list(FIVE)] = five
+    relative, carried = (
+        {b.port: value for b, value in zip(bearings, values)}
+        for values in balance.carried(found.motion)
+    )
+    return Equilibrium(
+        tuple(names),
+        motion,
+        relative,
+        carried,
+        {b.port: b.bearing.tangent(relative[b.port]) for b in bearings},
+        tuple(name for name, load in carried.items() if not load.any()),
+        found.unbalanced,
+        found.iterations,
+        found.motion,
+    )

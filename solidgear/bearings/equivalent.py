@@ -100,27 +100,8 @@ class Equivalent(NamedTuple):
 def equivalent_load(
     data: Catalogue, inside: Inside, rated: Ratings, load: np.ndarray
 ) -> Equivalent:
-    """Equivalent dynamic load by ISO 281.
-
-    Parameters
-    ----------
-    rated : Ratings
-        Of all rows.
-    load : (6,) ndarray
-        Of the shaft on the bearing, N; moments are not felt by this load.
-
-    Examples
-    --------
-    A 6208 under 3.2 kN and 1.8 kN, 4.38 kN in the catalogue that has this example:
-
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> from solidgear.bearings.rating import ratings
-    >>> data = Catalogue(designation="6208", load_rating="32.5 kN", static_rating="17.8 kN",
-    ...                  elements=9, element_diameter="12 mm", pitch_diameter="60 mm")
-    >>> inside = inner_geometry(data).middle
-    >>> found = equivalent_load(data, inside, ratings(data, inside), [3200, 1800, 0, 0, 0, 0])
-    >>> round(found.load), round(found.e, 2)
-    (4391, 0.3)
+    """Equivalent dynamic load by ISO 281, of ratings of all rows and the load (6,) of the shaft on
+    the bearing, N; moments are not felt by this load.
     """
     radial, axial = math.hypot(load[0], load[2]), abs(float(load[1]))
     e, low, high = factors(data, inside, _depth(data, inside, axial / rated.static))
@@ -138,25 +119,9 @@ def _depth(data: Catalogue, inside: Inside, share: float) -> float:
 
 
 def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
-    """X, Y and e of a bearing.
-
-    Parameters
-    ----------
-    depth : float
-        Axial load over the squares of the balls that carry it, N/mm^2.
-
-    Returns
-    -------
-    Factors
-        Of rows without a contact angle that are rollers, the radial load alone, of thrust balls the
-        axial one.
-
-    Examples
-    --------
-    >>> from solidgear.bearings.geometry import inner_geometry
-    >>> pair = Catalogue(designation="7208 B", arrangement="back_to_back")
-    >>> [round(v, 2) for v in factors(pair, inner_geometry(pair).middle, 0.0).high]
-    [0.57, 0.93]
+    """X, Y and e of a bearing at an axial load over the squares of the balls that carry it,
+    N/mm^2; of rollers without a contact angle they take the radial load alone, of thrust balls the
+    axial one.
     """
     if inside.thrust:
         return Factors(0.0, (0.0, 1.0), (0.0, 1.0))
@@ -194,17 +159,8 @@ def _at_depth(degrees: int, depth: float) -> tuple[float, float, float]:
 
 
 def static_load(data: Catalogue, inside: Inside, load: np.ndarray) -> float:
-    """Equivalent static load of a bearing by ISO 76, N.
-
-    Parameters
-    ----------
-    load : (6,) ndarray
-        Of the shaft on it, N.
-
-    Returns
-    -------
-    float
-        Of rows against each other, that on both.
+    """Equivalent static load of a bearing by ISO 76, N, under the load (6,) of the shaft on it, N;
+    of rows against each other, that on both.
 
     Examples
     --------

@@ -76,21 +76,8 @@ class Geometry(NamedTuple):
 
 @lru_cache(maxsize=1024)
 def inner_geometry(data: Catalogue) -> Geometry:
-    """Inner geometry of a bearing by its catalogue data.
-
-    Raises
-    ------
-    SceneError
-        A load rating that no inside of these boundary dimensions has.
-
-    Examples
-    --------
-    The 6206 of catalogues, with nothing of its inside told:
-
-    >>> from solidgear.scene.catalogue import Catalogue
-    >>> found = inner_geometry(Catalogue(designation="6206", load_rating="19.5 kN"))
-    >>> found.middle.elements, round(found.middle.diameter * 1e3, 2)  # in truth 9 of 9.525 mm
-    (9, 9.41)
+    """Inner geometry of a bearing by its catalogue data; refuses a load rating that no inside of
+    these boundary dimensions has.
     """
     make = _balls if data.balls else _rollers
     middle = make(data, "middle")

@@ -127,19 +127,8 @@ def _integrals(ratio: float) -> tuple[float, float]:
 
 
 def line_constant(length: float, E: float = STEEL_E, nu: float = STEEL_NU) -> float:
-    """c of ``Q = c delta^(10/9)`` for a roller between its rings, both contacts together.
-
-    Parameters
-    ----------
-    length : float
-        Effective length of the roller, m.
-    E, nu : float
-        Pa, ratio; the rule is one for steel, and is scaled by ``E / (1 - nu^2)``.
-
-    Returns
-    -------
-    float
-        N/m^(10/9).
+    """c of ``Q = c delta^(10/9)`` for a roller of an effective length (m) between its rings, both
+    contacts together, N/m^(10/9); the rule is one for steel, and is scaled by ``E / (1 - nu^2)``.
 
     Examples
     --------
@@ -153,23 +142,8 @@ def line_constant(length: float, E: float = STEEL_E, nu: float = STEEL_NU) -> fl
 def line_pressure(
     load: np.ndarray, length: float, curvature: float, E: float = STEEL_E, nu: float = STEEL_NU
 ) -> np.ndarray:
-    """Largest pressure of a line contact by Hertz.
-
-    Parameters
-    ----------
-    load : ndarray
-        N.
-    length : float
-        m.
-    curvature : float
-        Sum of both bodies', 1/m.
-    E, nu : float
-        Pa, ratio, of both bodies.
-
-    Returns
-    -------
-    ndarray
-        Pa.
+    """Largest pressure of a line contact by Hertz, Pa: load in N, length in m, sum of both bodies'
+    curvatures in 1/m, E in Pa.
 
     Examples
     --------

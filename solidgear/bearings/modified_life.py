@@ -50,32 +50,13 @@ _LAW = {True: Law(2.5671, 0.83, 1 / 3, 9.3), False: Law(1.5859, 1.0, 0.4, 9.185)
 
 
 def reliability_factor(reliability: float) -> float:
-    """a_1 of ISO 281, Table 12.
-
-    Examples
-    --------
-    >>> [round(reliability_factor(s), 2) for s in (0.90, 0.95, 0.99)]
-    [1.0, 0.64, 0.25]
-    """
+    """a_1 of ISO 281, Table 12."""
     return 0.05 + 0.95 * (math.log(reliability) / math.log(0.9)) ** (2 / 3)
 
 
 def reference_viscosity(speed: float, pitch: float) -> float:
-    """Viscosity nu_1 that a bearing asks for, m^2/s.
-
-    Parameters
-    ----------
-    speed : float
-        rad/s.
-    pitch : float
-        Diameter of the circle of the elements' centres, m.
-
-    Examples
-    --------
-    A 6207 at 2450 r/min, close to 12 mm^2/s in a maker's diagram:
-
-    >>> round(reference_viscosity(2450 * math.pi / 30, 53.5e-3) * 1e6, 1)
-    12.4
+    """Viscosity nu_1, m^2/s, that a bearing asks for at a speed, rad/s, and a diameter of the
+    circle of the elements' centres, m.
     """
     turns, size = speed * 30 / math.pi, pitch * 1e3
     factor = 45000 * turns**-0.83 if turns < 1000 else 4500 * turns**-0.5

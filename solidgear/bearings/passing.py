@@ -47,14 +47,8 @@ class Passing(NamedTuple):
 def passing(
     inside: Inside, angle: float | None = None, inner: float = 1.0, outer: float = 0.0
 ) -> Passing:
-    """Frequencies of a row at the speeds of its rings.
-
-    Parameters
-    ----------
-    angle : float, optional
-        Contact angle at work, rad; by default the nominal one.
-    inner, outer : float
-        Speeds of the rings, signed, in any unit; by default one turn of the inner ring.
+    """Frequencies of a row at the signed speeds of its rings, in any unit (by default one turn of
+    the inner ring), and a contact angle at work, rad (by default the nominal one).
 
     Examples
     --------

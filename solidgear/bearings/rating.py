@@ -33,16 +33,7 @@ ROW_POWER = {True: 0.7, False: 7 / 9}
 
 
 def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a ball bearing by ISO 281, N.
-
-    Examples
-    --------
-    A 6206 has nine balls of 9.525 mm on 46 mm; makers give 19.5 to 20.3 kN:
-
-    >>> from solidgear.bearings.geometry import Inside
-    >>> round(ball_rating(Inside(9, 9.525e-3, 0.0, 46e-3, 0.0, (0.52, 0.53))) / 1e3, 1)
-    19.9
-    """
+    """Basic dynamic radial load rating of a ball bearing by ISO 281, N."""
     size = inside.diameter * 1e3
     # above 25.4 mm the rating grows less
     size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
@@ -61,16 +52,7 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
 
 
 def roller_rating(inside: Inside, factor: float = 1.1, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a roller bearing by ISO 281, N.
-
-    Examples
-    --------
-    Thirteen rollers of 9 x 10 mm on 46.5 mm, an NU 206:
-
-    >>> from solidgear.bearings.geometry import Inside
-    >>> round(roller_rating(Inside(13, 9e-3, 10e-3, 46.5e-3, 0.0, (0.5, 0.5))) / 1e3)
-    42
-    """
+    """Basic dynamic radial load rating of a roller bearing by ISO 281, N."""
     g = inside.gamma
     ratio = 1.04 * ((1 - g) / (1 + g)) ** (143 / 108)
     both = (1 + ratio ** (9 / 2)) ** (-2 / 9)
@@ -81,16 +63,7 @@ def roller_rating(inside: Inside, factor: float = 1.1, rows: int = 1) -> float:
 
 
 def static_ball_rating(inside: Inside) -> float:
-    """Basic static radial load rating of a row of balls by ISO 76, N.
-
-    Examples
-    --------
-    A 6206; makers give 11.2 to 11.6 kN:
-
-    >>> from solidgear.bearings.geometry import Inside
-    >>> round(static_ball_rating(Inside(9, 9.525e-3, 0.0, 46e-3, 0.0, (0.52, 0.53))) / 1e3, 1)
-    11.3
-    """
+    """Basic static radial load rating of a row of balls by ISO 76, N."""
     inner, outer = _rated_conformity(inside)
     row = BallRow(
         count=inside.elements,
@@ -111,16 +84,7 @@ def _rated_conformity(inside: Inside) -> tuple[float, float]:
 
 
 def static_factor(inside: Inside) -> float:
-    """f_0 of ISO 76, by which ISO 281 and ISO 76 tell how deep balls sit in their grooves, N/mm^2.
-
-    Examples
-    --------
-    ISO 76 has 16.4 at ``Dw cos(a) / Dpw = 0.10``:
-
-    >>> from solidgear.bearings.geometry import Inside
-    >>> round(static_factor(Inside(10, 6e-3, 0.0, 60e-3, 0.0, (0.52, 0.53))), 1)
-    16.4
-    """
+    """f_0 of ISO 76, by which ISO 281 and ISO 76 tell how deep balls sit in their grooves, N/mm^2."""
     flat = inside.elements * (inside.diameter * 1e3) ** 2 * math.cos(inside.angle)
     return static_ball_rating(inside) / flat
 
@@ -214,13 +178,7 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
 
 
 def fatigue_limit(static: float, pitch: float, balls: bool) -> tuple[float, str]:
-    """Fatigue load limit C_u by the simple estimate of ISO 281:2007, B.3.3, N, and its formula.
-
-    Examples
-    --------
-    >>> fatigue_limit(11e3, 46e-3, balls=True)
-    (500.0, 'C0 / 22 (ISO 281, B.3.3)')
-    """
+    """Fatigue load limit C_u by the simple estimate of ISO 281:2007, B.3.3, N, and its formula."""
     share, power = (22, 0.5) if balls else (8.2, 0.3)
     if pitch <= 0.1:
         return static / share, f"C0 / {share:g} (ISO 281, B.3.3)"

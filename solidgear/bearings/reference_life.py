@@ -91,12 +91,8 @@ class Raceways(NamedTuple):
 
 
 def raceways(inside: Inside, rating: float) -> Raceways:
-    """Capacities of both raceways of a row.
-
-    Parameters
-    ----------
-    rating : float
-        Basic dynamic radial load rating of this row alone, N.
+    """Capacities of both raceways of a row, of the basic dynamic radial load rating of this row
+    alone, N.
 
     Examples
     --------
@@ -126,52 +122,12 @@ def raceways(inside: Inside, rating: float) -> Raceways:
 
 @functools.cache
 def edge_stress(slices: int) -> np.ndarray:
-    """Factors (slices,) by which the ends of a roller press harder than its slices.
-
-    Examples
-    --------
-    >>> edge_stress(30)[[0, 1, 14]].round(3)
-    array([2.328, 1.127, 1.003])
-    >>> edge_stress(1)  # a ball
-    array([1.])
-    """
+    """Factors (slices,) by which the ends of a roller press harder than its slices."""
     if slices == 1:
         return np.ones(1)
     place = np.abs(2 * np.arange(slices) - slices + 1) / (2 * slices - 2)
     # the middle one of an odd number is not raised
     return 1 - 0.01 / np.log(1.985 * np.maximum(place, 1e-300))
-
-
-def reference_life(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> float:
-    """Basic reference rating life of rows of one make that turn together, in revolutions.
-
-    Parameters
-    ----------
-    rows : sequence of Contacts
-        Loads of their elements at one motion.
-    capacity : Raceways
-        Of each row.
-    turning : {'inner', 'outer'}
-        The ring that turns against the load.
-
-    Returns
-    -------
-    float
-        For 90 % reliability; infinite where nothing is loaded.
-
-    Examples
-    --------
-    Seven balls under 1 kN, 13163e6 revolutions by a commercial program:
-
-    >>> from solidgear.bearings.ball import BallRow
-    >>> from solidgear.bearings.rolling import RollingBearing
-    >>> bearing = RollingBearing((BallRow(count=7, diameter=11.5e-3, pitch=43.5e-3),))
-    >>> rows = bearing.contacts(bearing.motion([1000.0, 0, 0, 0, 0, 0]))
-    >>> inside = Inside(7, 11.5e-3, 0.0, 43.5e-3, 0.0, (0.52, 0.53))
-    >>> round(reference_life(rows, raceways(inside, 23.4e3)) / 1e6)
-    13163
-    """
-    return damage(rows, capacity, turning).life
 
 
 @dataclass(frozen=True)
@@ -192,7 +148,7 @@ class Damage:
 
     @property
     def life(self) -> float:
-        """Reference life, revolutions; infinite where nothing is loaded."""
+        """Basic reference rating life for 90 % reliability, revolutions; infinite where nothing is loaded."""
         return self.modified(np.ones_like(self.each)) if self.each.any() else math.inf
 
     def modified(self, factor: np.ndarray) -> float:
@@ -217,12 +173,8 @@ class Damage:
 
 
 def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> Damage:
-    """Damage of rows that turn together.
-
-    Parameters
-    ----------
-    rows, capacity, turning
-        As of :func:`reference_life`.
+    """Damage of rows of one make that turn together, from the loads of their elements at one
+    motion and the capacity of each; `turning` is the ring that turns against the load.
     """
     law = capacity.law
     inner = np.array([row.on_inner for row in rows]) / capacity.inner

@@ -19,14 +19,8 @@ from typing import Literal
 
 import numpy as np
 
-from solidgear.bearings.hertz import (
-    LINE_POWER,
-    STEEL_E,
-    STEEL_NU,
-    line_constant,
-    line_pressure,
-)
-from solidgear.bearings.row import FELT, Contacts, azimuths, felt, products, six, symmetric
+from solidgear.bearings.hertz import LINE_POWER, line_constant, line_pressure
+from solidgear.bearings.row import FELT, Contacts, Elements, felt, products, six, symmetric
 
 Profile = Literal["logarithmic", "straight"]
 
@@ -36,61 +30,23 @@ Profile = Literal["logarithmic", "straight"]
 ROUNDING = 1e-12
 
 
-@dataclass(frozen=True)
-class RollerRow:
-    """One row of rollers; lengths in m, angles in rad, order (x, y, z, thx, thy, thz).
+@dataclass(frozen=True, kw_only=True)
+class RollerRow(Elements):
+    """One row of rollers.
 
     Attributes
     ----------
-    count : int
-        Rollers.
-    diameter, length, pitch : float
-        Mean diameter and effective length of a roller, diameter of the circle of their centres.
-    angle : float
-        Contact angle; 0 for cylindrical and needle rollers.
-    side : {1, -1}
-        Which way the shaft is held by a contact angle: towards +y or -y.
-    clearance : float
-        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
-    preload : float
-        How far the inner ring has been pushed into contact along y, m.
+    length : float
+        Effective length of a roller.
     profile : {'logarithmic', 'straight'}
         That of ISO/TS 16281, 5.3.3, or none.
     slices : int
         ISO/TS 16281 asks for 30 or more.
-    height, first : float
-        As for :class:`solidgear.bearings.ball.BallRow`.
-    E, nu : float
-        Of rollers and rings.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> row = RollerRow(count=13, diameter=9e-3, length=10e-3, pitch=46.5e-3)
-    >>> loaded = row.contacts(np.array([5e-6, 0, 0, 0, 0, 0])).load > 0
-    >>> int(loaded.sum())  # those within a quarter turn of x
-    7
     """
 
-    count: int
-    diameter: float
     length: float
-    pitch: float
-    angle: float = 0.0
-    side: int = 1
-    clearance: float = 0.0
-    preload: float = 0.0
     profile: Profile = "logarithmic"
     slices: int = 30
-    height: float = 0.0
-    first: float = 0.0
-    E: float = STEEL_E
-    nu: float = STEEL_NU
-
-    @cached_property
-    def azimuth(self) -> np.ndarray:
-        """(count,) rad."""
-        return azimuths(self.count, self.first)
 
     @cached_property
     def along(self) -> np.ndarray:
@@ -145,11 +101,6 @@ class RollerRow:
         found = self._start + own @ self._normal.T
         largest = np.abs(own) @ self._reach
         return np.where(found > ROUNDING * (largest[..., None] + np.abs(self._start)), found, 0.0)
-
-    def energy(self, motion: np.ndarray) -> np.ndarray:
-        """Elastic energy of the contacts, J, of motions (..., 6)."""
-        factor = self.constant / self.slices / (LINE_POWER + 1)
-        return factor * (self._approach(motion) ** (LINE_POWER + 1)).sum(axis=-1)
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Load that holds the inner ring at motions (..., 6), N and N m."""

@@ -46,7 +46,6 @@ class RollingBearing:
 
     Attributes
     ----------
-    rows : tuple of Row
     floats : bool
         One of its rings slides along y in its seat, without friction: at every motion the rows
         stand where nothing presses them along y, and the stiffness is what is left then.

@@ -18,9 +18,13 @@ semidefinite.  Whatever minimises it, alone or with a shaft, is the one equilibr
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+
+from solidgear.bearings.hertz import STEEL_E, STEEL_NU
 
 #: of (x, y, z, thx, thy, thz), those that contacts feel
 FELT = [0, 1, 2, 3, 5]
@@ -54,9 +58,46 @@ class Contacts(NamedTuple):
     on_outer: np.ndarray
 
 
-def azimuths(count: int, first: float) -> np.ndarray:
-    """(count,) azimuths of evenly spaced elements, rad."""
-    return first + 2 * np.pi * np.arange(count) / count
+@dataclass(frozen=True)
+class Elements:
+    """Rolling elements of one row, and their place; lengths in m, angles in rad.
+
+    Attributes
+    ----------
+    diameter, pitch : float
+        Of an element (mean), and of the circle of their centres.
+    angle : float
+        Nominal contact angle; 0 for deep grooves, cylindrical and needle rollers.
+    side : {1, -1}
+        Which way the shaft is held by a contact angle: towards +y or -y.
+    clearance : float
+        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
+    preload : float
+        How far the inner ring has been pushed into contact along y, m.
+    height : float
+        Of the elements' centres along y from the reference point.
+    first : float
+        Azimuth of the first element, from x towards z.
+    E, nu : float
+        Of elements and rings.
+    """
+
+    count: int
+    diameter: float
+    pitch: float
+    angle: float = 0.0
+    side: int = 1
+    clearance: float = 0.0
+    preload: float = 0.0
+    height: float = 0.0
+    first: float = 0.0
+    E: float = STEEL_E
+    nu: float = STEEL_NU
+
+    @cached_property
+    def azimuth(self) -> np.ndarray:
+        """(count,) evenly spaced, rad."""
+        return self.first + 2 * np.pi * np.arange(self.count) / self.count
 
 
 def felt(

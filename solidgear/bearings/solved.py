@@ -117,8 +117,10 @@ def solved(
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
     made = made_of(scene, choice)
     settled = None
-    if body is not None and wants_equilibrium(scene):
-        settled = _settled(scene, body, made, choice, start)
+    if body is not None and scene.load is not None and wants_equilibrium(scene):
+        loads = {scene.port.name: choice.load * np.array(scene.load.six)}
+        around = scene.housing or scene.housing_axial
+        settled = equilibrium(body, mounted(scene, made), loads, around, start)
     motion, tangent = {}, {}
     for name, k in places.items():
         data = scene.bearings[k].catalogue
@@ -135,19 +137,17 @@ def solved(
         motion[name] = made[name].bearing.seen(at)
         tangent[name] = made[name].bearing.tangent(at)
         if not tangent[name].any() and not waits:
-            raise located(_unloaded(), k)
+            reason = (
+                "without load a bearing has no stiffness: give load or displacement, a preload, a "
+                "negative clearance, or a [load] on the port"
+            )
+            raise located(SceneError(reason), k)
     bearings = tuple(_with(b, tangent) for b in scene.bearings)
     return Solved(scene.with_changes(bearings=bearings), made, motion, settled)
 
 
 def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
-    """Bearings of a scene that catalogue data describe, by name.
-
-    Raises
-    ------
-    SceneError
-        Data that make no bearing.
-    """
+    """Bearings of a scene that catalogue data describe, by name."""
     made = {}
     for k, bearing in enumerate(scene.bearings):
         if bearing.catalogue is None:
@@ -164,13 +164,6 @@ def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
         except SceneError as error:
             raise located(error, k) from None
     return made
-
-
-def _unloaded() -> SceneError:
-    return SceneError(
-        "without load a bearing has no stiffness: give load or displacement, a preload, a negative "
-        "clearance, or a [load] on the port",
-    )
 
 
 def located(error: SceneError, index: int) -> SceneError:
@@ -195,25 +188,6 @@ def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
         if bearing.name not in made:
             out.append(Mounted(bearing.name, Linear(np.array(bearing.stiffness))))
             continue
-        spring = None
-        if bearing.axial_series:
-            spring = 1 / sum(1 / k for k in bearing.axial_series)
-        out.append(
-            Mounted(
-                bearing.name, made[bearing.name].bearing, spring=spring, housing=bearing.housing
-            )
-        )
+        own, spring = made[bearing.name].bearing, bearing.spring
+        out.append(Mounted(bearing.name, own, spring=spring, housing=bearing.housing))
     return out
-
-
-def _settled(
-    scene: Scene,
-    body: Body,
-    made: Mapping[str, Catalogued],
-    choice: Choice,
-    start: Equilibrium | None,
-) -> Equilibrium:
-    assert scene.load is not None
-    loads = {scene.port.name: choice.load * np.array(scene.load.six)}
-    around = scene.housing or scene.housing_axial
-    return equilibrium(body, mounted(scene, made), loads, around, start)

@@ -27,7 +27,7 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.row import felt
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SphericalRow(RollerRow):
     """One of the two rows of a spherical roller bearing.
 
@@ -35,14 +35,6 @@ class SphericalRow(RollerRow):
     ----------
     inner, outer : float
         Groove radius over twice the radius of the rollers' contour; above 0.5.
-
-    Examples
-    --------
-    >>> row = SphericalRow(14, 25e-3, 20.76e-3, 135.077e-3, angle=np.radians(12))
-    >>> round(row.sphere * 1e3, 1), round(row.contour * 1e3, 1)
-    (81.5, 79.9)
-    >>> bool(row.tangent(np.array([2e-5, 0, 0, 0, 0, 0]))[3:].any())
-    False
     """
 
     inner: float = 0.51

@@ -48,17 +48,6 @@ class SpinningBalls:
         rad/s.
     density : float
         Of the balls, kg/m^3.
-
-    Examples
-    --------
-    The outer ring carries the balls as well, and its contact angle falls:
-
-    >>> import numpy as np
-    >>> row = BallRow(count=16, diameter=22.225e-3, pitch=125.26e-3, angle=np.radians(40))
-    >>> fast = SpinningBalls(row, speed=1047.0)
-    >>> inner, outer = fast.angles(np.array([0.0, 40e-6, 0, 0, 0, 0]))
-    >>> bool(inner[0] > outer[0])
-    True
     """
 
     row: BallRow

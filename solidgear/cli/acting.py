@@ -10,6 +10,7 @@ import typer
 
 from solidgear.cli.app import Group
 from solidgear.cli.bearing import loaded_by
+from solidgear.cli.shared import refuse
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.report.deflection_tables import DOFS, LOAD_OF
 from solidgear.report.units import Units
@@ -56,25 +57,23 @@ class Acting(Group):
     ] = None
 
     def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
-        """A shaft under its load, or a train and its operating point.
-
-        Raises
-        ------
-        SolidgearError
-            For options of the one on a file of the other, and a train without operating point.
+        """A shaft under its load, or a train and its operating point; refuses options of the one
+        on a file of the other, and a train without operating point.
         """
         if is_train(file):
-            refuse({"--load": self.load}, "a shaft", file, "a train takes --torque")
+            what = f"a shaft, and {file} is none: a train takes --torque"
+            refuse({"--load": self.load is not None}, what)
             return self._at_point(file)
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
-        refuse(of_train, "a train", file, "a shaft takes --load, or has [load]")
+        given = {option: value is not None for option, value in of_train.items()}
+        refuse(given, f"a train, and {file} is none: a shaft takes --load, or has [load]")
         scene = load(file)
         return scene if self.load is None else loaded_by(scene, self.load)
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:
-            instead = "write weight into its [operation]"
-            refuse({"--weight": self.weight}, "a --torque", file, instead)
+            what = f"a --torque, and {file} is none: write weight into its [operation]"
+            refuse({"--weight": self.weight is not None}, what)
             train = load_train(file)
             if not train.operation:
                 raise SolidgearError(
@@ -97,18 +96,6 @@ class Acting(Group):
                 raise
             raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
         return train, train.told(own)
-
-
-def refuse(options: dict[str, str | None], what: str, file: Path, instead: str) -> None:
-    """Refuse options that are for something else.
-
-    Raises
-    ------
-    SolidgearError
-    """
-    for option, given in options.items():
-        if given is not None:
-            raise SolidgearError(f"{option} is for {what}, and {file} is none: {instead}")
 
 
 def load_in_words(scene: Scene, units: Units) -> str:

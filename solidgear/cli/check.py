@@ -8,12 +8,7 @@ from pathlib import Path
 import typer
 
 from solidgear.cli.app import command
-from solidgear.cli.shared import (
-    MODEL,
-    Fixed,
-    Run,
-    SceneFile,
-)
+from solidgear.cli.shared import MODEL, Fixed, Run, SceneFile, refuse
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.registry import LADDER
@@ -98,11 +93,11 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     refused where they were given.
     """
     # start-up: a shaft has no use for the studies of trains
-    from solidgear.cli.train_options import Reduced, refuse_given
+    from solidgear.cli.train_options import Reduced
     from solidgear.studies.train.check import check_train as checked
 
     instead = "run check on the file of the shaft for other models and meshes"
-    refuse_given(given, train, instead)
+    refuse(given, f"one shaft, and {train} is a train: {instead}")
     shop = Reduced().workshop(train)
     found = checked(shop)
     if as_json:

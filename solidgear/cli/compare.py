@@ -14,14 +14,9 @@ import typer
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.chart import run_chart
 from solidgear.cli.reading import load
-from solidgear.cli.shared import (
-    MODEL,
-    SceneFile,
-    Shown,
-    options_by_name,
-)
+from solidgear.cli.shared import MODEL, SceneFile, Shown, options_by_name, refuse
 from solidgear.cli.train_judge import compare_train
-from solidgear.cli.train_options import Pair, Reduced, refuse_given
+from solidgear.cli.train_options import Pair, Reduced
 from solidgear.elements import ELEMENTS
 from solidgear.errors import SolidgearError, listed
 from solidgear.ladder.registry import LADDER
@@ -119,11 +114,7 @@ def compare(
         mix = Pair(pinion or MODEL, gear or MODEL, shafts)
         compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
         return
-    for option, given in of_trains.items():
-        if given:
-            raise SolidgearError(
-                f"{option} is for two trains, and {scene} is one file: every model of it is solved"
-            )
+    refuse(of_trains, f"two trains, and {scene} is one file: every model of it is solved")
     if is_train(scene):
         compare_train(scene, out, renders, run, of_one_shaft)
         return
@@ -179,7 +170,7 @@ def compare_two(
             f"{one} is a train and {other} one shaft: compare takes two trains, two shafts, or either file alone"
         )
     if trains[0]:
-        refuse_given(given, files[0], TRAINS)
+        refuse(given, f"one shaft, and {files[0]} is a train: {TRAINS}")
     else:
         _refuse_of_two_shafts(given | of_trains)
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):

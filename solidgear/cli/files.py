@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
 from typing import Annotated, Any
@@ -29,10 +29,7 @@ def new(
 ) -> None:
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
     made = {path.parent / one: content for one, content in start(kind, path.stem).items()}
-    for one in made:
-        _refuse_existing(one)
-    for one, content in made.items():
-        _write(one, content)
+    _write({one: content.encode() for one, content in made.items()})
     beside = f" (with {', '.join(str(one) for one in made if one != path)})" * (len(made) > 1)
     typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
 
@@ -59,10 +56,7 @@ def scenes(
         say(Table("", columns, asked, style="ruled"))
         return
     files = sorted({file for one in asked for file in needed(there[one])})
-    for file in files:
-        _refuse_existing(to / file.name)
-    for file in files:
-        _write(to / file.name, file.read_bytes())
+    _write({to / file.name: file.read_bytes() for file in files})
     typer.echo(f"{to}: {', '.join(file.name for file in files)}")
 
 
@@ -111,20 +105,20 @@ def _default(value: object) -> str:
     return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
-def _refuse_existing(path: Path) -> None:
-    if path.exists():
-        raise SolidgearError(f"{path}: there is such a file already; give another name")
-
-
-def _write(path: Path, content: str | bytes) -> None:
-    _refuse_existing(path)
-    data = content.encode() if isinstance(content, str) else content
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with whole(path) as partial:
-            partial.write_bytes(data)
-    except OSError as error:
-        raise SolidgearError(f"{path}: cannot be written ({error.strerror or error})") from error
+def _write(files: Mapping[Path, bytes]) -> None:
+    """Write new files, or refuse all of them where one is there already."""
+    for path in files:
+        if path.exists():
+            raise SolidgearError(f"{path}: there is such a file already; give another name")
+    for path, content in files.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with whole(path) as partial:
+                partial.write_bytes(content)
+        except OSError as error:
+            raise SolidgearError(
+                f"{path}: cannot be written ({error.strerror or error})"
+            ) from error
 
 
 #: where a wheel puts them, under the data folder of the installation
@@ -135,12 +129,7 @@ REFERRING = ("scene", "step", "mesh", "contact_cells")
 
 
 def shipped() -> dict[str, Path]:
-    """Scene files by name.
-
-    Raises
-    ------
-    SolidgearError
-        Where the installation has none.
+    """Scene files by name; refuses an installation that has none.
 
     Examples
     --------

@@ -7,7 +7,7 @@ is added to a group, all these commands take.
 from __future__ import annotations
 
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -228,6 +228,13 @@ def options_by_name(
             )
         out.setdefault(name, []).append(rest)
     return {name: options(own) for name, own in out.items()}
+
+
+def refuse(given: Mapping[str, bool], what: str) -> None:
+    """Refuse the first of some options that is given; they are for something else, in words."""
+    for option, there in given.items():
+        if there:
+            raise SolidgearError(f"{option} is for {what}")
 
 
 def _value(text: str):

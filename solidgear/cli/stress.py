@@ -10,9 +10,9 @@ from typing import Annotated
 
 import typer
 
-from solidgear.cli.acting import Acting, AtRestFile, load_in_words, refuse
+from solidgear.cli.acting import Acting, AtRestFile, load_in_words
 from solidgear.cli.app import NOT_REACHED, Group, caution, command, say
-from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, relative
+from solidgear.cli.shared import BY_MODEL, MODEL, Choice, Shown, refuse, relative
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.report.folder import held
 from solidgear.report.stress_files import headline, sentences, shaft_tables, write_stress
@@ -95,8 +95,8 @@ def stress(
     torques = dict(map(_torque, drive or ()))
     with held(out) if out else nullcontext(), run.progress() as progress:
         if isinstance(given, tuple):
-            told = {"--drive": drive[0] if drive else None}
-            refuse(told, "a shaft", file, "springs of engine and load bring its torques")
+            instead = "springs of engine and load bring its torques"
+            refuse({"--drive": bool(drive)}, f"a shaft, and {file} is none: {instead}")
             found = stress_of_train(*given, str(fidelity), asked, progress)
             force = shown.text(found.under["mesh_force"], "N", 5)
             lead = f"At {given[1].label}: mesh force {force} along the line of action"

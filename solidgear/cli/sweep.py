@@ -15,8 +15,7 @@ from solidgear.cli.app import Progress as Steps
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.settled import ended, over_the_sweep
-from solidgear.cli.shaft_settings import of_shafts
-from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, relative
+from solidgear.cli.shared import AUTO, MODEL, Chosen, Run, options, refuse, relative
 from solidgear.cli.sweep_rows import (
     FEW,
     Rows,
@@ -29,7 +28,7 @@ from solidgear.cli.sweep_rows import (
     rows_there,
     solved,
 )
-from solidgear.cli.train_options import Pair, Reduced, refuse_given
+from solidgear.cli.train_options import Pair, Reduced, of_shafts
 from solidgear.errors import SolidgearError
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
@@ -89,7 +88,8 @@ def sweep(
             "--tol": model.tol is not None,
             "--tolerance": tolerance != TOLERANCE,
         }
-        refuse_given(of_shaft, scene, "its models are those of --pinion and --gear")
+        instead = "its models are those of --pinion and --gear"
+        refuse(of_shaft, f"one shaft, and {scene} is a train: {instead}")
         _sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
         return
     of_train = {
@@ -101,9 +101,7 @@ def sweep(
         "--every-point": told.every_point,
         **reduced.given,
     }
-    for option, there in of_train.items():
-        if there:
-            raise SolidgearError(f"{option} is for a train, and {scene} is the scene of one shaft")
+    refuse(of_train, f"a train, and {scene} is the scene of one shaft")
     of_bearings = None if rows.of_files or told.chart else of_bearings_alone(vary or [])
     if of_bearings is not None:
         _sweep_shaft(scene, of_bearings, rows, model, tolerance, run)

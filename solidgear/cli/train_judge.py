@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from solidgear.cli.app import caution, command, say
-from solidgear.cli.shared import Shown
-from solidgear.cli.train_options import Reduced, TrainFile, mix, refuse_given
+from solidgear.cli.shared import Shown, refuse
+from solidgear.cli.train_options import Reduced, TrainFile, mix
 from solidgear.report.folder import held
 from solidgear.report.table import Column, Table, text
 from solidgear.report.train_page import write_train
@@ -53,7 +53,7 @@ def compare_train(
     instead = (
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
-    refuse_given(given, train, instead)
+    refuse(given, f"one shaft, and {train} is a train: {instead}")
     _judged(train, out, Reduced(), run, renders=renders)
 
 

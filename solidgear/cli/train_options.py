@@ -10,8 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.cli.app import Group
-from solidgear.cli.shaft_settings import ShaftSettings, of_shafts
-from solidgear.cli.shared import MODEL
+from solidgear.cli.shared import MODEL, options_by_name
 from solidgear.errors import SceneError, SolidgearError, listed, show
 from solidgear.ladder.registry import LADDER
 from solidgear.scene.toml_file import parse
@@ -21,6 +20,7 @@ from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.studies.loading import load_train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import at_point
+from solidgear.studies.train.shaft import checked_rung
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -30,6 +30,14 @@ MODELS = (
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
+ShaftSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
+        "pinion.order=3, gear.elements=40; solidgear options lists them.",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -123,13 +131,7 @@ class Pair(Group):
         return self.of(train.shafts, train.name)
 
     def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
-        """Models of shafts, of a train by that name.
-
-        Raises
-        ------
-        SolidgearError
-            For a shaft that it does not have.
-        """
+        """Models of shafts, of a train by that name; refuses a shaft that it does not have."""
         given = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
         for text in self.shafts or []:
             side, equals, model = text.partition("=")
@@ -194,23 +196,18 @@ class Driven(Mix):
         return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
 
 
-def refuse_given(given: dict[str, bool], train: Path, instead: str) -> None:
-    """Refuse options that speak of one shaft.
-
-    Parameters
-    ----------
-    given : dict of str to bool
-        Such options, and whether they were given.
-    instead : str
-        What to do for a train, in words.
-
-    Raises
-    ------
-    SolidgearError
+def of_shafts(
+    pairs: list[str] | None, models: Mapping[str, str]
+) -> dict[str | tuple[str, str], dict[str, Any]]:
+    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts; of a lumped
+    or rigid shaft those of the body it comes from.
     """
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(f"{option} is for one shaft, and {train} is a train: {instead}")
+    out: dict[str | tuple[str, str], dict[str, Any]] = {}
+    given = options_by_name(pairs, models, "side", "pinion.order=3")
+    for side, options in given.items():
+        kind, base = checked_rung(models[side])
+        out[side, base or kind] = LADDER[base or kind].checked(options)
+    return out
 
 
 def _harmonics(text: str) -> tuple[int, ...]:

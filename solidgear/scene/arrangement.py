@@ -23,7 +23,6 @@ class Pair(NamedTuple):
 
     Attributes
     ----------
-    arrangement : {'back_to_back', 'face_to_face'}
     bearings : tuple of int
         Places of both in the list of a file.
     """
@@ -68,22 +67,8 @@ Arrangement = Annotated[Words, BeforeValidator(_words)]
 
 
 def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
-    """Pairs that the words of a file tell.
-
-    Parameters
-    ----------
-    tables : sequence of mapping
-        Of its bearings.
-
-    Returns
-    -------
-    list of Pair or None
-        None where catalogue data are wrong by themselves, so that words cannot be judged.
-
-    Raises
-    ------
-    SceneError
-        Names of bearings that are no such pair, or a word alone where there is no only pair.
+    """Pairs that the words of a file tell of the tables of its bearings; None where catalogue data
+    are wrong by themselves, so that words cannot be judged.
     """
     if given and any(_wrong(table) - {("holds",)} for table in tables):
         return None

@@ -9,18 +9,8 @@ from typing import Any
 def attached_stations(
     stations: Iterable[Any], attachments: Sequence[str] | None = None
 ) -> Iterator[tuple[Any, str]]:
-    """Stations with the ways in which a body is to attach them, one port each.
-
-    Parameters
-    ----------
-    stations : iterable of Port, Bearing or PointMass
-    attachments : sequence of str, optional
-        Ways in place of their own; the middle of an end face is a section all the same.
-
-    Yields
-    ------
-    station : Port, Bearing or PointMass
-    attachment : {'average', 'rigid', 'section'}
+    """Stations, each with every way in which a body is to attach it: its own, or those given; the
+    middle of an end face is a section all the same.
 
     Examples
     --------

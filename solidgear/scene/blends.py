@@ -34,7 +34,6 @@ class Corner:
         Kind is fillet or chamfer.
     y, r : float
         Of the sharp edge, m.
-    surface : {'outer', 'bore'}
     root : bool
         Material is added; at a rim it is taken away.
     owner : int
@@ -45,12 +44,6 @@ class Corner:
         +1 if the plane face beside the edge lies at larger radius, -1 otherwise.
     axial, radial : float
         Extent along the shaft and across it, m.
-
-    Examples
-    --------
-    >>> corner = Corner("f", "fillet", 0.1, 0.02, "outer", True, 1, 1, 1, 0.004, 0.004)
-    >>> corner.on_face, corner.on_cylinder
-    ((0.024, 0.1), (0.02, 0.10400000000000001))
     """
 
     name: str
@@ -168,12 +161,8 @@ class _Blend(Placed):
         raise NotImplementedError
 
     def corner(self, segments: Sequence[Segment]) -> Corner:
-        """Its edge on a shaft.
-
-        Raises
-        ------
-        SceneError
-            Where there is no such edge, or it cannot be rounded; the path is that of a field.
+        """Its edge on a shaft; refuses, under one of its fields, where there is none or it cannot
+        be rounded.
         """
         outer = self.surface == "outer"
         i, low, high = self._place(segments)
@@ -251,10 +240,8 @@ class Fillet(_Blend):
 
     Attributes
     ----------
-    name : str
     y : float
         Place of the edge, m: a step, or an end face.
-    surface : {'outer', 'bore'}
     edge : {'root', 'rim'} or None
         Root adds material in the corner of a step, rim rounds off its edge; by default the root,
         and the rim at an end face.

@@ -160,7 +160,6 @@ class BodyFile(Model):
 
     Attributes
     ----------
-    kind : {'step', 'mesh', 'block'}
     name : str
         Of the file, without its folder; of a block its edges in words.
     path : str
@@ -200,11 +199,6 @@ class BodyFile(Model):
         Meshes of the same part, coarse to fine, of which it is the finest.
     patches : tuple of Patch
         Named faces of a body without an axis.
-
-    Raises
-    ------
-    SceneError
-        A field that is missing.
 
     Examples
     --------

@@ -65,11 +65,6 @@ class BearingLoad(Model):
     ----------
     thx, thz : float or None
         Moments; where none is given a bearing's ring is held against tilting.
-
-    Examples
-    --------
-    >>> BearingLoad(y="2 kN", z=500).y
-    2000.0
     """
 
     x: Newtons = 0.0
@@ -90,13 +85,7 @@ class BearingLoad(Model):
 
 
 class BearingDisplacement(Model):
-    """Displacement of the inner ring against the outer one, m and rad.
-
-    Examples
-    --------
-    >>> BearingDisplacement(z="5 um").six
-    [0.0, 0.0, 5e-06, 0.0, 0.0, 0.0]
-    """
+    """Displacement of the inner ring against the outer one, m and rad."""
 
     x: Length = 0.0
     y: Length = 0.0
@@ -147,13 +136,7 @@ def _preload(value: Any) -> Any:
 
 
 def arrangement_word(value: Any) -> Any:
-    """The word of a catalogue for an arrangement as people write it.
-
-    Examples
-    --------
-    >>> arrangement_word("O"), arrangement_word("face to face"), arrangement_word("tandem")
-    ('back_to_back', 'face_to_face', 'tandem')
-    """
+    """The word of a catalogue for an arrangement as people write it."""
     if not isinstance(value, str):
         return value
     plain = re.sub(r"[\s-]+", "_", value.strip().lower())

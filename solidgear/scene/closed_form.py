@@ -19,12 +19,7 @@ if TYPE_CHECKING:
 
 
 def volume_of(outline: Outline) -> float:
-    """Volume of a shaft, closed form.
-
-    Returns
-    -------
-    float
-        [m^3]
+    """Volume of a shaft, closed form, m^3.
 
     Examples
     --------
@@ -60,12 +55,7 @@ class MassProperties:
 
 
 def mass_properties(outline: Outline[Segment]) -> MassProperties:
-    """Mass, centre and inertia of a shaft, by exact integration.
-
-    Parameters
-    ----------
-    outline : Outline
-        Of segments with a material.
+    """Mass, centre and inertia of a shaft of segments with a material, by exact integration.
 
     Examples
     --------

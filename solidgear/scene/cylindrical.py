@@ -19,6 +19,7 @@ from math import acos, atan, cos, isclose, pi, tan
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene.gears import Member
@@ -30,8 +31,6 @@ WORDS = {
     "gear": ("module", "helix_angle", "profile_shift"),
     "mesh": ("centre_distance",),
 }
-#: numbers of both wheels, typed with four digits, are the same
-TYPED = 1e-3
 
 
 @dataclass(frozen=True)
@@ -124,12 +123,7 @@ def _of_involute(value: float) -> float:
 
 
 def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[SceneError]:
-    """Problems of the words of cylindrical gears among themselves and with those of bevel gears.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of the words of cylindrical gears among themselves and with those of bevel gears."""
     tables = {"pinion": pinion, "gear": gear, "mesh": mesh}
     if mesh.shaft_angle:
         for table, keys in WORDS.items():
@@ -161,11 +155,6 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
 def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     """Fields of a train of parallel shafts as bevel gears have them: pitch radii and angles where the
     wheels roll on each other; none for other shafts.
-
-    Raises
-    ------
-    SceneError
-        As :func:`working`.
     """
     if mesh.shaft_angle:
         return {}

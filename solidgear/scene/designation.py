@@ -194,12 +194,6 @@ class Boundary(NamedTuple):
 def boundary(designation: str) -> Boundary:
     """Kind and boundary dimensions of a bearing by its designation, such as ``6208-2RS1/C3``,
     ``7210 BEP``, ``NU 206``, ``32018 X`` or ``BK0810``.
-
-    Examples
-    --------
-    >>> found = boundary("NU 206 ECP/C3")
-    >>> found.kind, found.bore, found.outer_diameter, found.clearance, found.ignored
-    ('cylindrical', 0.03, 0.062, 'C3', 'P')
     """
     plain = re.sub(r"[\s/-]", "", designation.upper())
     for kind, pattern, table, _ in _WRITTEN:

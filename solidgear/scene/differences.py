@@ -69,18 +69,8 @@ class Difference:
 
 
 def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference, ...]:
-    """Entries in which two files differ, in the order of the first.
-
-    Parameters
-    ----------
-    a, b : str or path
-        TOML files of the same kind, trains or scenes. What is asked of the shafts of a train alone
-        is left out.
-
-    Raises
-    ------
-    SceneError
-        For a file that cannot be read.
+    """Entries in which two TOML files of a kind differ, trains or scenes, in the order of the
+    first; what is asked of the shafts of a train alone is left out.
 
     Examples
     --------

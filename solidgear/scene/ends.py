@@ -25,14 +25,6 @@ Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
     hair; the same ones where there are none.
-
-    Examples
-    --------
-    >>> from solidgear import Bearing, Segment
-    >>> shaft = [Segment.cylinder("shaft", length=0.3, diameter=0.04)]
-    >>> (seat,) = snapped([Bearing(name="A", y=0.0481584, seat_width=0.0963167, stiffness={})], shaft)
-    >>> seat.lo, seat.y  # 50 nm beside the face as written
-    (0.0, 0.048158375)
     """
     marks = [segments[0].y0, *(s.y1 for s in segments)]
     return tuple(_snapped(station, marks) for station in stations)

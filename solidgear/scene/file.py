@@ -15,9 +15,9 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BeforeValidator, model_validator
 
 from solidgear.errors import SceneError
+from solidgear.scene import rules
 from solidgear.scene.arrangement import Arrangement, Pair, facing, pairs
 from solidgear.scene.ask import Ask
-from solidgear.scene.between import problems_between
 from solidgear.scene.blends import BLENDS
 from solidgear.scene.body_file import BodyTable, with_port
 from solidgear.scene.catalogue import BearingLoad
@@ -30,24 +30,22 @@ from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.places import Placed, Places
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.recognised import Reader, Recognised, unread, with_seats
-from solidgear.scene.rules import (
-    MOST_BEARINGS,
-    MOST_MASSES,
-    MOST_SEGMENTS,
-    no_such_point,
-    question_problems,
-    shaft_problems,
-    too_many,
-)
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
-from solidgear.scene.toml_file import FileOrder, describes_train, name_of, parse, place_of
+from solidgear.scene.toml_file import (
+    FileOrder,
+    describes_train,
+    name_of,
+    of_tables,
+    parse,
+    place_of,
+)
 from solidgear.scene.typed import Gathered, Holds, Model
 from solidgear.scene.uncertain import stated
 
 Table = dict[str, Any]
 #: entries of the lists of a file
-MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
+MOST = {"segment": rules.MOST_SEGMENTS, "bearing": rules.MOST_BEARINGS, "mass": rules.MOST_MASSES}
 
 
 class _Ask(Ask):
@@ -109,31 +107,8 @@ class _PartFile(_File):
 
 
 def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
-    """Read and resolve a scene file.
-
-    Parameters
-    ----------
-    path : str or path
-        A TOML file; ``geometry/pinion_overhung.toml`` describes the format.
-    part_of : callable
-        Reads the part that a [body] names, and recognises the body of revolution inside it.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    SceneError
-        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
-        what would be right: one line for each problem, in the order of the file.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/pinion_overhung.toml")
-    >>> [bearing.name for bearing in scene.bearings], scene.port.name
-    (['1', '2'], 'pinion')
+    """A scene file as it is written, bearings of catalogue data without their stiffness; `part_of`
+    reads the part that a [body] names.
     """
     where = os.fspath(path)
     return scene_of(parse(where), where, part_of)
@@ -149,12 +124,9 @@ def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
     try:
         return _Reading(dict(raw), where, part_of).scene()
     except SceneError as error:
-        found = error.problems
-        if isinstance(raw.get("port"), Mapping):  # one [port] is a table and not a list of one
-            found = tuple(one.located(None, path=_of_the_one_port(one.path)) for one in found)
-        problems = {
-            (one.path, one.reason): one for one in found
-        }  # both ends of a cylinder are one diameter
+        found = of_tables(error, raw).problems
+        # both ends of a cylinder are one diameter
+        problems = {(one.path, one.reason): one for one in found}
         order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
         raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
@@ -164,10 +136,6 @@ def _drop_tag(path: tuple) -> tuple:
     """pydantic puts the kind of a segment into its location; the file has no such key."""
     tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
     return (*path[:2], *path[3:]) if tagged else path
-
-
-def _of_the_one_port(path: tuple) -> tuple:
-    return ("port", *path[2:]) if path[:1] == ("port",) and path[1:2] == (0,) else path
 
 
 class _Row(NamedTuple):
@@ -251,7 +219,7 @@ class _Reading:
         for key, most in MOST.items():
             if isinstance(raw.get(key), list) and len(raw[key]) > most:
                 what = "masses" if key == "mass" else f"{key}s"
-                raise SceneError(too_many(what, len(raw[key]), most), path=(key,))
+                raise SceneError(rules.too_many(what, len(raw[key]), most), path=(key,))
         try:
             return kind(**with_port(raw)), set()
         except SceneError as error:
@@ -297,7 +265,7 @@ class _Reading:
         else:
             laid = lay_out(self.file.segment, self._material(), self.places)
             segments, path_of = laid.segments, laid.path
-        found = shaft_problems(segments)
+        found = rules.shaft_problems(segments)
         if found:
             raise SceneError.of(one.located(None, path=path_of(one.path)) for one in found)
         return segments
@@ -351,7 +319,7 @@ class _Reading:
         known = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
         named = not any(one.path[0] == "port" for one in self.problems)
         if ports and named and wanted is not None and wanted not in known:
-            reason = no_such_point(wanted, known)
+            reason = rules.no_such_point(wanted, known)
             self.problems.append(SceneError(reason, path=("ask", "port")))
         main = [row for row, name in zip(ports, known) if name == wanted][:1]
         return main + [row for row in ports if row not in main]
@@ -363,9 +331,9 @@ class _Reading:
         whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
         things = {key: [row.thing for row in of] for key, of in sound.items()}
-        found = [*problems_between(self.segments, **things, whole=whole)]
+        found = [*rules.problems_between(self.segments, **things, whole=whole)]
         if whole and things["ports"]:
-            found += question_problems(things["ports"], self.file.ask.quantities)
+            found += rules.question_problems(things["ports"], self.file.ask.quantities)
         self.problems += [one.located(None, path=_in_file(one.path, sound)) for one in found]
 
 

@@ -7,14 +7,14 @@ A housing has no mass here.  A motion for which no stiffness is written is *rigi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import model_validator
 
 from solidgear.errors import SceneError
 from solidgear.frames import DOF_NAMES, shift
-from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, checked_matrix, stiffness_entries
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, Matrix, stiffness_entries
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.rules import ONE_HOUSING
 from solidgear.scene.typed import Model
@@ -27,13 +27,7 @@ OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)
 
 
 def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
-    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them.
-
-    Examples
-    --------
-    >>> rigid_motions({"kxx": 1e8, "kzz": 1e8})
-    ('y', 'thx', 'thy', 'thz')
-    """
+    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them."""
     rigid = [k for k, name in enumerate(OWN) if name not in entries]
     for name in entries:
         i, j, _ = STIFFNESS_NAMES.get(name, (-1, -1, ""))
@@ -72,7 +66,7 @@ class Elastic(Model):
     [1.0, 1.0, 1.0]
     """
 
-    matrix: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    matrix: Matrix
     rigid: tuple[str, ...] = ()
 
     def __init__(self, /, **data: Any):
@@ -121,13 +115,8 @@ class Elastic(Model):
         return self.with_changes(matrix=np.array(self.matrix) * factor)
 
     def beneath_one(self, stiffness: np.ndarray, what: str = "the housing") -> np.ndarray:
-        """(6, 6) stiffness of a bearing that stands in it, both at one point.
-
-        Parameters
-        ----------
-        stiffness : (6, 6) ndarray
-        what : str
-            That it is called in an error.
+        """(6, 6) stiffness of a bearing that stands in it, both at one point; `what` it is called
+        in an error.
         """
         return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
 
@@ -234,19 +223,13 @@ class Housing(Placed, Elastic):
         return in_series(stiffness, np.vstack([self.moves(y) for y in places]), self.own)
 
 
-class _AlongAxis(Along):
-    """A spring in place of a housing that moves along the axis only."""
-
-    axial: AxialSpring
-
-
 def housing_of(table: Mapping[str, Any], places: Places) -> Housing | float | None:
     """Support of all bearings by the [housing] of a file: a housing, or a spring along the axis
     (N/m); None where its place is not known.
     """
     if "axial" not in table or {"stiffness", "matrix"} & set(table):
         return Housing.read(table, places)
-    spring = _AlongAxis(**table)
+    spring = Housing.Words(**table)
     nowhere = "belongs to a stiffness; along the axis a spring has no place"
     spring.refuse(nowhere, "position", "from_")
     return spring.axial

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from solidgear.scene.gears import Member
     from solidgear.scene.train import Joint, Train
 
-#: a ratio that is typed with four digits may differ from that of the teeth by this
-RATIO_TYPED = 1e-3
 #: names that mean something else in a file, in a result or in an order
 RESERVED = (
     "caution cautions cause contact coordinates damping error facts faults files free ground kept "
@@ -42,12 +40,7 @@ class PerTurn(float):
 
 
 def layout_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of names, of meshes between shafts that are not there, and of shafts left out.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of names, of meshes between shafts that are not there, and of shafts left out."""
     for name in train.shafts:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
             reason = f"a shaft cannot be called {name!r}; give it another name, without dots"

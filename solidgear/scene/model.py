@@ -16,8 +16,8 @@ from pydantic import model_validator
 
 from solidgear.display import Displayed
 from solidgear.errors import SceneError
+from solidgear.scene import rules
 from solidgear.scene.ask import Ask
-from solidgear.scene.between import problems_between
 from solidgear.scene.blends import Blend, Corner
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
@@ -30,7 +30,6 @@ from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.patches import off_patches
 from solidgear.scene.plain_data import plain_data
 from solidgear.scene.point_mass import PointMass
-from solidgear.scene.rules import ONE_HOUSING, no_such_point, question_problems, shaft_problems
 from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.typed import Model
 from solidgear.scene.uncertain import Uncertain
@@ -111,12 +110,12 @@ class Scene(Displayed, Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
-        problems = shaft_problems(self.segments)
+        problems = rules.shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, snapped(getattr(self, name), self.segments))
             object.__setattr__(self, "port", snapped([self.port], self.segments)[0])
-            problems += problems_between(
+            problems += rules.problems_between(
                 self.segments,
                 ports=self.ports,
                 bearings=self.bearings,
@@ -124,9 +123,9 @@ class Scene(Displayed, Model):
                 features=self.features,
                 blends=self.blends,
             )
-        problems += question_problems(self.ports, self.ask.quantities)
+        problems += rules.question_problems(self.ports, self.ask.quantities)
         if self.housing is not None and self.housing_axial is not None:
-            problems.append(SceneError(ONE_HOUSING, path=("housing_axial",)))
+            problems.append(SceneError(rules.ONE_HOUSING, path=("housing_axial",)))
         if problems:
             raise SceneError.of(problems)
         return self
@@ -391,7 +390,7 @@ class Scene(Displayed, Model):
         """
         known = {port.name: port for port in self.ports}
         if name not in known:
-            raise SceneError(no_such_point(name, known), field="port")
+            raise SceneError(rules.no_such_point(name, known), field="port")
         first = known.pop(name)
         return self.with_changes(port=first, further_ports=tuple(known.values()))
 

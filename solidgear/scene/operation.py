@@ -1,10 +1,12 @@
-"""Operating points of a train: its torque and speed, and what else loads the shafts there."""
+"""Operating points of a train: its torque and speed, what else loads the shafts there, and problems of
+what drives it and of how it runs.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import fsum, isclose, pi
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -12,13 +14,15 @@ from solidgear.errors import SceneError, listed, nearest
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.catalogue import BearingLoad
 from solidgear.scene.typed import Model
-from solidgear.scene.units import Speed, Torque
+from solidgear.scene.units import TYPED, Speed, Torque
+
+if TYPE_CHECKING:
+    from solidgear.scene.model import Scene
+    from solidgear.scene.train import Train
 
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
 #: m/s^2, standard gravity (ISO 80000-3)
 GRAVITY = 9.80665
-#: torques, speeds and shares that are typed with four digits may differ by this
-TYPED = 1e-3
 #: operating points of one train
 MOST_POINTS = 1000
 
@@ -129,71 +133,101 @@ Operation = Annotated[
 ]
 
 
-def operation_problems(
-    points: Sequence[OperatingPoint],
-    turns: Mapping[str, float],
-    torque_turns: Mapping[str, float],
-    ends: tuple[str, str],
-    ports: Mapping[str, Sequence[str]],
-) -> Iterator[SceneError]:
-    """Problems of operating points among themselves, against the teeth, and of forces nowhere.
-
-    Parameters
-    ----------
-    turns, torque_turns : mapping of str to float
-        Of all shafts in the same time, and of those that the torque passes over the share of the power
-        that each carries.
-    ends : (str, str)
-        Shafts where it comes in and goes out.
-    ports : mapping of str to sequence of str
-        Ports of each shaft.
-
-    Yields
-    ------
-    SceneError
-    """
-    for k, point in enumerate(points):
-        if point.of not in torque_turns:
-            reason = f"is no shaft that the torque passes; write one of {listed(torque_turns)}"
-            hint = nearest(point.of, torque_turns)
-            yield SceneError(reason + hint, path=("operation", k, "of"))
-            continue
-        yield from _against_teeth(point, turns, torque_turns, ends, k)
-        for i, force in enumerate(point.force):
-            side, _, port = force.at.partition(".")
-            if port not in ports.get(side, ()):
-                known = ", ".join(f"{s}.{p}" for s, names in ports.items() for p in names)
-                path = ("operation", k, "force", i, "at")
-                yield SceneError(f"names no port of a shaft; known here: {known}", path=path)
-    yield from _duty(points)
+def spring_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of torsional springs: ports that are not there, places off their shafts."""
+    for name, rotor in train.rotors.items():
+        spring, scene = rotor.spring, train.shafts[rotor.shaft].scene
+        ports = [s.name for s in scene.stations]
+        key, word = ("at", spring.at) if spring.at is not None else ("from", spring.from_)
+        known = ports if key == "at" else ["start", "end", *ports]
+        if word not in known:
+            yield SceneError(
+                f"unknown port of the {rotor.shaft}'s shaft{nearest(word, known)}; "
+                f"known here: {listed(known)}",
+                path=(*train.rotor_path(name), "spring", key),
+            )
+        elif key == "from" and word in ports and word in ("start", "end"):
+            yield SceneError(
+                f"is the {word} of the {rotor.shaft}'s shaft, and a station is called so as "
+                "well; give the station another name",
+                path=(*train.rotor_path(name), "spring", key),
+            )
+        elif key == "from":
+            yield from _on_the_shaft(train, name, rotor.shaft)
 
 
-def _against_teeth(
-    point: OperatingPoint,
-    turns: Mapping[str, float],
-    torque_turns: Mapping[str, float],
-    ends: tuple[str, str],
-    k: int,
-) -> Iterator[SceneError]:
+def _on_the_shaft(train: Train, rotor: str, side: str) -> Iterator[SceneError]:
+    try:
+        train.shaft(side)
+    except SceneError as error:
+        reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
+        yield SceneError(reason, path=(*train.rotor_path(rotor), "spring", "position"))
+
+
+def running_problems(train: Train) -> Iterator[SceneError]:
+    """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
+    if not train.operation:
+        return
+    if not any(flow is None or flow for flow in train.flows.values()):
+        reason = (
+            f"engine and load both turn with the {train.reference}: no mesh carries their torque"
+        )
+        yield SceneError(reason, path=(*train.rotor_path(train.loads[0]), "shaft"))
+        return
+    for k, point in enumerate(train.operation):
+        yield from (one.located(None, prefix=("operation", k)) for one in _point(train, point))
+    yield from _duty(train.operation)
+    for side, own in train.shafts.items():
+        scene = own.scene
+        held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
+        if held:
+            yield SceneError(
+                f"a torque has to turn the {side}'s shaft, and {listed(held)} of its scene "
+                "holds its rotation: leave kthy out, or hold it in another way than clamped",
+                path=("operation",),
+            )
+        yield from _speeds(train, side, scene)
+
+
+def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
+    """Problems of an operating point against the teeth, and of forces nowhere."""
+    if point.of not in train.torque_turns:
+        known = train.torque_turns
+        reason = f"is no shaft that the torque passes; write one of {listed(known)}"
+        yield SceneError(reason + nearest(point.of, known), path=("of",))
+        return
+    yield from _against_teeth(train, point)
+    ports = {side: [s.name for s in own.scene.stations] for side, own in train.shafts.items()}
+    for i, force in enumerate(point.force):
+        side, _, port = force.at.partition(".")
+        if port not in ports.get(side, ()):
+            known_ports = ", ".join(f"{s}.{p}" for s, names in ports.items() for p in names)
+            reason = f"names no port of a shaft; known here: {known_ports}"
+            yield SceneError(reason, path=("force", i, "at"))
+
+
+def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Torque and speed of the other end that are not those of the teeth."""
-    other = ends[0] if point.of == ends[1] else ends[1]
-    torque, speed = point.torque_of(other, torque_turns), point.speed_of(other, turns)
-    given, ratio = point.output_torque, turns[ends[0]] / turns[ends[1]]
+    first, last = train.reference, train.load.shaft
+    other = first if point.of == last else last
+    torque, speed = point.torque_of(other, train.torque_turns), point.speed_of(other, train.turns)
+    given = point.output_torque
     if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
         yield SceneError(
             f"{point.torque:.6g} N m on the {point.of} are balanced by {abs(torque):.6g} N m on "
-            f"the {other} (teeth {ratio:.4f} to 1, no losses); correct one, or leave it out",
-            path=("operation", k, "output_torque"),
+            f"the {other} (teeth {train.ratio:.4f} to 1, no losses); correct one, or leave it out",
+            path=("output_torque",),
         )
     if point.output_speed is None:
         return
     if speed is None:
-        reason = "needs a speed to be held against; write speed as well"
-        yield SceneError(reason, path=("operation", k, "output_speed"))
+        yield SceneError(
+            "needs a speed to be held against; write speed as well", path=("output_speed",)
+        )
     elif not isclose(point.output_speed, speed, rel_tol=TYPED):
         yield SceneError(
             f"the teeth turn the {other} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
-            path=("operation", k, "output_speed"),
+            path=("output_speed",),
         )
 
 
@@ -213,3 +247,19 @@ def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
             "sum to 1",
             path=("operation", 0, "share"),
         )
+
+
+def _speeds(train: Train, side: str, scene: Scene) -> Iterator[SceneError]:
+    """Speeds that bearings of a shaft name and that it does not have."""
+    for bearing in scene.bearings:
+        own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
+        for k, point in enumerate(train.operation):
+            speed = point.speed_of(side, train.turns) if point.of in train.turns else None
+            if own and speed is not None and not isclose(own, speed, rel_tol=TYPED):
+                yield SceneError(
+                    f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
+                    f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "
+                    "rpm; correct one, or leave the bearing's speed out",
+                    path=("operation", k, "speed"),
+                )
+                break

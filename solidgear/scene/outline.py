@@ -70,7 +70,6 @@ class Edge:
     ----------
     joint : int
         Segment that begins there.
-    surface : {'outer', 'bore'}
     y : float
         m.
     before, after : float
@@ -131,7 +130,6 @@ class Outline(Generic[S]):
 
     Parameters
     ----------
-    segments : sequence of Segment or Frustum
     corners : sequence of Corner
         Edges with fillets and chamfers.
 

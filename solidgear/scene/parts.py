@@ -35,12 +35,6 @@ class Strength(Model):
     ------
     SceneError
         A yield point above the ultimate strength, or a value that is not positive.
-
-    Examples
-    --------
-    >>> from solidgear.scene import Strength
-    >>> Strength(yield_point="650 MPa", ultimate="900 MPa").ultimate
-    900000000.0
     """
 
     yield_point: Stress

@@ -19,17 +19,8 @@ Keys = tuple[str | int, ...]
 
 
 def keys_of(path: str, tables: Tables) -> Keys:
-    """Keys and places that a path stands for.
-
-    Parameters
-    ----------
-    tables : mapping
-        Of a file, as they are written.
-
-    Raises
-    ------
-    SceneError
-        For a name or number that a list does not have, or a path that ends at a table.
+    """Keys and places that a path stands for, in the tables of a file as they are written; refuses
+    a name or number that a list does not have, and a path that ends at a table.
 
     Examples
     --------

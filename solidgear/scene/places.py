@@ -44,7 +44,6 @@ class Places:
         segments are in doubt themselves.
     at : dict of str to float
         Those whose place is known, m.
-    segments : list of str
     surface : dict of str to (float, float)
         Ends of a segment's surface that can carry a port, m.
     attachment : str

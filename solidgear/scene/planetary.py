@@ -84,7 +84,6 @@ class PlanetTable(Round):
 
     Attributes
     ----------
-    teeth : int
     pin : Seat or None
         Between planet and carrier.
     """
@@ -117,7 +116,6 @@ class PlanetMeshes(Model):
         Normal to the tooth, at the reference cylinder, rad.
     transmission_error : ErrorTable
         Of each mesh; a single number is a constant amplitude, m.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     sun_stiffness: MeshSpring
@@ -137,7 +135,6 @@ class Planetary(Model):
         those of the stage.
     carrier : str
         A shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there.
-    ring_teeth : int
     ratio : float or None
         Turns of the sun in one of the carrier, where a source gives it.
     planets : int
@@ -177,8 +174,6 @@ class PlanetMesh:
     ----------
     name : str
         ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the first.
-    stage : Stage
-    mate : str
     planets : tuple of int
         Counted from 1.
     """
@@ -225,10 +220,7 @@ class Stage:
 
     Attributes
     ----------
-    called : str
     shafts, ports : (str, str)
-    sun : Gear
-    table : Planetary
     """
 
     called: str
@@ -249,12 +241,8 @@ class Stage:
 
     @cached_property
     def teeth(self) -> PlanetaryTeeth:
-        """Its teeth, transverse.
-
-        Raises
-        ------
-        SceneError
-            For teeth that do not mesh or assemble, planets that overlap, or another ratio.
+        """Its teeth, transverse; refuses those that do not mesh or assemble, planets that overlap,
+        or another ratio.
         """
         assert self.sun.module is not None
         table, helix = self.table, self.sun.helix_angle or 0.0
@@ -309,12 +297,7 @@ def stage_of(train: Train, name: str) -> Stage:
 
 
 def stage_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of planetary stages: no such shafts or gears, names, teeth that do not go together.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of planetary stages: no such shafts or gears, names, teeth that do not go together."""
     for name, table in train.planetary.items():
         path = ("planetary", name)
         if "." in name or not name.strip() or name in train.shafts or name in train.rotors:
@@ -382,12 +365,8 @@ def turned(train: Train, name: str, by: float) -> Train:
 
 
 def named_pair(train: Train, word: str | None) -> Pair:
-    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`.
-
-    Raises
-    ------
-    SolidgearError
-        Of a mesh of planets, whose teeth have no backlash.
+    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`;
+    refuses one of planets, whose teeth have no backlash.
     """
     found = train.named_mesh(word)
     if isinstance(found, PlanetMesh):

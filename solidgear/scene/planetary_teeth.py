@@ -8,9 +8,8 @@ from math import atan, cos, isclose, isfinite, pi, radians, sin, tan
 import numpy as np
 
 from solidgear.errors import SceneError
+from solidgear.scene.units import TYPED
 
-#: a ratio that is typed with four digits may differ from that of the teeth by this
-RATIO_TYPED = 1e-3
 #: of a tooth; an azimuth that is typed with six digits is that far from where a planet fits
 FITS = 1e-3
 #: tip of a tooth beyond its pitch circle, modules
@@ -79,9 +78,7 @@ class PlanetaryTeeth:
             raise SceneError("a planetary stage needs at least one planet", path=("planets",))
         self._assembles()
         self._side_by_side()
-        if self.ratio is not None and not isclose(
-            self.ratio, self.speed_ratio, rel_tol=RATIO_TYPED
-        ):
+        if self.ratio is not None and not isclose(self.ratio, self.speed_ratio, rel_tol=TYPED):
             raise SceneError(
                 f"a ratio of {self.ratio:g} is not that of the teeth: "
                 f"1 + {self.ring}/{self.sun} = {self.speed_ratio:.6g}",

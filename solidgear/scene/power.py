@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError
 from solidgear.scene.layout import outward
-from solidgear.scene.operation import TYPED
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
@@ -31,8 +31,8 @@ def shares_of(train: Train) -> dict[str, float]:
 
 
 def flows_of(train: Train) -> dict[str, float | None]:
-    """Share of the power that every mesh or stage passes from its first shaft to its second; None in a
-    loop.
+    """Share of the power that every mesh or stage passes from its first shaft to its second, by the
+    tree of them; None where a loop of meshes divides it by stiffness.
     """
     brought = dict.fromkeys(train.shafts, 0.0)
     for name, share in shares_of(train).items():
@@ -66,12 +66,7 @@ def carried_of(train: Train) -> dict[str, float]:
 
 
 def share_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of how a torque divides among engines or loads.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of how a torque divides among engines or loads."""
     for kind, names in (("engine", train.engines), ("load", train.loads)):
         given = [train.rotors[name].share for name in names]
         path = (*train.rotor_path(names[0]), "share")

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene.bearing_stiffness import matrix_or_none, one_stiffness
+from solidgear.scene.bearing_stiffness import Matrix, one_stiffness
 from solidgear.scene.catalogue import Catalogue
 from solidgear.scene.housing import Elastic, elastic
 from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
@@ -47,9 +47,6 @@ def _few_springs(springs: Any) -> Any:
             "write their sum: 1/k = 1/k1 + 1/k2 + ..."
         )
     return springs
-
-
-AxialSeries = Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)]
 
 
 class Bearing(Placed):
@@ -122,9 +119,9 @@ class Bearing(Placed):
     name: str
     y: Position
     seat_width: PositiveLength
-    matrix: Annotated[tuple[tuple[float, ...], ...] | None, BeforeValidator(matrix_or_none)] = None
+    matrix: Matrix | None = None
     catalogue: Catalogue | None = None
-    axial_series: AxialSeries = ()
+    axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)] = ()
     housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
     attachment: Attachment = "average"
     status: Status = "assumed"
@@ -256,10 +253,9 @@ class Bearing(Placed):
             If it is to come from catalogue data that are not solved yet.
         """
         K = np.array(self._solved_matrix())
-        if self.axial_series:
+        if (spring := self.spring) is not None:
             # the ring between bearing and spring carries no load of its own: condense its y out,
             # couplings included
-            spring = 1 / sum(1 / k for k in self.axial_series)
             K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
         if self.support == "floating":
             K = sliding(K)
@@ -267,6 +263,11 @@ class Bearing(Placed):
             K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
         K.flags.writeable = False
         return K
+
+    @property
+    def spring(self) -> float | None:
+        """Its springs in series as one, N/m."""
+        return 1 / sum(1 / k for k in self.axial_series) if self.axial_series else None
 
     def _solved_matrix(self) -> tuple[tuple[float, ...], ...]:
         if self.matrix is None:

@@ -57,35 +57,17 @@ def describes_train(raw: Mapping[str, Any]) -> bool:
 
 
 def is_train(path: str | os.PathLike) -> bool:
-    """True for a file that describes a train.
-
-    Examples
-    --------
-    >>> is_train("geometry/axle_overhung.toml"), is_train("geometry/gear_shaft.toml")
-    (True, False)
-    """
+    """True for a file that describes a train."""
     return describes_train(parse(os.fspath(path)))
 
 
 def name_of(where: str) -> str:
-    """Name of the scene in a file: that of the file.
-
-    Examples
-    --------
-    >>> name_of("geometry/axle.toml"), name_of(STANDARD_INPUT)
-    ('axle', 'scene')
-    """
+    """Name of the scene in a file: that of the file."""
     return "scene" if where == STANDARD_INPUT else Path(where).stem
 
 
 def place_of(where: str) -> str:
-    """A path as errors name it.
-
-    Examples
-    --------
-    >>> place_of(STANDARD_INPUT)
-    'standard input'
-    """
+    """A path as errors name it."""
     return "standard input" if where == STANDARD_INPUT else where
 
 
@@ -211,6 +193,16 @@ def _plain_words(words: str, line: str) -> str:
     return next(
         (plain for start, plain in _PARSER.items() if words.startswith(start)),
         words[:1].lower() + words[1:],
+    )
+
+
+def of_tables(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
+    """Problems of the one entry of a list told as those of a table, where a file has a table."""
+    return SceneError.of(
+        one.located(None, path=(one.path[0], *one.path[2:]))
+        if one.path[1:2] == (0,) and isinstance(raw.get(one.path[0]), Mapping)
+        else one
+        for one in error.problems
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import model_validator
 
 from solidgear.errors import SceneError, SolidgearError, listed
-from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft
+from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft, pair_problems
 from solidgear.scene.layout import (
     PerTurn,
     ends_of,
@@ -22,12 +22,15 @@ from solidgear.scene.layout import (
     turns_of,
     with_flanks,
 )
-from solidgear.scene.meshing_pair import pair_problems
 from solidgear.scene.model import Scene
-from solidgear.scene.operation import OperatingPoint, Operation
+from solidgear.scene.operation import (
+    OperatingPoint,
+    Operation,
+    running_problems,
+    spring_problems,
+)
 from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.scene.power import carried_of, flows_of, share_problems
-from solidgear.scene.running import running_problems, spring_problems
 from solidgear.scene.stations import Bearing
 from solidgear.scene.statuses import statuses_of
 from solidgear.scene.train_housing import TrainHousing, housing_problems

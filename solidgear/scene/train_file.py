@@ -23,18 +23,17 @@ from solidgear.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
 from solidgear.scene.planetary import Planetary
-from solidgear.scene.toml_file import name_of, parse
+from solidgear.scene.toml_file import name_of, of_tables, parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_housing import HOUSING, TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Gathered, Model
+from solidgear.scene.units import TYPED
 
 #: reads the scene of a side from a file, told whether the shaft stands alone.
 ReadShaft = Callable[[str, Path, bool], Scene]
 
 CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
-#: a normal typed with four digits has a length off by this; it is brought to unit length
-NORMAL_TYPED = 1e-3
 MOST_CELLS = 100_000
 
 
@@ -43,33 +42,9 @@ def _as_written(side: str, path: Path, alone: bool) -> Scene:
 
 
 def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
-    """Read a train file; the shafts it names lie relative to it.
-
-    Parameters
-    ----------
-    path : str or path
-        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
-    shaft : callable, optional
-        Reads the scene of a side from its file, and is told whether the shaft stands alone:
-        bearings of a shaft whose train has an [operation] settle with the train. By default scenes
-        are read as they are written, without a stiffness of catalogue bearings, which
-        :func:`solidgear.load_train` works out.
-
-    Returns
-    -------
-    Train
-
-    Raises
-    ------
-    SceneError
-        The file, the key, the value as written, what would be right: one line for each problem.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> train = sg.load_train("geometry/axle_straddle.toml")
-    >>> [bearing.name for bearing in train.pinion.scene.bearings]
-    ['0', '1', '2']
+    """Read a train file; the shafts it names lie relative to it. `shaft` reads the scene of a side
+    from its file, and is told whether the shaft stands alone: bearings of a shaft whose train has
+    an [operation] settle with the train.
     """
     where = os.fspath(path)
     return train_of(parse(where), where, shaft)
@@ -189,13 +164,15 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Problems of the one entry of a list told as those of a table, where a file has a table, and those
-    of the only engine or load as its own.
+    """Problems told by the keys of a file: as of :func:`of_tables`, and those of the only engine or
+    load as its own.
     """
-    for key in ("operation", "mesh", *SHORT):
-        if isinstance(raw.get(key), Mapping) and not (key in SHORT and _several(raw[key])):
-            error = _of_one_table(error, key, key if key in SHORT else 0)
-    return error
+    alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
+    told = (
+        one.located(None, path=(one.path[0], *one.path[2:])) if one.path[:2] in alone else one
+        for one in error.problems
+    )
+    return of_tables(SceneError.of(told), raw)
 
 
 def _several(table: Any) -> bool:
@@ -254,14 +231,6 @@ def _read(problems: Gathered, reader: Callable[[], dict[str, Any]]) -> dict[str,
             raise
         problems += error.problems
         return None
-
-
-def _of_one_table(error: SceneError, key: str, entry: str | int) -> SceneError:
-    """Problems of the one entry of a list told as those of a table."""
-    return SceneError.of(
-        one.located(None, path=(key, *one.path[2:])) if one.path[:2] == (key, entry) else one
-        for one in error.problems
-    )
 
 
 def _with_scene(
@@ -346,7 +315,7 @@ def _cell(row: Mapping[str, Any], line: int, where: str) -> dict[str, Any]:
         value.append(number)
     normal, force = value[3:6], value[6]
     length = sqrt(sum(v * v for v in normal))
-    if abs(length - 1) > NORMAL_TYPED:
+    if abs(length - 1) > TYPED:
         reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
         raise SceneError(reason, where=where)
     if force < 0:

@@ -12,20 +12,18 @@ import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.bearing_stiffness import checked_matrix
+from solidgear.scene.bearing_stiffness import Matrix
 from solidgear.scene.housing_matrices import HousingMatrices
 from solidgear.scene.mesh_cycle import Vector
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
-from solidgear.scene.units import Loss, Mass, quantity
+from solidgear.scene.units import TYPED, Loss, Mass, quantity
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
 
 #: what the housing is called among the parts of a train, and its centre of mass among its points
 HOUSING, CENTRE = "housing", "centre"
-#: moments of inertia that are typed with four digits may break the triangle inequality by this
-TYPED = 1e-3
 #: loss factor of castings with their joints, where none is told
 LOSS = 0.01
 
@@ -71,13 +69,12 @@ class Mount(Model):
         6x6 about its place, SI; the constructor also takes named entries.
     loss : float
         Loss factor, twice a damping ratio.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     name: str = ""
     position: Vector | None = None
     at: str | None = None
-    stiffness: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+    stiffness: Matrix
     loss: Loss = 0.1
     status: Status = "assumed"
 
@@ -207,12 +204,7 @@ class TrainHousing(Model):
 
 
 def housing_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of the housing of a train: shafts that are not there or stand in another, and names.
-
-    Yields
-    ------
-    SceneError
-    """
+    """Problems of the housing of a train: shafts that are not there or stand in another, and names."""
     if train.housing is None:
         return
     for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):

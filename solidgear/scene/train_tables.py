@@ -44,7 +44,6 @@ class TorsionSpringTable(Model):
         Elsewhere on the shaft, m from ``from``: ``start``, ``end`` or a port.
     seat_width : float or None
         Of that place, m.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     stiffness: TorsionSpring
@@ -76,7 +75,6 @@ class Rotor(Model):
     share : float or None
         Of several engines or loads: what it brings or takes of the power, which is of the torque told
         at one speed.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     shaft: str = ""
@@ -151,7 +149,6 @@ class Mesh(Model):
 
     Attributes
     ----------
-    name : str
     between : (str, str)
         Shafts of the two gears, the first of which is called pinion here whatever its size; of a
         shaft with several gears with the lumped point, such as ``middle.wheel``.
@@ -256,7 +253,6 @@ class Losses(Model):
     ----------
     shafts, bearings, mesh, springs : float
         Of the material of all shafts, all bearings, the teeth, and the torsional springs.
-    status : {'published', 'identified', 'assumed', 'measured'}
     """
 
     shafts: Loss = 0.04

@@ -147,23 +147,7 @@ class Model(BaseModel, metaclass=_Shown):
         return by_key(cls)
 
     def with_changes(self: _Self, **changes: Any) -> _Self:
-        """A validated copy with some fields replaced.
-
-        Parameters
-        ----------
-        **changes
-            Fields by name.
-
-        Returns
-        -------
-        Model
-            Of the same class.
-
-        Raises
-        ------
-        SceneError
-            As by the constructor.
-        """
+        """A validated copy with some fields replaced, by name."""
         fields = type(self).model_fields
         changes = {self._own(key, changes): value for key, value in changes.items()}
         given = {name: getattr(self, name) for name in fields} | changes

@@ -37,7 +37,6 @@ class Uncertain(Model):
 
     Attributes
     ----------
-    path : str
     said : str
         The range as the file states it.
     low, high : float
@@ -61,20 +60,8 @@ class Uncertain(Model):
 def stated(
     scene: Scene, table: Mapping[str, Any], bearings: Sequence[Mapping[str, Any]] = ()
 ) -> Scene:
-    """A scene with ranges of its entries.
-
-    Parameters
-    ----------
-    table : mapping
-        Of texts by paths, nested or not.
-    bearings : sequence of mapping
-        Tables of the bearings of its file: one that says of itself that it is assumed has a range.
-
-    Raises
-    ------
-    SceneError
-        A path that cannot have a range, a text that is none, or one that leaves out what the scene
-        says.
+    """A scene with ranges of its entries: a table of texts by paths, nested or not, and the tables
+    of bearings of its file, of which one that says of itself that it is assumed has a range.
 
     Examples
     --------
@@ -104,11 +91,6 @@ def stated(
 def scaled(scene: Scene, path: str, factor: float) -> Scene:
     """The scene with the entry of a path multiplied; factors of all loads and of preloads are
     nothing of a scene (:class:`solidgear.bearings.solved.Choice`).
-
-    Raises
-    ------
-    SceneError
-        A stiffness that is none.
     """
     kind, _, rest = path.partition(".")
     if kind == "material":

@@ -88,6 +88,9 @@ TURNS = dict.fromkeys(("1/min", "min^-1", "min-1", "rev/min", "r/min", "U/min"),
 #: no quantity is larger than this in SI, and no spring softer: their squares neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
+#: numbers that are typed with four digits may differ by this
+TYPED = 1e-3
+
 #: letters of a quantity
 LONGEST = 200
 

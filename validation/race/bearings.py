@@ -19,7 +19,7 @@ from validation.thesis.bearings import axle
 ANGULAR = BallRow(16, 22.225e-3, 125.26e-3, 0.698)
 ROWS = {
     "16 balls": ANGULAR,
-    "16 rollers in 30 slices": RollerRow(16, 12e-3, 18e-3, 0.1, 0.26),
+    "16 rollers in 30 slices": RollerRow(16, 12e-3, 0.1, length=18e-3, angle=0.26),
     "16 balls at 10,000 r/min": SpinningBalls(ANGULAR, 1047.0),
 }
 TOGETHER, ALONE = 2000, 100

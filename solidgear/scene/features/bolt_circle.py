@@ -18,7 +18,6 @@ class BoltCircle(OnSegment):
 
     Attributes
     ----------
-    name, segment : str
     count : int
         3 to 400.
     diameter : float
@@ -31,16 +30,6 @@ class BoltCircle(OnSegment):
         The face of the segment that they are drilled from.
     angle : float
         Where the first hole lies, rad: 0 is +z.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
-
-    Examples
-    --------
-    >>> from solidgear.scene import BoltCircle
-    >>> BoltCircle(name="bolts", segment="flange", count=6, diameter="11 mm", circle="90 mm").depth
     """
 
     sort: ClassVar[str] = "cyclic"
@@ -100,18 +89,7 @@ class BoltCircle(OnSegment):
             )
 
     def reach(self, here: Segment) -> tuple[float, float]:
-        """Ends of the holes along the shaft.
-
-        Parameters
-        ----------
-        here : Segment
-            Its own.
-
-        Returns
-        -------
-        (float, float)
-            m.
-        """
+        """Ends of the holes along the shaft, m, in their own segment."""
         if self.depth is None:
             return here.y0, here.y1
         if self.side == "start":

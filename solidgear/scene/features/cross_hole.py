@@ -35,7 +35,6 @@ class CrossHole(Cut):
 
     Attributes
     ----------
-    name, segment : str
     y : float
         Along the shaft, where it passes the axis, m.
     diameter : float

@@ -176,18 +176,18 @@ class Long(Cut):
         """Formula of the distance from its re-entrant edges as seen from above, m."""
         raise NotImplementedError
 
-
-def deep(depth: float, here: Segment, what: str, least: float = 0.0) -> Iterator[SceneError]:
-    """A cut leaves some wall over the bore, and over the axis of a solid shaft."""
-    wall = here.outer0 - max(here.inner0, least)
-    if depth >= wall - TOUCH:
-        over = "the wall" if here.inner0 else "the radius"
-        yield SceneError(
-            f"a {what} as deep as this cuts through {over} of {wall:.6g} m", path=("depth",)
-        )
-    elif depth < SMALLEST * here.outer0:
-        yield SceneError(
-            f"a {what} under a hundredth of the radius, {here.outer0:.6g} m, is no feature: "
-            "leave it out, or look at the units",
-            path=("depth",),
-        )
+    def _deep(self, here: Segment) -> Iterator[SceneError]:
+        """It leaves some wall over the bore, and over the axis of a solid shaft."""
+        wall = here.outer0 - here.inner0
+        if self.depth >= wall - TOUCH:
+            over = "the wall" if here.inner0 else "the radius"
+            yield SceneError(
+                f"a {self.what} as deep as this cuts through {over} of {wall:.6g} m",
+                path=("depth",),
+            )
+        elif self.depth < SMALLEST * here.outer0:
+            yield SceneError(
+                f"a {self.what} under a hundredth of the radius, {here.outer0:.6g} m, is no feature: "
+                "leave it out, or look at the units",
+                path=("depth",),
+            )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from solidgear.errors import SceneError
-from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.features.cut import Frame, Long
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import PositiveLength
 
@@ -17,31 +17,19 @@ class Flat(Long):
 
     Attributes
     ----------
-    name, segment : str
     y, length : float
         Start and length along the shaft, m.
     depth : float
         Below the crown of the cylinder, m.
     angle : float
         As for :class:`Keyway`.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
-
-    Examples
-    --------
-    >>> from solidgear.scene import Flat
-    >>> Flat(name="flat", segment="shaft", y=0.1, length=0.05, depth=0.004).reach(0.03)[0]
-    0.1
     """
 
     kind: Literal["flat"] = "flat"
     depth: PositiveLength
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from deep(self.depth, here, "flat")
+        yield from self._deep(here)
 
     def half_width(self, radius: float) -> float:
         return math.sqrt(radius**2 - self.floor(radius) ** 2)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from solidgear.errors import SceneError
 from solidgear.scene.features.base import SMALLEST
-from solidgear.scene.features.cut import Frame, Long, deep
+from solidgear.scene.features.cut import Frame, Long
 from solidgear.scene.outline import TOUCH
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import PositiveLength
@@ -19,7 +19,6 @@ class Keyway(Long):
 
     Attributes
     ----------
-    name : str
     segment : str
         Of the shaft, a cylinder.
     y : float
@@ -28,14 +27,8 @@ class Keyway(Long):
         With its round ends, m.
     width, depth : float
         m; the depth is that below the crown of the cylinder (t1 of DIN 6885).
-    ends : {'round', 'square'}
     angle : float
         Where it lies around the shaft, rad: 0 is +z, a quarter turn is +x.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive.
 
     Examples
     --------
@@ -52,7 +45,7 @@ class Keyway(Long):
     ends: Literal["round", "square"] = "round"
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from deep(self.depth, here, "keyway")
+        yield from self._deep(here)
         if self.width >= here.outer0:
             yield SceneError(
                 f"a keyway wider than the radius, {here.outer0:.6g} m, is no keyway",

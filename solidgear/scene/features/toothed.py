@@ -175,7 +175,6 @@ class Teeth(_Toothed):
 
     Attributes
     ----------
-    name, segment : str
     count : int
         3 to 400.
     addendum, dedendum : float
@@ -210,19 +209,7 @@ class Teeth(_Toothed):
 
 
 class Spline(_Toothed):
-    """Teeth on a cylinder, fields as those of :class:`Teeth`.
-
-    Raises
-    ------
-    SceneError
-        As :class:`Teeth`.
-
-    Examples
-    --------
-    >>> from solidgear.scene import Spline
-    >>> Spline(name="spline", segment="end", count=24, addendum=0.5, dedendum=0.5).tip > 1.04
-    True
-    """
+    """Teeth on a cylinder, fields as those of :class:`Teeth`."""
 
     on_cones: ClassVar[bool] = False
 
