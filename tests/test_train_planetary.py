@@ -396,3 +396,17 @@ def test_a_reducer_put_together_by_hand_modulates_as_that_of_the_file():
     # the design's shaft goes on to a third seat, so that its beam has other elements
     assert turn.planets[1].once == pytest.approx(design.modulation(third=False), rel=1e-4)
     assert turn.planets[1].mean == pytest.approx(design.mean_force, rel=1e-10)
+
+
+def test_a_carrier_without_gears_is_lumped_at_its_main_point():
+    """Guyan's shapes are fewer (Rayleigh and Ritz): no frequency is lower than with the body, and a
+    rigid body on its bearings below the first bending leaves little to them.
+    """
+    shop = Workshop(sg.load_train(REDUCER))
+    lumped, whole = (
+        shop.system("timoshenko", "timoshenko", model).modes(6).frequency_hz[1:]
+        for model in ("lumped/timoshenko", "timoshenko")
+    )
+    assert (lumped >= whole * (1 - ROUNDING)).all()
+    assert lumped == pytest.approx(whole, rel=5e-2)
+    assert shop.shaft("output", "lumped/timoshenko").part.mass.shape == (6, 6)

@@ -275,7 +275,10 @@ class Workshop:
                     f"a {kind} shaft has its bearings condensed to ground, and those of the {side} "
                     f"stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
                 )
-            part = lumped(under, kind, self.scenes[side], [*self.train.shafts[side].gears])
+            # a shaft that is a carrier may have no gear: it is held at its main lumped point
+            scene = self.scenes[side]
+            points = [*self.train.shafts[side].gears] or [scene.port.name]
+            part = lumped(under, kind, scene, points)
         seconds = under.seconds + perf_counter() - start
         return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
 
