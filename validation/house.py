@@ -59,10 +59,11 @@ def documented(tree: ast.AST) -> Iterator[ast.expr]:
     """Expressions that are docstrings."""
     holders = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     for node in ast.walk(tree):
-        if isinstance(node, holders) and node.body and ast.get_docstring(node) is not None:
+        if isinstance(node, holders) and node.body:
             first = node.body[0]
-            assert isinstance(first, ast.Expr)
-            yield first.value
+            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+                if isinstance(first.value.value, str):
+                    yield first.value
 
 
 def asks(docstring: ast.expr) -> bool:
