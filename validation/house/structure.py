@@ -1,0 +1,97 @@
+"""Imports between files and rooms: circles, arrows up, modules that serve one importer."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+
+from validation.house.source import Source
+
+Graph = dict[str, set[str]]
+
+
+def imports(source: Source, known: set[str], *, types: bool, late: bool) -> set[str]:
+    """Return the modules of the package that a file imports.
+
+    With `types` those under ``if TYPE_CHECKING`` too, with `late` those inside functions.
+    """
+    modules: set[str] = set()
+    pending: list[ast.AST] = [source.tree]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test) and not types:
+            pending.extend(node.orelse)
+            continue
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not late:
+            continue
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                modules.add(full if full in known else node.module)
+        elif isinstance(node, ast.Import):
+            modules |= {alias.name for alias in node.names}
+        pending.extend(ast.iter_child_nodes(node))
+    return modules & known
+
+
+def graph(files: Sequence[Source], *, types: bool = True, late: bool = True) -> Graph:
+    """Return for each module those that it imports."""
+    known = {source.module for source in files}
+    return {s.module: imports(s, known, types=types, late=late) - {s.module} for s in files}
+
+
+def circles(arrows: Graph) -> list[list[str]]:
+    """Return strongly connected groups of more than one module or room."""
+    names = sorted(arrows)
+    links = np.array([[name in arrows[start] for name in names] for start in names])
+    _, group = connected_components(csr_matrix(links), connection="strong")
+    groups = [[names[k] for k in np.flatnonzero(group == label)] for label in np.unique(group)]
+    return sorted(members for members in groups if len(members) > 1)
+
+
+def between_rooms(arrows: Graph) -> Graph:
+    """Return the graph of rooms, of an import graph of modules."""
+    rooms: Graph = defaultdict(set)
+    for module, targets in arrows.items():
+        rooms[_room(module)] |= {_room(target) for target in targets} - {_room(module)}
+    return {room: targets - {""} for room, targets in rooms.items() if room}
+
+
+def _room(module: str) -> str:
+    """Return the first name below the package, empty for the package itself."""
+    return module.partition(".")[2].partition(".")[0]
+
+
+def arrows_up(rooms: Graph, floors: dict[str, set[str]]) -> list[str]:
+    """Return the arrows between rooms that a table of what each may import does not allow."""
+    return sorted(
+        f"{room} -> {target}"
+        for room, targets in rooms.items()
+        if room in floors
+        for target in targets - floors[room]
+    )
+
+
+def single_importers(arrows: Graph) -> dict[str, str]:
+    """Return the modules that one module alone imports, with that module."""
+    count = Counter(target for targets in arrows.values() for target in targets)
+    return {
+        target: module
+        for module, targets in arrows.items()
+        for target in targets
+        if count[target] == 1
+    }
+
+
+def in_own_folder(single: dict[str, str]) -> dict[str, str]:
+    """Return those whose one importer stands in the same folder."""
+    return {
+        module: importer
+        for module, importer in single.items()
+        if module.rpartition(".")[0] == importer.rpartition(".")[0]
+    }
