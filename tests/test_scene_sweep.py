@@ -7,7 +7,7 @@ import math
 import pytest
 
 import solidgear as sg
-from solidgear.studies.sweep.vary import of_bearings_alone
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import command, table
 
 SHAFT = "geometry/shaft_stepped.toml"
@@ -103,15 +103,17 @@ def test_the_command_says_what_was_solved_and_why_variants_were_refused(tmp_path
     rows = tmp_path / "rows.csv"
     vary = ("--vary", "segment.left.length=40 mm:60 mm:3", "-f", "timoshenko", "-o", rows)
     told = " ".join(command("sweep", SHAFT, *vary).output.split())
-    assert "every variant is meshed and solved for itself. 3 variants" in told
+    assert "Wrote 3 rows to" in told and "3 variants in" in told
     assert "Refused:" in told and "across the step of the outer radius at 0.04 m" in told
     assert [row["status"] == "ok" for row in table(rows)] == [False, True, True]
-    assert "3 of them there before" in command("sweep", SHAFT, *vary).output
+    assert "all 3 rows were there already" in command("sweep", SHAFT, *vary).output
 
 
 def test_springs_alone_go_the_way_of_one_body(tmp_path):
-    assert of_bearings_alone(["bearing.A.stiffness.kzz=1e8,2e8"]) == ["bearing.A.kzz=1e8,2e8"]
-    assert of_bearings_alone(["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]) is None
+    springs = bearing_variants(SHAFT, ["bearing.A.kzz=1e8,2e8"])
+    assert springs.entries[0].label == "bearing.A.stiffness.kzz"
+    both = ["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]
+    assert bearing_variants(SHAFT, both) is None
     told = command(
         "sweep",
         SHAFT,

@@ -21,8 +21,9 @@ from solidgear.errors import SolidgearError, nearest
 from solidgear.studies.optimum import Design, Optimum
 from solidgear.studies.sweep import design
 from solidgear.studies.sweep.entries import Entry, in_si
-from solidgear.studies.sweep.scene_task import STATICS, SceneTask, scene_variants
-from solidgear.studies.sweep.vary import plain_number
+from solidgear.studies.sweep.scene_task import STATICS, SceneTask
+from solidgear.studies.sweep.scene_variants import scene_variants
+from solidgear.studies.sweep.spans import plain_number
 from solidgear.studies.wishes import Wish, limit_of, wish_of
 
 #: designs that are solved at most, with the file as it is: a few for one entry, more for each other

@@ -11,7 +11,7 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.units import quantity, si_factor
 from solidgear.studies.sweep.entries import amount
 from solidgear.studies.sweep.scene_task import MOST_MODES, STATICS
-from solidgear.studies.sweep.vary import plain_number
+from solidgear.studies.sweep.spans import plain_number
 
 _GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
 _KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")

@@ -15,7 +15,7 @@ from solidgear.machine.threads import pinned
 from solidgear.reduction.moments import Reduced
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-from solidgear.studies.sweep.bearing_variants import Variants
+from solidgear.studies.sweep.bearing_variants import BearingVariants
 from solidgear.studies.sweep.ritz import Seats, ritz_modes
 
 #: Entries of the stiffness and the compliance that a row holds.
@@ -24,9 +24,9 @@ ENTRIES = {
 } | {"x_thz": (0, 5), "z_thx": (2, 3)}
 
 
-def columns(variants: Variants, n: int) -> dict[str, type]:
+def columns(variants: BearingVariants, n: int) -> dict[str, type]:
     """Names and types of the columns of a row, in order."""
-    out: dict[str, type] = {"variant": int} | {axis.label: float for axis in variants.axes}
+    out: dict[str, type] = {"variant": int, **variants.columns}
     out |= {"status": str, "how": str, "error_bound": float, "rigid_modes": int}
     out |= {f"{kind}_{name}": float for kind in "KC" for name in ENTRIES}
     for k in range(1, n + 1):
@@ -50,7 +50,7 @@ class Task:
         tolerance.
     """
 
-    variants: Variants
+    variants: BearingVariants
     bases: tuple[Reduced, ...]
     n: int
     tolerance: float
@@ -75,9 +75,7 @@ class Task:
     def _row(
         self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
     ) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index} | {
-            a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])
-        }
+        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
         frame = basis.frame
         try:
             scene, supports = self.variants.supports(index)
@@ -88,7 +86,7 @@ class Task:
                 seats[place] = Seats(basis, ports)
             found = ritz_modes(basis, seats[place], supports, self.n, self.tolerance)
         except SolidgearError as error:
-            return row | {"status": " ".join(str(error).split()), "how": ""}
+            return row | {"status": self.variants.status(error, index), "how": ""}
         row |= {
             "status": "ok",
             "how": "reduced",

@@ -7,7 +7,7 @@ finest that one of these needs serves all.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,43 +16,39 @@ import numpy as np
 from solidgear.errors import SceneError
 from solidgear.judge.settle import Settled, settle
 from solidgear.quantity import Quantity
-from solidgear.studies.sweep.bearing_sweep import variants_of
 from solidgear.studies.sweep.bench import surface
 
 if TYPE_CHECKING:
     from solidgear.judge.refinement import Progress
     from solidgear.scene import Scene
-    from solidgear.studies.sweep.bearing_variants import Variants
+    from solidgear.studies.sweep.bearing_variants import BearingVariants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
 MOST = 8
 
 
 def settled_for_sweep(
-    scene: Scene,
-    vary_texts: Iterable[str],
+    variants: BearingVariants,
     tol: float | None = None,
     *,
-    sample: int | None = None,
-    seed: int = 0,
     progress: Progress = lambda _: None,
 ) -> Settled:
     """The cheapest body whose error bars are within a tolerance on the scene and at the ends of a sweep.
 
-    Of a sweep with these texts, sample and seed; the tolerance is relative, that of the scene by
-    default. What is settled is of the finest mesh that one of the bearing sets needs, with the
-    largest bar of each quantity over all of them; ``judged_on`` says how many there were.
+    The tolerance is relative, that of the scene by default. What is settled is of the finest mesh
+    that one of the bearing sets needs, with the largest bar of each quantity over all of them;
+    ``judged_on`` says how many there were.
 
     Examples
     --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/shaft_stepped.toml")
-    >>> vary = [f"bearing.{scene.bearings[0].name}.scale=log:0.1:10:9"]
-    >>> found = settled_for_sweep(scene, vary, 0.05)
+    >>> from solidgear.studies.sweep.bearing_variants import bearing_variants
+    >>> scales = ["bearing.A.scale=log:0.1:10:9"]
+    >>> variants = bearing_variants("geometry/shaft_stepped.toml", scales)
+    >>> found = settled_for_sweep(variants, 0.05)
     >>> found.judged_on, found.reached
     (3, True)
     """
-    scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
+    scenes = [variants.scene, *_ends(variants)]
     found: list[Settled] = []
     last: dict[Hashable, Settled] = {}
     for k, one in enumerate(scenes, start=1):
@@ -74,7 +70,7 @@ def settled_for_sweep(
     )
 
 
-def _ends(variants: Variants) -> list[Scene]:
+def _ends(variants: BearingVariants) -> list[Scene]:
     """Scenes of the variants with the lowest and the highest value of everything that varies."""
     # the ends of all at once first, then of one after the other
     ranks = variants.values.argsort(axis=0).argsort(axis=0).sum(axis=1)

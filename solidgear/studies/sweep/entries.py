@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from solidgear.errors import SceneError, SolidgearError, nearest
-from solidgear.scene.paths import Keys, Tables, changed, entries, entry, keys_of, label_of
+from solidgear.scene.paths import Keys, Tables, entries, entry, keys_of, label_of, put
 from solidgear.scene.units import DIMENSIONS, quantity
-from solidgear.studies.sweep.vary import Span, spread
+from solidgear.studies.sweep.spans import Span, spread
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
 #: from a path to the file that holds it, by its name among all, and the path within
@@ -253,7 +253,7 @@ class Kept:
 
     def put(self, tables: Tables) -> Tables:
         """Tables with the last entry given what is left."""
-        return changed(tables, keys_of(self.places[-1].path, tables), self.left(tables))
+        return put(tables, keys_of(self.places[-1].path, tables), self.left(tables))
 
 
 def kept_of(
@@ -297,7 +297,7 @@ def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[flo
     for one, value in zip(varied, row):
         for place in one.places:
             if place.file == file and not math.isnan(value):
-                tables = changed(tables, keys_of(place.path, tables), one.put(value))
+                tables = put(tables, keys_of(place.path, tables), one.put(value))
     return tables
 
 

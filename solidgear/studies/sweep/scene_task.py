@@ -1,8 +1,8 @@
-"""Scenes of a sweep: a file with entries replaced, and rows of numbers with their bars."""
+"""Rows of a sweep of scenes: numbers with their bars."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,36 +16,17 @@ from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
-from solidgear.scene.toml_file import parse
-from solidgear.studies.loading import scene_of
 from solidgear.studies.one_shaft import mass_of, one_shaft
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.entries import Entry
 from solidgear.studies.sweep.file_task import FileTask
-from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file, plain
+from solidgear.studies.sweep.file_variants import OWN, plain
+from solidgear.studies.sweep.scene_variants import SceneVariants, scene_variants
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
 #: natural frequencies of a row at most
 MOST_MODES = 30
-
-
-@dataclass(frozen=True)
-class SceneVariants(FileVariants[Scene]):
-    """Points of a sweep over entries of a scene file, catalogue bearings with their stiffness."""
-
-    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Scene:
-        return scene_of(self.put(OWN, varied, row), self.path)
-
-
-def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
-    """Points of a sweep over entries of a scene file; the example of something to vary is told where
-    nothing is.
-    """
-    files = {OWN: parse(str(path))}
-    points = design.points(files, in_own_file, example=example)
-    return SceneVariants(path, files, *points, design)
 
 
 @dataclass(frozen=True)
