@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from solidgear.studies.sweep.bearing_sweep import sweep
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from solidgear.studies.sweep.rows import RowFile
 from tests.command import command
 

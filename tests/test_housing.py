@@ -328,9 +328,9 @@ def test_what_a_housing_cannot_vary_is_refused_at_once(text, word):
 @pytest.mark.parametrize(
     ("text", "word"),
     [
-        ("bearing.B.housing.scale=0", 'scale = 0: must be greater than zero'),
-        ("bearing.B.housing.kzz=-1", r'bearing\[2\].*housing.*in z is -1; it must not be negative'),
-        ("bearing.B.housing.kxz=1e10", r'bearing\[2\].*housing.*the stiffness is indefinite'),
+        ("bearing.B.housing.scale=0", "scale = 0: must be greater than zero"),
+        ("bearing.B.housing.kzz=-1", r"bearing\[2\].*housing.*in z is -1; it must not be negative"),
+        ("bearing.B.housing.kxz=1e10", r"bearing\[2\].*housing.*the stiffness is indefinite"),
         ("housing.kzz=1e3", "housing.stiffness.*the stiffness is indefinite"),
     ],
 )

@@ -125,3 +125,52 @@ def test_springs_alone_go_the_way_of_one_body(tmp_path):
         tmp_path / "r.csv",
     )
     assert "one body does for all" in told.output
+
+
+GEARBOX = "geometry/gearbox_catalogue.toml"
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("bearing.B.catalogue.designation", ("7208 B", "7310 B")),  # B is a byte as well
+        ("bearing.A.catalogue.designation", ("NU 207", "NU207 m")),
+        ("title", ("20 mm", "3 kN")),
+        ("segment.left.name", ("4 m", "5 m")),
+        ("port.name", ("10 K", "20 K")),
+    ],
+)
+def test_a_key_of_words_is_no_quantity_whatever_it_looks_like(entry, words):
+    rows = sg.sweep(GEARBOX, f"{entry}={','.join(words)}", **BEAM)
+    assert rows[entry].tolist() == list(words)
+
+
+def test_a_word_in_a_table_of_ones_own_is_a_word(tmp_path):
+    mine = tmp_path / "mine.csv"
+    mine.write_text("bearing.B.catalogue.designation,bearing.A.position\n7310 B,15 mm\n,16 mm\n")
+    rows = sg.sweep(GEARBOX, table=mine, **BEAM)
+    assert rows["bearing.B.catalogue.designation"].tolist() == ["7310 B", "7208 B"]
+    assert rows["bearing.A.position"].tolist() == [0.015, 0.016]
+
+
+def test_data_of_one_bearing_that_are_kept_for_another_are_told():
+    rows = sg.sweep(GEARBOX, "bearing.B.catalogue.designation=7208 B,7310 B", **BEAM)
+    (caution,) = rows.cautions
+    assert "elements, element_diameter, pitch_diameter" in caution and '"7208 B"' in caution
+    assert sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", **BEAM).cautions == ()
+
+
+def test_a_material_by_name_is_its_numbers(tmp_path):
+    scene = by_hand(tmp_path, ('E = "207 GPa"', 'E = "210 GPa"'))
+    own = sg.build(scene, "timoshenko")
+    want = sg.modes(own, scene, n=2).frequency_hz[-2]
+    named = tmp_path / "named.toml"
+    text = open(SHAFT, encoding="utf-8").read()
+    start, end = text.index("[material]"), text.index("[[segment]]")
+    named.write_text('material = "42CrMo4"\n' + text[:start] + text[end:])
+    rows = sg.sweep(named, "material.E=210 GPa,190 GPa", **BEAM)
+    assert rows["f1_hz"][0] == pytest.approx(want, rel=1e-12)
+    assert rows["f1_hz"][1] < rows["f1_hz"][0]
+    words = sg.sweep(named, "material=42CrMo4,aluminium", **BEAM)
+    assert words["material"].tolist() == ["42CrMo4", "aluminium"]
+    assert words["f1_hz"][0] == rows["f1_hz"][0]

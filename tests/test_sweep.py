@@ -14,8 +14,8 @@ from solidgear.errors import SolidgearError
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.studies.sweep import bearing_sweep as runner
 from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
 from solidgear.studies.sweep.bearing_task import ENTRIES
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import command, numbers
 from tests.counted import from_the_start
 

@@ -72,7 +72,9 @@ def test_a_text_that_cannot_be_read_is_refused_at_once(text, word):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("text", ["bearing.1.kxx=nan", "bearing.1.kxx=1e999", "bearing.1.scale=2 m"])
+@pytest.mark.parametrize(
+    "text", ["bearing.1.kxx=nan", "bearing.1.kxx=1e999", "bearing.1.scale=2 m"]
+)
 def test_a_value_that_is_none_goes_to_no_sweep_of_bearings(text):
     """Neither words nor numbers without end are springs: the file's own rules refuse them."""
     with pytest.raises(SolidgearError):

@@ -183,14 +183,16 @@ def _sweep_entries(
             n=rows.n,
         )
         found = rows.made(task, chart, show, tell)
-    written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
+    lead = f"Rows in {found.path.name}."
+    written = drawn(found.curves, scene.stem, lead, chart, found.cautions)
     if run.as_json:
-        print(record_of(found))
+        print(record_of(found, cautions=found.cautions))
         ended_rows(found)
         return
     if found.curves is not None and len(found.curves.x) <= FEW and found.curves.frequencies:
         say(sweep_table(found.curves))
     say(rows_there(found), *_work(found), *refusals(found), *written)
+    say(*map(caution, found.cautions))
     ended_rows(found)
 
 

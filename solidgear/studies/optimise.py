@@ -20,7 +20,8 @@ import numpy as np
 from solidgear.errors import SolidgearError, nearest
 from solidgear.studies.optimum import Design, Optimum
 from solidgear.studies.sweep import design
-from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.amounts import in_si
+from solidgear.studies.sweep.entries import Entry
 from solidgear.studies.sweep.scene_task import STATICS, SceneTask
 from solidgear.studies.sweep.scene_variants import scene_variants
 from solidgear.studies.sweep.spans import plain_number

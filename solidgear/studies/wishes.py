@@ -9,7 +9,7 @@ from typing import Any
 
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.units import quantity, si_factor
-from solidgear.studies.sweep.entries import amount
+from solidgear.studies.sweep.amounts import amount
 from solidgear.studies.sweep.scene_task import MOST_MODES, STATICS
 from solidgear.studies.sweep.spans import plain_number
 

@@ -10,7 +10,7 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.paths import Keys, Tables, entry, keys_of, label_of
 from solidgear.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, ends
 from solidgear.scene.units import DIMENSIONS, quantity
-from solidgear.studies.sweep.entries import in_si
+from solidgear.studies.sweep.amounts import in_si
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Keys, Tables, entries, entry, label_of, put
 from solidgear.studies.loading import part_of
-from solidgear.studies.sweep.entries import amount, in_si
+from solidgear.studies.sweep.amounts import amount, in_si
 
 #: relative step of a number in the file, and that of a place, in lengths of the shaft: what
 #: they move is linear in it but for angles, materials and springs in series

@@ -25,7 +25,7 @@ from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
 from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers
-from solidgear.studies.sweep.entries import in_si
+from solidgear.studies.sweep.amounts import in_si
 
 #: what is asked for
 USUAL = ("bending 1", "C_zz")

@@ -95,9 +95,7 @@ class BearingVariants(SceneVariants):
             raise placed
         springs = [k for k in range(len(row)) if k not in self.moves]
         if springs:
-            tables = self.put(
-                OWN, [self.entries[k] for k in springs], [row[k] for k in springs]
-            )
+            tables = self.put(OWN, [self.entries[k] for k in springs], [row[k] for k in springs])
             touched = [place.keys for k in springs for place in self.entries[k].places]
             placed = resprung(placed, tables, touched)
         if all(bearing.catalogue is None for bearing in placed.bearings):
@@ -203,7 +201,9 @@ def bearing_variants(
     keys = [place.keys for one in found.entries for place in one.places]
     if not all(one.numeric for one in found.entries) or not all(map(_of_bearings, keys)):
         return None
-    if _hangs_on(tables, [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]):
+    if _hangs_on(
+        tables, [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]
+    ):
         return None
     if sample is None:
         return BearingVariants(*_fields(found))

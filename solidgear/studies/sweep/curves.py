@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.amounts import in_si
+from solidgear.studies.sweep.entries import Entry
 from solidgear.studies.sweep.file_variants import POINT, FileVariants
 
 #: rows that curves are made of

@@ -93,7 +93,8 @@ class TrainTask(FileTask):
     @property
     def cautions(self) -> tuple[str, ...]:
         """Things that do not fit together in the usual train but can be solved."""
-        return tuple(text for met in contacts(self.usual).values() for text in met.cautions)
+        met = tuple(text for met in contacts(self.usual).values() for text in met.cautions)
+        return met + self.variants.cautions
 
     @property
     def columns(self) -> dict[str, type]:
