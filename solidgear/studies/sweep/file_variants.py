@@ -186,7 +186,8 @@ class FileVariants(Generic[T]):
         tables = put_in(tables, name, *zip(*own)) if own else tables
         for one in self.kept:
             tables = one.put(tables) if one.places[0].file == name else tables
-        return tables
+        # what varies may lie beside the ranges that a file states, of which no row tells
+        return {key: table for key, table in tables.items() if key != "uncertain"}
 
 
 def _meets(path: tuple, keys: tuple) -> bool:
