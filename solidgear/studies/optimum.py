@@ -54,6 +54,8 @@ class Optimum(Displayed):
         None where no design keeps every limit.
     at_end : tuple of str
         Entries of the best design that are at an end of their range.
+    how : str
+        What was searched.
     """
 
     shown: ClassVar[str] = "optimum"
@@ -64,6 +66,7 @@ class Optimum(Displayed):
     path: tuple[Design, ...]
     best: Design | None
     at_end: tuple[str, ...]
+    how: str = ""
 
     @property
     def gain(self) -> Change | None:
@@ -88,6 +91,7 @@ class Optimum(Displayed):
             "keep": [str(one) for one in self.keep],
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
+            "search": self.how,
             "gain": None if self.gain is None else self.gain.as_dict(),
             "designs": [
                 {
@@ -117,7 +121,9 @@ def _sentences(found: Optimum) -> Iterator[str]:
         return
     values = ", ".join(f"{label} = {value:.6g}" for label, value in best.values.items())
     told = _with_bar(best.value, best.bar)
-    yield f"{found.goal}: {told} (SI) at {values}; {solved} designs solved."
+    yield f"{found.goal}: {told} (SI) at {values}."
+    if found.how:
+        yield f"Searched: {found.how}; {solved} designs solved."
     if best.number == 0:
         yield "No design is better than the file as it is, as far as the error bars tell."
     elif gain is not None:
