@@ -230,7 +230,7 @@ def test_the_sweep_carries_masses(scene, tmp_path):
     rows = table(out)
     body = sg.build(scene, "harmonic", **options)
     for row in rows:
-        assert row["how"] == "reduced" and float(row["error_bound"]) < 1e-6
+        assert row["how"] == "reduced" and float(row["reduction_bound"]) < 1e-6
         scaled = scene.bearings[1].scaled(float(row["bearing.roller.scale"]))
         here = scene.with_changes(bearings=(scene.bearings[0], scaled))
         wanted = every(sg.modes(body, here, n=8, ovalising=False))[:8]

@@ -70,7 +70,7 @@ def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_p
         np.testing.assert_allclose(
             [row[f"f{k}_hz"] for k in range(1, 7)],
             [f for f, _ in direct],
-            rtol=row["error_bound"] + modes.evidence["residual"] + 1e-9,
+            rtol=row["reduction_bound"] + modes.evidence["residual"] + 1e-9,
         )
         assert [row[f"mode{k}"] for k in range(1, 7)] == [name for _, name in direct]
         assert row["rigid_modes"] == modes.evidence["rigid_modes"] == 1
@@ -135,10 +135,10 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
             [a[f"f{k}_hz"] for k in range(1, 7)], [b[f"f{k}_hz"] for k in range(1, 7)], rtol=1e-7
         )
     monkeypatch.undo()
-    bound = max(row["error_bound"] for row in numbers(tmp_path / "loose.csv"))
+    bound = max(row["reduction_bound"] for row in numbers(tmp_path / "loose.csv"))
     grown = light(tmp_path / "grown.csv", "harmonic", vary, tolerance=bound / 10)
     assert grown.full == 0 and grown.basis > loose.basis
-    assert max(row["error_bound"] for row in numbers(tmp_path / "grown.csv")) <= bound / 10
+    assert max(row["reduction_bound"] for row in numbers(tmp_path / "grown.csv")) <= bound / 10
     # nor does it take probes for it: a weak row enlarges the basis on the way
     monkeypatch.setattr(runner._Solver, "settle", lambda self, probes: None)
     assert light(tmp_path / "late.csv", "harmonic", vary, tolerance=bound / 10).basis == grown.basis
@@ -150,7 +150,7 @@ def test_a_row_does_not_depend_on_those_solved_before_it(tmp_path, monkeypatch):
     monkeypatch.setattr(runner, "PROBES", 2)  # variants 0 and 4 of 8
     vary = ["bearing.1.scale=0.01,0.011,0.012,100,0.013,0.014,0.015,0.016"]
     light(tmp_path / "loose.csv", vary=vary)
-    bounds = [row["error_bound"] for row in numbers(tmp_path / "loose.csv")]
+    bounds = [row["reduction_bound"] for row in numbers(tmp_path / "loose.csv")]
     stiff = bounds.pop(3)
     tolerance = (max(bounds) * stiff) ** 0.5
     assert max(bounds) < tolerance / 3 < tolerance < stiff / 3  # clear of rounding

@@ -37,7 +37,7 @@ from solidgear.scene.toml_file import is_train, parse
 from solidgear.studies.check import cautions
 from solidgear.studies.sweep.bearing_sweep import sweep as swept
 from solidgear.studies.sweep.bearing_variants import BearingVariants, bearing_variants
-from solidgear.studies.sweep.choice import settled_for_sweep
+from solidgear.studies.sweep.choice import bars_of_rows, settled_for_sweep
 from solidgear.studies.sweep.file_task import Swept
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
@@ -118,10 +118,12 @@ def _sweep_shaft(
     variants.first_sound()
     loaded = load(variants.path)
     # before a file of rows is begun
-    settled = None
+    settled = bars = None
     if model.automatic():
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(variants, model.tol, progress=steps)
+            steps("bars of natural frequencies")
+            bars = bars_of_rows(variants, settled, rows.n or loaded.ask.modes)
         name, given = settled.rung, settled.options
     else:
         name = str(model.name)
@@ -132,6 +134,8 @@ def _sweep_shaft(
             fidelity=name,
             options=given,
             tolerance=tolerance,
+            bars=bars,
+            judged_on=settled.judged_on if settled else 0,
             progress=show,
             tell=tell,
             out=rows.out,
@@ -275,7 +279,7 @@ def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
     if MODES in (told.ask or (MODES,)):
         meshed = JUDGE in mix.values()
         meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
-        lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
+        lines.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
     return lines
 
 

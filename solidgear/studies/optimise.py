@@ -126,7 +126,9 @@ class _Search:
         ]
         best = min(sound, key=self._loss, default=None)
         at_end = () if best is None else self._at_end(best)
-        return Optimum(title, self.goal, self.keep, tuple(self.designs), best, at_end, how)
+        return Optimum(
+            title, self.goal, self.keep, tuple(self.designs), best, at_end, how, self.task.model
+        )
 
     def _loss(self, one: Design) -> float:
         assert one.value is not None

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from solidgear.display import Displayed
 from solidgear.studies.change import Change
+from solidgear.studies.sweep.bearing_task import without_bars
 from solidgear.studies.wishes import Wish
 
 
@@ -56,6 +57,8 @@ class Optimum(Displayed):
         Entries of the best design that are at an end of their range.
     how : str
         What was searched.
+    model : str or None
+        That was given, and has no bars.
     """
 
     shown: ClassVar[str] = "optimum"
@@ -67,6 +70,7 @@ class Optimum(Displayed):
     best: Design | None
     at_end: tuple[str, ...]
     how: str = ""
+    model: str | None = None
 
     @property
     def gain(self) -> Change | None:
@@ -92,6 +96,7 @@ class Optimum(Displayed):
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
             "search": self.how,
+            "bars": without_bars(self.model) if self.model else "beside each value",
             "gain": None if self.gain is None else self.gain.as_dict(),
             "designs": [
                 {

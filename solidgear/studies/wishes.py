@@ -42,8 +42,7 @@ class Wish:
         value = row.get(column)
         if value is None:
             return None
-        bar = 0.0 if column == "mass" else row.get(f"{column} bar")
-        return float(value), bar
+        return float(value), row.get(f"{column} bar")
 
     def _column(self, row: dict[str, Any]) -> str:
         if first := _FIRST.fullmatch(self.name):

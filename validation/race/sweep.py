@@ -78,7 +78,7 @@ def model(heat: Heat, name: str) -> None:
                 sample.answer = [row for row in csv.DictReader(f) if row["status"] == "ok"]
         for fact in ("total", "refused", "full", "seats", "unknowns", "basis", "seconds_each"):
             sample.facts[fact] = getattr(found, fact)
-        sample.facts["largest bound f"] = max(float(r["error_bound"]) for r in sample.answer)
+        sample.facts["largest bound f"] = max(float(r["reduction_bound"]) for r in sample.answer)
         return sample
 
     once = heat.add("one sweep", swept)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import stdtrit
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.correlate import DEVIATIONS, on_points_of, peaks_of
@@ -196,11 +196,12 @@ class Fit:
             )
             if abs(part) >= SHARE * abs(direction).max()
         ]
-        what = " with ".join(among)
-        out = "leave one of them out" if len(among) > 1 else "leave it out"
+        said, out = f"leave {among[0]} open", "leave it out"
+        if len(among) > 1:
+            said, out = f"cannot separate {listed(among)}", "leave one of them out"
         raise SolidgearError(
-            f"identify: these resonances do not tell {what}: {_factor(deviation)}; {out}, or measure a "
-            "mode that it moves"
+            f"identify: these resonances {said}: {_factor(deviation)}; {out}, or measure a mode that "
+            "it moves"
         )
 
 

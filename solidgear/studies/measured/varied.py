@@ -73,6 +73,8 @@ def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
         keys = keys_of(path, tables)
         there = entry(keys, tables)
         before = in_si(there)
+        if there is None:
+            raise SceneError("is not in the file, and its value there is where the search begins")
         if before is None or not before > 0:
             raise SceneError(
                 f"the file holds {show(there, 40)}, and what is identified begins at a number above "

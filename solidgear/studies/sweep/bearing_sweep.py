@@ -18,7 +18,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
-from solidgear.studies.sweep.bearing_task import Task, columns
+from solidgear.studies.sweep.bearing_task import Task, columns, without_bars
 from solidgear.studies.sweep.bearing_variants import BearingVariants, SeatedShaft
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
 from solidgear.studies.sweep.workers import workers
@@ -74,6 +74,8 @@ def sweep(
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
     tolerance: float = 1e-6,
+    bars: Mapping[str, float] | None = None,
+    judged_on: int = 0,
     jobs: int = 1,
     dask: str | None = None,
     overwrite: bool = False,
@@ -95,6 +97,11 @@ def sweep(
     tolerance : float
         Relative error of frequencies against the same body solved in full. A variant whose bound
         exceeds it makes the basis larger, and where that does not do it is solved in full.
+    bars : mapping of str to float, optional
+        Relative, of the mesh, by the names of numbers and modes, as of
+        :func:`solidgear.studies.sweep.choice.bars_of_rows`; bars stand in columns beside numbers.
+    judged_on : int
+        Bearing sets that these are the largest over.
     jobs, dask, overwrite, progress, tell
         As of :func:`solidgear.studies.sweep.file_task.run`.
 
@@ -116,7 +123,12 @@ def sweep(
     plan = _plan(variants, fidelity, options, n, tolerance)
 
     total = len(variants)
-    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, tell) as file:
+    said = without_bars(fidelity)
+    if bars is not None:
+        said = f"of the mesh, the largest over {judged_on} bearing sets"
+    with RowFile(
+        Path(out), columns(variants, n, bars is not None), plan, total, overwrite, tell
+    ) as file:
         skipped, start = len(file.done), time.perf_counter()
         todo = [i for i in range(total) if i not in file.done]
         found = Summary(file.path, total, skipped, settling=_settling(variants))
@@ -127,7 +139,7 @@ def sweep(
             body = build(shaft, fidelity, **options)
             progress(skipped, total, f"reducing {body.size} unknowns")
             basis = reduce(body, n, file.basis or 0)
-            solver = _Solver(body, Task(variants, (basis,), n, tolerance))
+            solver = _Solver(body, Task(variants, (basis,), n, tolerance, bars or {}, said))
             if file.basis is None:
                 # Of all variants, whatever is left of them: the basis is the same after an
                 # interruption.

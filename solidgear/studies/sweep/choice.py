@@ -7,6 +7,7 @@ finest that one of these needs serves all.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -14,8 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.judge.settle import Settled, settle
+from solidgear.judge.settle import Settled, bars_of_modes, settle
+from solidgear.ladder import build
 from solidgear.quantity import Quantity
+from solidgear.solve.modes import modes
 from solidgear.studies.sweep.bench import surface
 
 if TYPE_CHECKING:
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
 MOST = 8
+#: modes beyond those of a row, which bars of the last of a family need
+SPARE = 6
 
 
 def settled_for_sweep(
@@ -68,6 +73,23 @@ def settled_for_sweep(
         reached=all(settled.reached for settled in found),
         judged_on=len(found),
     )
+
+
+def bars_of_rows(variants: BearingVariants, settled: Settled, n: int) -> dict[str, float]:
+    """Relative bars of the numbers of rows by their names, those of `n` natural frequencies with them:
+    the largest over the scene and the ends of a sweep, on the mesh that was settled on.
+    """
+    bars: dict[str, float] = {str(name): bar for name, bar in settled.bars.items()}
+    judged = [variants.scene, *_ends(variants)]
+    known: list[set[str]] = []
+    for one in judged:
+        body = build(one, settled.rung, **settled.options)
+        told = bars_of_modes(one, body, modes(body, one, n + SPARE, ovalising=False), settled)
+        known.append({*map(str, told)})
+        for name, bar in told.items():
+            bars[str(name)] = max(bar, bars.get(str(name), 0.0))
+    everywhere = set.intersection(*known) | {*map(str, settled.bars)}
+    return {name: bar for name, bar in bars.items() if name in everywhere and math.isfinite(bar)}
 
 
 def _ends(variants: BearingVariants) -> list[Scene]:

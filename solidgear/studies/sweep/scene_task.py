@@ -17,6 +17,7 @@ from solidgear.models.limits import number
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
 from solidgear.studies.one_shaft import mass_of, one_shaft
+from solidgear.studies.sweep.bearing_task import BARS, without_bars
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
 from solidgear.studies.sweep.file_task import FileTask
@@ -62,7 +63,8 @@ class SceneTask(FileTask):
 
     @property
     def columns(self) -> dict[str, type]:
-        out: dict[str, type] = {"model": str, "unknowns": int, "mass": float}
+        out: dict[str, type] = {"model": str, "unknowns": int}
+        out |= {"mass": float, "mass bar": float} | ({BARS: str} if self.model else {})
         for name in STATICS:
             out |= self._with_bar(str(name), float)
         for k in range(1, self.n + 1):
@@ -103,6 +105,7 @@ class SceneTask(FileTask):
             "model": f"{found.settled.rung}, {found.settled.setting}",
             "unknowns": found.settled.body.size,
             "mass": found.mass,
+            "mass bar": found.mass_bar and found.mass_bar * found.mass,
         }
         for name in STATICS:
             out |= {str(name): found.values.get(name), f"{name} bar": found.bar(name)}
@@ -117,10 +120,13 @@ class SceneTask(FileTask):
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
         found = answered(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        mass, exact = mass_of(scene, body)
         out: dict[str, Any] = {
             "model": self.model,
             "unknowns": body.size,
-            "mass": mass_of(scene, body)[0],
+            "mass": mass,
+            "mass bar": exact and exact * mass,
+            BARS: without_bars(self.model),
         }
         out |= {str(name): found.quantities.get(name) for name in STATICS}
         elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]
