@@ -16,10 +16,12 @@ from solidgear.body import as_supports
 from solidgear.body.cache import Cache
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.studies.sweep.bearing_sweep import sweep
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import table
 from tests.dense import every, whole
 
 ROOT = Path(__file__).parent.parent
+DISC = ROOT / "geometry" / "rotor_disc.toml"
 LIGHT = {
     "euler": {},
     "timoshenko": {},
@@ -31,7 +33,7 @@ STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
 
 @pytest.fixture(scope="module")
 def scene():
-    return sg.load(ROOT / "geometry" / "rotor_disc.toml")
+    return sg.load(DISC)
 
 
 @pytest.fixture(scope="module")
@@ -226,7 +228,8 @@ def test_the_sweep_carries_masses(scene, tmp_path):
     out = tmp_path / "rows.csv"
     options = LIGHT["harmonic"]
     vary = ["bearing.roller.scale=log:0.1:10:3"]
-    sweep(scene, vary, out, fidelity="harmonic", options=options, n=8)
+    variants = bearing_variants(DISC, vary)
+    sweep(variants, out, fidelity="harmonic", options=options, n=8)
     rows = table(out)
     body = sg.build(scene, "harmonic", **options)
     for row in rows:
@@ -237,17 +240,23 @@ def test_the_sweep_carries_masses(scene, tmp_path):
         assert [float(row[f"f{k}_hz"]) for k in range(1, 9)] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_a_free_disc_leaves_rigid_motions_exact(scene, tmp_path):
+def test_a_free_disc_leaves_rigid_motions_exact(tmp_path):
     """Torsion that nothing resists, with a disc on it: zero, and the elastic one by the sweep too."""
-    soft = sg.Bearing(
-        name="S", y=0.05, seat_width=0.02, stiffness={"kxx": 1e8, "kyy": 1e7, "kzz": 1e8}
-    )
-    loose = scene.with_changes(bearings=(soft, scene.bearings[1]), masses=scene.masses[:1])
+    path = tmp_path / "loose.toml"
+    text = DISC.read_text()
+    start, end = text.index('name = "coupling"'), text.index("[port]")
+    text = text[: text.rindex("[[mass]]", 0, start)] + text[end:]
+    clamped = text[text.index('face = "start"') : text.index('hold = "clamped"')]
+    free = 'position = 0.05\nseat_width = "20 mm"\n'
+    springs = "stiffness = { kxx = 1e8, kyy = 1e7, kzz = 1e8 }"
+    path.write_text(text.replace(clamped, free).replace('hold = "clamped"', springs))
+    loose = sg.load(path)
     body = sg.build(loose, "timoshenko")
     found = sg.modes(body, loose, n=10)
     assert found.names[0] == "rigid torsion" and found.frequency_hz[0] == 0.0
     out = tmp_path / "rows.csv"
-    sweep(loose, ["bearing.S.scale=1:2:2"], out, fidelity="timoshenko", n=10)
+    variants = bearing_variants(path, ["bearing.spindle.scale=1:2:2"])
+    sweep(variants, out, fidelity="timoshenko", n=10)
     row, *_ = table(out)
     wanted = every(found)[:11][1:]
     assert [float(row[f"f{k}_hz"]) for k in range(1, 11)] == pytest.approx(wanted, rel=1e-6)

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import stdtrit
 
-from solidgear.errors import SolidgearError, listed
+from solidgear.errors import SolidgearError
 from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.correlate import DEVIATIONS, on_points_of, peaks_of
@@ -198,7 +198,7 @@ class Fit:
         ]
         said, out = f"leave {among[0]} open", "leave it out"
         if len(among) > 1:
-            said, out = f"cannot separate {listed(among)}", "leave one of them out"
+            said, out = f"cannot separate {' and '.join(among)}", "leave one of them out"
         raise SolidgearError(
             f"identify: these resonances {said}: {_factor(deviation)}; {out}, or measure a mode that "
             "it moves"

@@ -125,7 +125,7 @@ def sweep(
     total = len(variants)
     said = without_bars(fidelity)
     if bars is not None:
-        said = f"of the mesh, the largest over {judged_on} bearing sets"
+        said = f"of the mesh: the largest over {judged_on} bearing sets"
     with RowFile(
         Path(out), columns(variants, n, bars is not None), plan, total, overwrite, tell
     ) as file:

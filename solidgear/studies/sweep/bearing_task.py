@@ -30,7 +30,7 @@ BOUND, BARS = "reduction_bound", "bars"
 
 def without_bars(model: str) -> str:
     """Words on numbers of a mesh that nothing was told of."""
-    return f"none: the {model} mesh was given, -f auto judges its own"
+    return f"none: the {model} mesh was given; -f auto judges its own"
 
 
 def columns(variants: BearingVariants, n: int, barred: bool) -> dict[str, type]:

@@ -39,7 +39,7 @@ MOST_MODES = 20
 #: most that can be asked for
 MOST_SHAPES = 200
 #: words on bars of a row
-UNBARRED = "none: answered one by one, system-modes, response and deflect have them"
+UNBARRED = "none: system-modes and response and deflect have those of one variant"
 #: peaks of the mesh force
 PEAKS = 3
 #: of a bearing, N, N and N m
@@ -101,7 +101,7 @@ class TrainTask(FileTask):
 
     @property
     def columns(self) -> dict[str, type]:
-        train, out = self.usual, dict[str, type]({BARS: str})
+        train, out = self.usual, dict[str, type]()
         if train.operation:
             out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
         if train.operation and DEFLECTION in self.ask:
@@ -117,7 +117,7 @@ class TrainTask(FileTask):
         if RESPONSE in self.ask:
             for k in range(1, PEAKS + 1):
                 out |= {f"peak{k}_hz": float, f"peak{k}_force": float, f"peak{k}_mode": str}
-        return out
+        return out | {BARS: str}
 
     @property
     def plan(self) -> dict[str, Any]:
