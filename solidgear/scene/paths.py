@@ -179,7 +179,7 @@ def _name(thing: Any) -> str:
 
 
 def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
-    """Where an entry of a stiffness stands in the table of a bearing or a housing."""
+    """Place of an entry of a stiffness in the table of a bearing or a housing."""
     if "catalogue" in table:
         reason = (
             f"bearing {show(_name(table))} has its stiffness from its catalogue data; vary "
@@ -195,13 +195,13 @@ def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
 
 
 def _child(here: Any, key: str | int) -> Any:
-    """What a key holds, a material by name as its table."""
+    """Value under a key, a material by name as its table."""
     value = _held(here, key)
     return as_table(value) if key == "material" else value
 
 
 def _held(here: Any, key: str | int) -> Any:
-    """What a file holds under a key; None where it holds nothing."""
+    """Value that a file holds under a key; None where it holds nothing."""
     if isinstance(here, Mapping):
         return here.get(key)
     return here[key] if isinstance(here, list) and isinstance(key, int) else None

@@ -107,7 +107,7 @@ class _Study:
         tables = parse(path)
         ranges = scene_of(tables, path).uncertain if priors else None
         # what is found may lie beside the ranges that the file states
-        self.tables = {key: table for key, table in tables.items() if key != "uncertain"}
+        self.tables: Tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)
         self.keys = [one.keys for one in self.varied]
         self.before = np.array([one.before for one in self.varied])

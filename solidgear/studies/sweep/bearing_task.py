@@ -37,7 +37,8 @@ def columns(variants: BearingVariants, n: int, barred: bool) -> dict[str, type]:
     """Names and types of the columns of a row, in order."""
 
     def with_bar(name: str) -> dict[str, type]:
-        return {name: float} | ({f"{name} bar": float} if barred else {})
+        names = [name, f"{name} bar"] if barred else [name]
+        return dict.fromkeys(names, float)
 
     out: dict[str, type] = {"variant": int, **variants.columns}
     out |= {"status": str, "how": str, BOUND: float, BARS: str, "rigid_modes": int}

@@ -142,16 +142,16 @@ def entries_of(
         try:
             places = _places(path.strip(), files, owner)
             there = entry(places[0].keys, files[places[0].file])
-            text = _is_text(places, there)
-            listed = text or ":" not in spec
-            values = _listed(spec.split(","), text) if listed else _range(spec)
+            of_words = _is_text(places, there)
+            listed = of_words or ":" not in spec
+            values = _listed(spec.split(","), of_words) if listed else _range(spec)
         except SceneError as error:
             raise SolidgearError(f"--vary {text}: {error}") from None
         made = Entry(
             label="+".join(one.label for one in places),
             places=places,
             there=there,
-            text=text,
+            text=of_words,
             **values,
         )
         _once(f"--vary {text}", [*out, made])
