@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from solidgear.errors import SceneError, SolidgearError, nearest
+from solidgear.errors import SceneError, SolidgearError, did_you_mean, near, nearest
 from solidgear.scene.paths import Keys, Tables, entries, entry, keys_of, label_of, put
 from solidgear.scene.text_keys import is_text
 from solidgear.studies.sweep.amounts import amount, in_si
@@ -314,8 +314,8 @@ def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[flo
 
 
 def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
-    """Sentence of an error about a path; of an unknown key with the entry that the whole path stands
-    for, as likely as not, before what those know who know a part of it.
+    """Sentence of an error about a path; of an unknown key with the entry that its last word stands
+    for, as likely as not, among those of the same thing, else with that of the whole path.
     """
     known = [
         f"{file}.{label_of(keys, tables)}".removeprefix(".")
@@ -323,7 +323,11 @@ def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
         for keys in entries(tables)
     ]
     said, unknown, _ = error.sentence.partition("unknown key")
-    hint = nearest(path, known) if unknown else ""
+    thing, _, word = path.rpartition(".")
+    beside = {label.rpartition(".")[2]: label for label in known if label.startswith(f"{thing}.")}
+    if not unknown:
+        return error.sentence
+    hint = did_you_mean(beside.get(near(word, beside))) if beside else nearest(path, known)
     return f"{said}{unknown}{hint}" if hint else error.sentence
 
 
