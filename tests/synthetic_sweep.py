@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-import solidgear as sg
 from solidgear.studies.sweep.bearing_sweep import sweep
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from solidgear.studies.sweep.rows import RowFile
 from tests.command import command
 
@@ -70,7 +70,8 @@ def right(tmp_path_factory):
 
 def light(out, **rest):
     options = {"elements": 40}
-    return sweep(sg.load(SCENE), [VARY], out, fidelity="timoshenko", options=options, n=4, **rest)
+    variants = bearing_variants(SCENE, [VARY])
+    return sweep(variants, out, fidelity="timoshenko", options=options, n=4, **rest)
 
 
 def call(out, *more):

@@ -29,8 +29,8 @@ def test_the_best_of_a_span_is_that_of_a_grid(span):
     grid = sg.sweep(SHAFT, "bearing.B.position=-75 mm:-20 mm:28", model="timoshenko", n=1)
     # the least is flat: within a fiftieth of the range it changes by less than this
     assert span.best.value == pytest.approx(grid["C_thx"].min(), rel=2e-4)
-    assert len(span.path) <= 12
-    assert "no error bars" in span.sentences[1]
+    assert len(span.path) <= 36  # a sample and three searches of nine or so
+    assert "no error bars" in span.sentences[2]
 
 
 def test_an_optimum_inside_a_range_is_found_and_one_at_its_end_is_told(span):
@@ -99,7 +99,7 @@ def test_the_command_writes_its_path_and_says_where_no_design_will_do(tmp_path):
     out = tmp_path / "out"
     words = ["optimise", SHAFT, "--vary", "bearing.B.position=-40 mm:-30 mm", "-f", "euler"]
     told = command(*words, "--goal", "max f1", "-o", out)
-    assert told.exit_code == 0 and "designs solved" in told.output
+    assert told.exit_code == 0 and "designs across the range" in told.output
     data = json.loads((out / "optimum.json").read_text())
     values = [one["value"] for one in data["designs"] if one["kept"]]
     assert data["designs"][data["best"]]["value"] == max(values)

@@ -16,10 +16,12 @@ from solidgear.body import as_supports
 from solidgear.body.cache import Cache
 from solidgear.reduction.effective_mass import synthesise
 from solidgear.studies.sweep.bearing_sweep import sweep
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import table
 from tests.dense import every, whole
 
 ROOT = Path(__file__).parent.parent
+DISC = ROOT / "geometry" / "rotor_disc.toml"
 LIGHT = {
     "euler": {},
     "timoshenko": {},
@@ -31,7 +33,7 @@ STEEL = sg.Material(E=2.07e11, nu=0.3, density=7850.0)
 
 @pytest.fixture(scope="module")
 def scene():
-    return sg.load(ROOT / "geometry" / "rotor_disc.toml")
+    return sg.load(DISC)
 
 
 @pytest.fixture(scope="module")
@@ -226,28 +228,36 @@ def test_the_sweep_carries_masses(scene, tmp_path):
     out = tmp_path / "rows.csv"
     options = LIGHT["harmonic"]
     vary = ["bearing.roller.scale=log:0.1:10:3"]
-    sweep(scene, vary, out, fidelity="harmonic", options=options, n=8)
+    variants = bearing_variants(DISC, vary)
+    sweep(variants, out, fidelity="harmonic", options=options, n=8)
     rows = table(out)
     body = sg.build(scene, "harmonic", **options)
     for row in rows:
-        assert row["how"] == "reduced" and float(row["error_bound"]) < 1e-6
+        assert row["how"] == "reduced" and float(row["reduction_bound"]) < 1e-6
         scaled = scene.bearings[1].scaled(float(row["bearing.roller.scale"]))
         here = scene.with_changes(bearings=(scene.bearings[0], scaled))
         wanted = every(sg.modes(body, here, n=8, ovalising=False))[:8]
         assert [float(row[f"f{k}_hz"]) for k in range(1, 9)] == pytest.approx(wanted, rel=1e-6)
 
 
-def test_a_free_disc_leaves_rigid_motions_exact(scene, tmp_path):
+def test_a_free_disc_leaves_rigid_motions_exact(tmp_path):
     """Torsion that nothing resists, with a disc on it: zero, and the elastic one by the sweep too."""
-    soft = sg.Bearing(
-        name="S", y=0.05, seat_width=0.02, stiffness={"kxx": 1e8, "kyy": 1e7, "kzz": 1e8}
-    )
-    loose = scene.with_changes(bearings=(soft, scene.bearings[1]), masses=scene.masses[:1])
+    path = tmp_path / "loose.toml"
+    text = DISC.read_text()
+    start, end = text.index('name = "coupling"'), text.index("[port]")
+    text = text[: text.rindex("[[mass]]", 0, start)] + text[end:]
+    start = text.index('name = "spindle"')
+    end = text.index("[[bearing]]", start)
+    soft = 'name = "spindle"\nposition = 0.05\nseat_width = "20 mm"\n'
+    soft += "stiffness = { kxx = 1e8, kyy = 1e7, kzz = 1e8 }\n"
+    path.write_text(text[:start] + soft + text[end:])
+    loose = sg.load(path)
     body = sg.build(loose, "timoshenko")
     found = sg.modes(body, loose, n=10)
     assert found.names[0] == "rigid torsion" and found.frequency_hz[0] == 0.0
     out = tmp_path / "rows.csv"
-    sweep(loose, ["bearing.S.scale=1:2:2"], out, fidelity="timoshenko", n=10)
+    variants = bearing_variants(path, ["bearing.spindle.scale=1:2:2"])
+    sweep(variants, out, fidelity="timoshenko", n=10)
     row, *_ = table(out)
     wanted = every(found)[:11][1:]
     assert [float(row[f"f{k}_hz"]) for k in range(1, 11)] == pytest.approx(wanted, rel=1e-6)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import solidgear as sg
-from solidgear.studies.sweep.vary import of_bearings_alone
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import command, table
 
 SHAFT = "geometry/shaft_stepped.toml"
@@ -81,6 +81,7 @@ def test_a_table_of_ones_own_says_every_variant_and_an_empty_cell_leaves_the_fil
     [
         (["--vary", "segment.left.diamter=1 mm,2 mm"], "did you mean .segment.left.diameter"),
         (["--vary", "segment.lef.diameter=1 mm,2 mm"], "there is no segment.lef"),
+        (["--vary", "bearing.A.kxq=1e8,2e8"], "did you mean .bearing.A.stiffness.kxx"),
         (["--vary", "segment.left.diameter=1 mm:2 s:3"], "is no known unit|1 mm:2 s:3"),
         (
             ["--vary", "segment.left.diameter=50 mm", "--keep-sum", "segment.left.length"],
@@ -103,15 +104,17 @@ def test_the_command_says_what_was_solved_and_why_variants_were_refused(tmp_path
     rows = tmp_path / "rows.csv"
     vary = ("--vary", "segment.left.length=40 mm:60 mm:3", "-f", "timoshenko", "-o", rows)
     told = " ".join(command("sweep", SHAFT, *vary).output.split())
-    assert "every variant is meshed and solved for itself. 3 variants" in told
+    assert "Wrote 3 rows to" in told and "3 variants in" in told
     assert "Refused:" in told and "across the step of the outer radius at 0.04 m" in told
     assert [row["status"] == "ok" for row in table(rows)] == [False, True, True]
-    assert "3 of them there before" in command("sweep", SHAFT, *vary).output
+    assert "all 3 rows were there already" in command("sweep", SHAFT, *vary).output
 
 
 def test_springs_alone_go_the_way_of_one_body(tmp_path):
-    assert of_bearings_alone(["bearing.A.stiffness.kzz=1e8,2e8"]) == ["bearing.A.kzz=1e8,2e8"]
-    assert of_bearings_alone(["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]) is None
+    springs = bearing_variants(SHAFT, ["bearing.A.kzz=1e8,2e8"])
+    assert springs.entries[0].label == "bearing.A.stiffness.kzz"
+    both = ["bearing.A.kzz=1e8,2e8", "material.E=200 GPa,210 GPa"]
+    assert bearing_variants(SHAFT, both) is None
     told = command(
         "sweep",
         SHAFT,
@@ -123,3 +126,52 @@ def test_springs_alone_go_the_way_of_one_body(tmp_path):
         tmp_path / "r.csv",
     )
     assert "one body does for all" in told.output
+
+
+GEARBOX = "geometry/gearbox_catalogue.toml"
+
+
+@pytest.mark.parametrize(
+    ("entry", "words"),
+    [
+        ("bearing.B.catalogue.designation", ("7208 B", "7310 B")),  # B is a byte as well
+        ("bearing.A.catalogue.designation", ("NU 207", "NU207 m")),
+        ("title", ("20 mm", "3 kN")),
+        ("segment.left.name", ("4 m", "5 m")),
+        ("port.name", ("10 K", "20 K")),
+    ],
+)
+def test_a_key_of_words_is_no_quantity_whatever_it_looks_like(entry, words):
+    rows = sg.sweep(GEARBOX, f"{entry}={','.join(words)}", **BEAM)
+    assert rows[entry].tolist() == list(words)
+
+
+def test_a_word_in_a_table_of_ones_own_is_a_word(tmp_path):
+    mine = tmp_path / "mine.csv"
+    mine.write_text("bearing.B.catalogue.designation,bearing.A.position\n7310 B,15 mm\n,16 mm\n")
+    rows = sg.sweep(GEARBOX, table=mine, **BEAM)
+    assert rows["bearing.B.catalogue.designation"].tolist() == ["7310 B", "7208 B"]
+    assert rows["bearing.A.position"].tolist() == [0.015, 0.016]
+
+
+def test_data_of_one_bearing_that_are_kept_for_another_are_told():
+    rows = sg.sweep(GEARBOX, "bearing.B.catalogue.designation=7208 B,7310 B", **BEAM)
+    (caution,) = rows.cautions
+    assert "elements, element_diameter, pitch_diameter" in caution and '"7208 B"' in caution
+    assert sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", **BEAM).cautions == ()
+
+
+def test_a_material_by_name_is_its_numbers(tmp_path):
+    scene = by_hand(tmp_path, ('E = "207 GPa"', 'E = "210 GPa"'))
+    own = sg.build(scene, "timoshenko")
+    want = sg.modes(own, scene, n=2).frequency_hz[-2]
+    named = tmp_path / "named.toml"
+    text = open(SHAFT, encoding="utf-8").read()
+    start, end = text.index("[material]"), text.index("[[segment]]")
+    named.write_text('material = "42CrMo4"\n' + text[:start] + text[end:])
+    rows = sg.sweep(named, "material.E=210 GPa,190 GPa", **BEAM)
+    assert rows["f1_hz"][0] == pytest.approx(want, rel=1e-12)
+    assert rows["f1_hz"][1] < rows["f1_hz"][0]
+    words = sg.sweep(named, "material=42CrMo4,aluminium", **BEAM)
+    assert words["material"].tolist() == ["42CrMo4", "aluminium"]
+    assert words["f1_hz"][0] == rows["f1_hz"][0]

@@ -240,3 +240,23 @@ def test_the_command_writes_what_it_tells(tmp_path):
     rows = (out / "sensitivities.csv").read_text().splitlines()
     assert len(rows) == 1 + len(data["of"][0]["derivatives"])
     assert (out / "sensitivities_1.svg").exists()
+
+
+def test_a_table_fits_a_page_and_shows_no_bar_of_a_mesh_that_is_next_to_none():
+    told = command("sensitivities", "geometry/shaft_stepped.toml", "-f", "timoshenko")
+    assert max(map(len, told.stdout.splitlines())) <= 80
+    assert "Mesh: below 0.010 % everywhere." in told.stdout and "0.00000" not in told.stdout
+
+
+def test_numbers_of_a_material_by_name_have_derivatives(tmp_path):
+    """The same shaft with its material by name and by its numbers."""
+    named, told = tmp_path / "named.toml", tmp_path / "told.toml"
+    text = shaft(tmp_path).read_text()
+    constants = next(line for line in text.splitlines() if line.startswith("material = "))
+    named.write_text(text.replace(constants, 'material = "42CrMo4"'))
+    own = 'material = { E = "210 GPa", nu = 0.3, density = "7850 kg/m^3" }'
+    told.write_text(text.replace(constants, own))
+    of = {"model": "euler", "of": ["bending 1"], "by": ["material"], "coarser": False}
+    by_name, by_numbers = (sg.sensitivities(path, **of)["bending 1"] for path in (named, told))
+    for path in ("material.E", "material.density"):
+        assert by_name[path].by == pytest.approx(by_numbers[path].by, rel=1e-9)

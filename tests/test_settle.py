@@ -23,6 +23,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Bearing
 from solidgear.solve.statics import condense
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from solidgear.studies.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
@@ -256,7 +257,8 @@ def test_a_sweep_whose_ends_are_refused_is_judged_on_the_scene_alone(run):
 @pytest.mark.slow
 def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     """Clamped as hard as this, a compliance is all shaft, and errs as the shaft does."""
-    hard = settled_for_sweep(scene, ["bearing.1.scale=1,1e4", "bearing.2.scale=1,1e4"], 0.01)
+    scales = ["bearing.1.scale=1,1e4", "bearing.2.scale=1,1e4"]
+    hard = settled_for_sweep(bearing_variants(SCENE, scales), 0.01)
     base = settle(scene, 0.01, "all")
     assert hard.judged_on > 1 and hard.reached
     for quantity, bar in base.bars.items():

@@ -13,11 +13,13 @@ import solidgear as sg
 from solidgear.errors import SolidgearError
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.studies.sweep import bearing_sweep as runner
-from solidgear.studies.sweep.bearing_sweep import sweep, variants_of
+from solidgear.studies.sweep.bearing_sweep import sweep
 from solidgear.studies.sweep.bearing_task import ENTRIES
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from tests.command import command, numbers
+from tests.counted import from_the_start
 
-SCENE = sg.load("geometry/pinion_overhung.toml")
+PATH = from_the_start("geometry/pinion_overhung.toml")
 VARY = [
     "bearing.2.position=0.21,0.2246,0.9,0.246",
     "bearing.1.kzz=log:8e9:1e11:3",
@@ -27,9 +29,10 @@ LIGHT = {"timoshenko": {"elements": 40}, "harmonic": {"order": 2, "layers": 1}}
 
 
 def light(out, fidelity="timoshenko", vary=VARY, **rest):
-    return sweep(
-        SCENE, vary, out, fidelity=fidelity, options=LIGHT[fidelity], n=rest.pop("n", 6), **rest
-    )
+    sample = rest.pop("sample", None)
+    n = rest.pop("n", 6)
+    variants = bearing_variants(PATH, vary, sample)
+    return sweep(variants, out, fidelity=fidelity, options=LIGHT[fidelity], n=n, **rest)
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +44,7 @@ def finished(tmp_path_factory):
 @pytest.mark.parametrize("fidelity", LIGHT)
 def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_path):
     summary = light(tmp_path / "rows.csv", fidelity)
-    rows, variants = numbers(tmp_path / "rows.csv"), variants_of(SCENE, VARY)
+    rows, variants = numbers(tmp_path / "rows.csv"), bearing_variants(PATH, VARY)
     assert len(rows) == summary.total == 36
     body = sg.build(variants.shaft(), fidelity, **LIGHT[fidelity])
     solved = [row for row in rows if row["status"] == "ok"]
@@ -67,7 +70,7 @@ def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_p
         np.testing.assert_allclose(
             [row[f"f{k}_hz"] for k in range(1, 7)],
             [f for f, _ in direct],
-            rtol=row["error_bound"] + modes.evidence["residual"] + 1e-9,
+            rtol=row["reduction_bound"] + modes.evidence["residual"] + 1e-9,
         )
         assert [row[f"mode{k}"] for k in range(1, 7)] == [name for _, name in direct]
         assert row["rigid_modes"] == modes.evidence["rigid_modes"] == 1
@@ -84,7 +87,7 @@ def test_a_seat_meshed_for_others_changes_little(tmp_path):
     """
     light(tmp_path / "rows.csv", "harmonic", ["bearing.2.position=0.21,0.2246,0.246"])
     for row in numbers(tmp_path / "rows.csv"):
-        scene = variants_of(SCENE, [f"bearing.2.position={row['bearing.2.position']!r}"]).of(0)
+        scene = bearing_variants(PATH, [f"bearing.2.position={row['bearing.2.position']!r}"]).of(0)
         own = (
             sg.modes(sg.build(scene, "harmonic", order=2, layers=1), scene, 6)
             .named("bending 1")
@@ -99,10 +102,10 @@ def test_refused_variants_are_rows_that_say_why(finished):
     for row in rows:
         outside, negative = row["bearing.2.position"] == 0.9, row["bearing.2.scale"] == -1
         if outside:
-            assert row["status"].startswith('bearing "2" at 0.9 m: ')
+            assert row["status"].startswith('bearing[2] "2".')
             assert "inside the shaft" in row["status"]
         elif negative:
-            assert 'bearing "2"' in row["status"] and "greater than zero" in row["status"]
+            assert 'bearing[2] "2".scale' in row["status"] and "greater than zero" in row["status"]
         else:
             assert row["status"] == "ok"
         assert (row["f1_hz"] == "") == (row["status"] != "ok")
@@ -115,7 +118,7 @@ def test_bearings_of_no_stiffness_leave_the_shaft_free(tmp_path):
     (row,) = numbers(tmp_path / "rows.csv")
     assert row["status"] == "ok" and row["rigid_modes"] == 6
     assert [row[f"K_{name}"] for name in ENTRIES] == [0.0] * 8 and row["C_zz"] == ""
-    free = sg.modes(sg.build(SCENE, "timoshenko", elements=40), (), 6)
+    free = sg.modes(sg.build(sg.load(PATH), "timoshenko", elements=40), (), 6)
     assert row["f1_hz"] == pytest.approx(free.frequency_hz[free.frequency_hz > 0][0], rel=1e-6)
 
 
@@ -132,10 +135,10 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
             [a[f"f{k}_hz"] for k in range(1, 7)], [b[f"f{k}_hz"] for k in range(1, 7)], rtol=1e-7
         )
     monkeypatch.undo()
-    bound = max(row["error_bound"] for row in numbers(tmp_path / "loose.csv"))
+    bound = max(row["reduction_bound"] for row in numbers(tmp_path / "loose.csv"))
     grown = light(tmp_path / "grown.csv", "harmonic", vary, tolerance=bound / 10)
     assert grown.full == 0 and grown.basis > loose.basis
-    assert max(row["error_bound"] for row in numbers(tmp_path / "grown.csv")) <= bound / 10
+    assert max(row["reduction_bound"] for row in numbers(tmp_path / "grown.csv")) <= bound / 10
     # nor does it take probes for it: a weak row enlarges the basis on the way
     monkeypatch.setattr(runner._Solver, "settle", lambda self, probes: None)
     assert light(tmp_path / "late.csv", "harmonic", vary, tolerance=bound / 10).basis == grown.basis
@@ -147,7 +150,7 @@ def test_a_row_does_not_depend_on_those_solved_before_it(tmp_path, monkeypatch):
     monkeypatch.setattr(runner, "PROBES", 2)  # variants 0 and 4 of 8
     vary = ["bearing.1.scale=0.01,0.011,0.012,100,0.013,0.014,0.015,0.016"]
     light(tmp_path / "loose.csv", vary=vary)
-    bounds = [row["error_bound"] for row in numbers(tmp_path / "loose.csv")]
+    bounds = [row["reduction_bound"] for row in numbers(tmp_path / "loose.csv")]
     stiff = bounds.pop(3)
     tolerance = (max(bounds) * stiff) ** 0.5
     assert max(bounds) < tolerance / 3 < tolerance < stiff / 3  # clear of rounding
@@ -231,11 +234,12 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
         ):
             light(out, **other)
         assert out.read_text() == before
-    moved = SCENE.with_changes(bearings=(SCENE.bearings[0].with_changes(y=0.1), SCENE.bearings[1]))
+    moved = tmp_path / "moved.toml"
+    first = repr(sg.load(PATH).bearings[0].y)
+    moved.write_text(PATH.read_text().replace(f"position = {first}", "position = 0.1"))
     with pytest.raises(SolidgearError, match="differs in: scene"):
         sweep(
-            moved,
-            ["bearing.1.scale=1,2"],
+            bearing_variants(moved, ["bearing.1.scale=1,2"]),
             out,
             fidelity="timoshenko",
             options=LIGHT["timoshenko"],
@@ -262,8 +266,7 @@ def test_too_many_seats_are_refused_with_the_number(tmp_path):
         light(tmp_path / "rows.csv", vary=["bearing.2.position=0.2:0.246:400"])
     with pytest.raises(SolidgearError, match="cannot be rigid"):
         sweep(
-            SCENE,
-            VARY,
+            bearing_variants(PATH, VARY),
             tmp_path / "r.csv",
             fidelity="harmonic",
             options={"attachments": ("rigid", "average")},
@@ -282,7 +285,7 @@ def test_workers_get_the_small_operators_only(monkeypatch):
 
     from solidgear.reduction.moments import reduce
 
-    variants = variants_of(SCENE, VARY)
+    variants = bearing_variants(PATH, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)
     task = runner.Task(variants, (reduce(body, 6),), 6, 1e-6)
     mesh = sum(b.stiffness.data.nbytes for b in body.blocks[:1])
@@ -316,7 +319,7 @@ def test_missing_packages_are_named(tmp_path, monkeypatch):
 # ------------------------------------------------------------------------------------------------- the command
 def call(*arguments):
     light = "-f timoshenko --set elements=40 -n 6".split()
-    return command("sweep", "geometry/pinion_overhung.toml", *light, *arguments)
+    return command("sweep", PATH, *light, *arguments)
 
 
 def test_the_command(finished, tmp_path):
@@ -326,7 +329,7 @@ def test_the_command(finished, tmp_path):
     assert json.loads(done.stdout)["refused"] == 18
     assert (tmp_path / "rows.csv").read_text() == finished[0].read_text()
     again = call(*vary, "--out", str(tmp_path / "rows.csv"))
-    assert "36 of them there before" in again.stdout
+    assert "all 36 rows were there already" in again.stdout
 
 
 def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):

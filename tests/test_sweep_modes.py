@@ -8,14 +8,16 @@ import solidgear as sg
 from solidgear.body import Supports
 from solidgear.reduction import moments as reduction
 from solidgear.reduction.moments import reduce
-from solidgear.studies.sweep.bearing_sweep import variants_of
+from solidgear.studies.sweep.bearing_variants import bearing_variants
 from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
+from tests.counted import from_the_start
 from tests.dense import whole
 
-SCENE = sg.load("geometry/pinion_overhung.toml")
+PATH = from_the_start("geometry/pinion_overhung.toml")
+SCENE = sg.load(PATH)
 #: overlapping candidate seats, among them two that share no mesh line
 POSITIONS = "bearing.2.position=0.205,0.2137,0.23,0.246"
-VARIANTS = variants_of(SCENE, [POSITIONS])
+VARIANTS = bearing_variants(PATH, [POSITIONS])
 LIGHT = {"timoshenko": {"elements": 40}, "harmonic": {"order": 2, "layers": 1}}
 
 

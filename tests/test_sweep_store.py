@@ -193,7 +193,7 @@ def test_the_command_tells_what_it_mended(tmp_path):
         db.execute("UPDATE rows SET line = replace(line, 'ok', 'of') WHERE variant = 3")
     again = call(out)
     assert again.exit_code == 0, again.output
-    assert out.read_bytes() == right and "11 of them there before" in again.stdout
+    assert out.read_bytes() == right and "11 more were there already" in again.stdout
     told = [line for line in again.stderr.splitlines() if not line.startswith("caution: ")]
     assert told[0] == (
         f"solidgear: {out}.sqlite was damaged: "

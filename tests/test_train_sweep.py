@@ -159,7 +159,7 @@ def test_the_bound_of_a_row_is_the_largest_of_its_frequencies(tmp_path):
         1:
     ]
     largest = max(mode.bound for mode in modes[:9])
-    assert row["error_bound"] == pytest.approx(largest, rel=1e-6) and largest > 1e-8
+    assert row["reduction_bound"] == pytest.approx(largest, rel=1e-6) and largest > 1e-8
     assert row["modes"] == len(modes) > 9 and "f10_hz" not in row
 
 
@@ -343,7 +343,7 @@ def test_a_variant_without_equilibrium_is_refused_as_well(tmp_path):
         ("mesh.stiffness=1 N/m:2:3", "give both ends with a unit, or none"),
         ("mesh.stiffness=1:2", 'values are "a:b:n"'),
         ("mesh=1", "mesh: is no single entry; add one of shaft_angle"),
-        ("mesh.stiffness.kxx=1", "mesh.stiffness: is no table with a kxx"),
+        ("mesh.stiffness.kxx=1", "in which there is no kxx"),
         ("mesh.stiffness", "write PATH=VALUES"),
         ("bearing.1.position=1,2", "pinion.bearing.1.position or gear.bearing.1.position"),
         ("pinion.pitch_radius=300 mm,400 mm", "no variant can be solved; the first one is"),
@@ -426,7 +426,7 @@ def test_the_command_draws_curves_over_one_number(tmp_path):
     vary = ("--vary", "operation.full.torque=20 N*m:100 N*m:3")
     for ending, said in (
         ("svg", "2 shafts meshed and reduced"),
-        ("html", "3 of them there before"),
+        ("html", "all 3 rows were there already"),
     ):
         chart = tmp_path / f"curves.{ending}"
         done = call(tmp_path, GEARBOX, *vary, "--chart", chart)

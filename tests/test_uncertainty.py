@@ -141,3 +141,47 @@ def test_the_commands_tell_ranges(tmp_path):
     done = command("budget", scene, "--ask", "bending", "--out", chart)
     assert done.exit_code == 0, done.output
     assert "bearing.A.stiffness" in done.output and chart.stat().st_size > 10_000
+
+
+SHARED = """
+material = "42CrMo4"
+segment = [
+    { kind = "cylinder", name = "a", length = "150 mm", diameter = "50 mm" },
+    { kind = "cylinder", name = "b", length = "150 mm", diameter = "50 mm", material = %s },
+]
+bearing = [
+    { name = "A", position = "20 mm", seat_width = "20 mm", stiffness = { kxx = "4e8 N/m", kyy = "2e8 N/m", kzz = "4e8 N/m" } },
+    { name = "B", position = "280 mm", seat_width = "20 mm", stiffness = { kxx = "4e8 N/m", kzz = "4e8 N/m" } },
+]
+port = { at = "a.end", attach_to = "a" }
+"""
+
+
+def first(path, text):
+    path.write_text(text)
+    scene = sg.load(path)
+    return scene, sg.modes(sg.build(scene, "timoshenko"), scene, n=2).named(
+        "bending 1"
+    ).frequency_hz
+
+
+def test_a_modulus_moves_every_segment_that_has_it_from_the_material(tmp_path):
+    """A segment with a density of its own takes E from the material: a range of E is one of it too."""
+    own = SHARED % '{ density = "7000 kg/m^3" }'
+    scene, there = first(tmp_path / "a.toml", own)
+    softer = own.replace('"42CrMo4"', '{ E = "189 GPa", nu = 0.3, density = "7850 kg/m^3" }')
+    _, low = first(tmp_path / "b.toml", softer)
+    found = beside(stated(scene, {"material.E": "189 GPa : 210 GPa"})).of("bending 1").total
+    assert found.low == approx(low / there - 1, rel=1e-6)  # the same beam on the same mesh
+
+
+def test_a_material_of_a_segment_may_have_a_range(tmp_path):
+    named = SHARED % '"aluminium"'
+    scene, there = first(tmp_path / "a.toml", named)
+    stiffer = named.replace('"aluminium"', '{ E = "77 GPa", nu = 0.3, density = "2700 kg/m^3" }')
+    _, high = first(tmp_path / "b.toml", stiffer)
+    ranged = stated(scene, {"segment.b.material.E": "70 GPa : 77 GPa"})
+    assert beside(ranged).of("bending 1").total.high == approx(high / there - 1, rel=1e-6)
+    # a body that is given cannot be as many times as stiff in one of its segments alone
+    by_body = beside(ranged, sg.build(ranged, "timoshenko")).of("C_zz").total
+    assert by_body.low == approx(beside(ranged).of("C_zz").total.low, rel=1e-6)

@@ -491,10 +491,10 @@ MUTATIONS = (
     ),
     Mutation(
         "sweep: the housing of the other bearing",
-        "solidgear/studies/sweep/vary.py",
-        "_of_one_housing",
-        "_read(text, (index, True), field, label, spec)",
-        "_read(text, (0, True), field, label, spec)",
+        "solidgear/scene/sprung.py",
+        "resprung",
+        '_bearing(bearings[k], tables["bearing"][k])',
+        '_bearing(bearings[k], tables["bearing"][0])',
         "tests/test_housing.py::test_a_sweep_over_what_one_bearing_stands_in",
     ),
     Mutation(

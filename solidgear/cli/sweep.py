@@ -36,12 +36,12 @@ from solidgear.report.sweep_chart import sweep_table
 from solidgear.scene.toml_file import is_train, parse
 from solidgear.studies.check import cautions
 from solidgear.studies.sweep.bearing_sweep import sweep as swept
-from solidgear.studies.sweep.choice import settled_for_sweep
+from solidgear.studies.sweep.bearing_variants import BearingVariants, bearing_variants
+from solidgear.studies.sweep.choice import bars_of_rows, settled_for_sweep
 from solidgear.studies.sweep.file_task import Swept
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
 from solidgear.studies.sweep.train_variants import shafts_in
-from solidgear.studies.sweep.vary import of_bearings_alone
 from solidgear.studies.train.shaft import JUDGE, told_mix
 
 #: relative, of frequencies of a shaft
@@ -64,8 +64,8 @@ def sweep(
             "--vary",
             help="PATH=VALUES, repeatable: any entry of the file, such as segment.neck.diameter, "
             "bearing.A.seat_width, mesh.stiffness, pinion.bearing.2.position; PATH+PATH gives several "
-            "one value. Where bearing.NAME.FIELD (position from y = 0, scale, or an entry such as kxx), "
-            "bearing.NAME.housing.FIELD or housing.FIELD of a shaft vary alone, one body does for all. "
+            "one value. Where springs (bearing.NAME.kxx, bearing.NAME.scale for all of it, housing.kxx) "
+            "and positions of bearings of a shaft vary alone, one body does for all. "
             'VALUES: FROM:TO:COUNT, log:FROM:TO:COUNT or A,B,C, such as "0.2 m:0.24 m:9".',
         ),
     ] = None,
@@ -102,41 +102,42 @@ def sweep(
         **reduced.given,
     }
     refuse(of_train, f"a train, and {scene} is the scene of one shaft")
-    of_bearings = None if rows.of_files or told.chart else of_bearings_alone(vary or [])
-    if of_bearings is not None:
-        _sweep_shaft(scene, of_bearings, rows, model, tolerance, run)
-        return
+    if not (rows.of_files or told.chart):
+        variants = bearing_variants(scene, vary or [], rows.sample, rows.seed)
+        if variants is not None:
+            _sweep_shaft(variants, rows, model, tolerance, run)
+            return
     if tolerance != TOLERANCE:
         raise SolidgearError("--tolerance is that of one body for many bearing sets; give --tol")
     _sweep_entries(scene, vary or [], rows, model, told.chart, run)
 
 
 def _sweep_shaft(
-    scene: Path, vary: list[str], rows: Rows, model: Chosen, tolerance: float, run: Run
+    variants: BearingVariants, rows: Rows, model: Chosen, tolerance: float, run: Run
 ) -> None:
-    loaded = load(scene)
+    variants.first_sound()
+    loaded = load(variants.path)
     # before a file of rows is begun
-    settled = None
+    settled = bars = None
     if model.automatic():
         with Steps(quiet=not sys.stderr.isatty()) as steps:
-            settled = settled_for_sweep(
-                loaded, vary, model.tol, sample=rows.sample, seed=rows.seed, progress=steps
-            )
+            settled = settled_for_sweep(variants, model.tol, progress=steps)
+            steps("bars of natural frequencies")
+            bars = bars_of_rows(variants, settled, rows.n or loaded.ask.modes)
         name, given = settled.rung, settled.options
     else:
         name = str(model.name)
         given = LADDER[name].checked(options(model.pairs))
     with rows.counted(run.as_json) as (show, tell):
         found = swept(
-            loaded,
-            vary,
+            variants,
             fidelity=name,
             options=given,
             tolerance=tolerance,
+            bars=bars,
+            judged_on=settled.judged_on if settled else 0,
             progress=show,
             tell=tell,
-            sample=rows.sample,
-            seed=rows.seed,
             out=rows.out,
             n=rows.n,
             jobs=rows.jobs,
@@ -186,14 +187,16 @@ def _sweep_entries(
             n=rows.n,
         )
         found = rows.made(task, chart, show, tell)
-    written = drawn(found.curves, scene.stem, f"Rows in {found.path.name}.", chart)
+    lead = f"Rows in {found.path.name}."
+    written = drawn(found.curves, scene.stem, lead, chart, found.cautions)
     if run.as_json:
-        print(record_of(found))
+        print(record_of(found, cautions=found.cautions))
         ended_rows(found)
         return
     if found.curves is not None and len(found.curves.x) <= FEW and found.curves.frequencies:
         say(sweep_table(found.curves))
     say(rows_there(found), *_work(found), *refusals(found), *written)
+    say(*map(caution, found.cautions))
     ended_rows(found)
 
 
@@ -201,8 +204,7 @@ def _work(found: Swept) -> list[str]:
     """Sentences on what was done in this run, and how sure the rows are."""
     lines = []
     if found.total > found.skipped:
-        own = "The shaft varies: every variant is meshed and solved for itself."
-        lines.append(f"{own} {solved(found)}")
+        lines.append(solved(found))
     bars = [
         bar / hz
         for bar, hz in zip(found.columns.get("f1_hz bar", []), found.columns["f1_hz"])
@@ -277,7 +279,7 @@ def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
     if MODES in (told.ask or (MODES,)):
         meshed = JUDGE in mix.values()
         meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
-        lines.append(f"Column error_bound: what the reduction leaves, proven{meshes}.")
+        lines.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
     return lines
 
 

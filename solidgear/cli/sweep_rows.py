@@ -186,7 +186,10 @@ class Told(Group):
 def rows_there(found: Swept | Summary) -> str:
     """Sentence on the rows that are there."""
     path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
-    return f"{path}: {found.total} rows, {found.skipped} of them there before."
+    if found.skipped == found.total:
+        return f"{path}: all {found.total} rows were there already."
+    there = f"; {found.skipped} more were there already" if found.skipped else ""
+    return f"Wrote {found.total - found.skipped} rows to {path}{there}."
 
 
 def solved(found: Swept) -> str:

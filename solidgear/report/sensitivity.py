@@ -16,6 +16,8 @@ from solidgear.report.words import percent
 
 #: rows of a table and bars of a chart: what comes behind moves the number little
 MOST = 15
+#: of the number, below which nothing is told of the mesh
+LEAST = 1e-4
 #: px; height of a bar, and of names on a wide and on a narrow page
 BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
 UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
@@ -37,11 +39,15 @@ def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
         Column(
             "by its unit", lambda d: f"{_signed(units, d.by_unit, of.unit)} {_per(unit, d.unit)}"
         ),
-        Column("mesh", lambda d: None if d.apart is None else d.apart / 100, _mesh),
     ]
+    apart = [d.apart / 100 for d in shown if d.apart is not None]
+    if max(apart, default=0.0) >= LEAST:
+        columns.append(Column("mesh", lambda d: d.apart and d.apart / 100, _mesh))
     rest = [d for d in of.derivatives if d not in shown]
     still = sum(not d.elasticity for d in rest)
     note = []
+    if apart and max(apart) < LEAST:
+        note.append(f"Mesh: below {percent(LEAST, signed=False)} everywhere.")
     if len(rest) > still:
         most = percent(abs(rest[0].elasticity) / 100, signed=False)
         note.append(f"{len(rest) - still} more move it by {most} or less.")
@@ -63,6 +69,8 @@ def _signed(units: Units, value: float, si: str) -> str:
 
 
 def _mesh(share: float) -> str:
+    if share < LEAST:
+        return f"< {percent(LEAST, signed=False)}"
     return f"+- {percent(share, signed=False)}"
 
 
@@ -72,12 +80,13 @@ def lines(found: Any) -> Table:
         "number",
         "value",
         "unit",
+        "value from coarser mesh",
         "entry",
         "written",
         "at",
         "derivative",
         "elasticity",
-        "apart",
+        "elasticity from coarser mesh",
         "one-sided",
     )
     rows = [
@@ -85,6 +94,7 @@ def lines(found: Any) -> Table:
             one.name,
             one.value,
             one.unit,
+            one.apart,
             d.path,
             d.written,
             d.at,

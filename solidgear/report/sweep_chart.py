@@ -18,6 +18,8 @@ from solidgear.report.units import ENGINEERING, Units, plain
 NAMES, APART = 150.0, 13.0
 #: natural frequencies in the table of a train without operating points
 MOVING = 4
+#: what is told whether it moves or not
+FIRST = "bending 1"
 #: of the largest value of a column
 ROUNDING = 1e-9
 #: colour of curves that their names tell apart
@@ -50,36 +52,58 @@ def sweep_chart(found: Any, title: str, units: Units = ENGINEERING, width: float
 
 
 def sweep_table(found: Any, units: Units = ENGINEERING) -> Table:
-    """Table of the operating point and of the largest peak of the mesh force in every row."""
+    """Table of every row: of a train the operating point and the largest peak of the mesh force, else
+    the stiffness at the lumped point and the modes that move most, by their names.
+    """
     columns = [text("point", lambda k: found.labels[k])] if found.labels else []
     last = found.over.rpartition(".")[2]
     columns.append(
         Column(f"{last}\n{found.unit or 'SI'}", lambda k: f"{found.x[k]:.6g}", kind=NUMBER)
     )
-    told = [*found.mesh_force, *found.misalignment] or _moving_most(found.frequencies)
-    columns += [_column(one.name, one, units) for one in told]
+    told = [*found.mesh_force, *found.misalignment]
+    named = _by_name(found.frequencies)
+    shown = {} if told else _moving_most(named)
+    columns += [_column(one.name, one, units) for one in (*told, *found.statics)]
+    columns += [_values(name, values, "Hz", units) for name, values in shown.items()]
     for hz, force in zip(found.peak_hz, found.peak_force):
         peak = [_column("peak", hz, units), _column("peak", force, units)]
         columns += [*peak, text("mode", partial(_said, hz))]
     notes = ["Peak: largest of the mesh force."] if found.peak_hz else []
-    if told and told[0] in found.frequencies:
-        notes.append("f and a number: natural frequencies, those that change most.")
+    if len(shown) < len(named) and shown:
+        notes.append("Modes that change most; the file has all.")
     style = "bare" if len(found.mesh_force) < 2 else "ruled"  # names of meshes fill their columns
     return Table(f"Over {found.over}", columns, range(len(found.x)), " ".join(notes), style=style)
 
 
-def _moving_most(frequencies: Sequence[Any]) -> list[Any]:
-    """Natural frequencies that change most, in their order."""
-    change = [np.nanmax(one.values) / np.nanmin(one.values) for one in frequencies]
-    return [frequencies[k] for k in sorted(np.argsort(change)[::-1][:MOVING])]
+def _by_name(frequencies: Sequence[Any]) -> dict[str, np.ndarray]:
+    """Natural frequencies of all rows by the names of their modes, the lowest first."""
+    found: dict[str, np.ndarray] = {}
+    for one in frequencies:
+        for k, name in enumerate(one.words):
+            if name:
+                row = found.setdefault(name, np.full(len(one.values), np.nan))
+                row[k] = one.values[k] if np.isnan(row[k]) else row[k]
+    return dict(sorted(found.items(), key=lambda mode: float(np.nanmin(mode[1]))))
+
+
+def _moving_most(named: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """First bending, and the modes that change most, in their order."""
+    whole = {name: values for name, values in named.items() if np.isfinite(values).sum() > 1}
+    change = {name: np.nanmax(values) / np.nanmin(values) for name, values in whole.items()}
+    most = sorted(change, key=lambda name: (name != FIRST, -change[name]))[:MOVING]
+    return {name: values for name, values in named.items() if name in (most or named)}
 
 
 def _column(head: str, one: Any, units: Units) -> Column:
-    write = partial(units.number, si=one.unit, digits=4)
+    return _values(head, one.values, one.unit, units)
+
+
+def _values(head: str, given: np.ndarray, si: str, units: Units) -> Column:
+    write = partial(units.number, si=si, digits=4)
     # what is next to nothing beside the others is rounding
-    least = ROUNDING * float(np.nanmax(np.abs(one.values)))
-    values = np.where(np.abs(one.values) < least, 0.0, one.values).tolist()
-    return Column(f"{head}\n{units.unit(one.unit)}", values.__getitem__, write)
+    least = ROUNDING * float(np.nanmax(np.abs(given)))
+    values = np.where(np.abs(given) < least, 0.0, given).tolist()
+    return Column(f"{head}\n{units.unit(si)}", values.__getitem__, write)
 
 
 def _said(one: Any, k: int) -> str | None:

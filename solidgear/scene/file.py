@@ -59,7 +59,7 @@ def _several(ports: Any) -> Any:
     return [ports] if isinstance(ports, Mapping) else ports
 
 
-class _File(Model):
+class SceneFile(Model):
     """A scene file, but for what is read once the shaft is known."""
 
     title: str = ""
@@ -82,10 +82,10 @@ class _File(Model):
 
 
 #: keys and tables of a file
-KEYS = tuple(_File.model_fields)
+KEYS = tuple(SceneFile.model_fields)
 
 
-class _PartFile(_File):
+class ScenePartFile(SceneFile):
     """A scene file with a part from another file in place of segments."""
 
     # not needed where the groups of the part have all their own
@@ -94,7 +94,7 @@ class _PartFile(_File):
     segment: list[Shape] = []
 
     @model_validator(mode="after")
-    def _one_shaft(self) -> _PartFile:
+    def _one_shaft(self) -> ScenePartFile:
         if self.material is None and not self.body.materials:
             raise SceneError("this key is missing", path=("material",))
         for key, what in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
@@ -213,9 +213,9 @@ class _Reading:
         )
         return stated(scene, file.uncertain, file.bearing)
 
-    def _tables(self) -> tuple[_File, set[str]]:
+    def _tables(self) -> tuple[SceneFile, set[str]]:
         """The file without the keys that cannot be used, and these keys."""
-        raw, kind = self.raw, _PartFile if "body" in self.raw else _File
+        raw, kind = self.raw, ScenePartFile if "body" in self.raw else SceneFile
         for key, most in MOST.items():
             if isinstance(raw.get(key), list) and len(raw[key]) > most:
                 what = "masses" if key == "mass" else f"{key}s"
@@ -228,7 +228,7 @@ class _Reading:
         spoilt = {str(one.path[0]) for one in found}
         sound = {key: value for key, value in raw.items() if key not in spoilt}
         needed = {"material": STEEL, "segment": [], "port": []}
-        return _File(**{**needed, **with_port(sound)}), spoilt
+        return SceneFile(**{**needed, **with_port(sound)}), spoilt
 
     def _name_datums(self) -> None:
         """Tell what is called by which name, read from the file as it stands: a segment of a wrong

@@ -18,7 +18,7 @@ from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES, Matrix, stiffness
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.rules import ONE_HOUSING
 from solidgear.scene.typed import Model
-from solidgear.scene.units import SOFTEST, AxialSpring, Position
+from solidgear.scene.units import SOFTEST, AxialSpring, Factor, Position
 from solidgear.springs import in_series
 
 EMPTY = "is empty; write entries of its stiffness such as kxx, or matrix = rows"
@@ -127,14 +127,15 @@ def elastic(given: Any) -> Any:
     """
     if not isinstance(given, Mapping) or "rigid" in given:
         return given
+    given, scale = _unscaled(given)
     if not given:
         raise SceneError(EMPTY)
     if "matrix" in given:
         if len(given) > 1:
             raise SceneError("give either matrix, or named entries, not both", path=("matrix",))
-        return given
+        return Elastic(**given).scaled(scale)
     try:
-        return Elastic(stiffness=given)
+        return Elastic(stiffness=given).scaled(scale)
     except SceneError as error:
         raise SceneError.of(
             SceneError(one.reason, path=one.path[1:], value=one.value) for one in error.problems
@@ -227,9 +228,23 @@ def housing_of(table: Mapping[str, Any], places: Places) -> Housing | float | No
     """Support of all bearings by the [housing] of a file: a housing, or a spring along the axis
     (N/m); None where its place is not known.
     """
+    table, scale = _unscaled(table)
     if "axial" not in table or {"stiffness", "matrix"} & set(table):
-        return Housing.read(table, places)
+        housing = Housing.read(table, places)
+        return housing and housing.scaled(scale)
     spring = Housing.Words(**table)
     nowhere = "belongs to a stiffness; along the axis a spring has no place"
     spring.refuse(nowhere, "position", "from_")
-    return spring.axial
+    return spring.axial and spring.axial * scale
+
+
+class _Scale(Model):
+    """Factor on a housing."""
+
+    scale: Factor = 1.0
+
+
+def _unscaled(table: Mapping[str, Any]) -> tuple[dict[str, Any], float]:
+    """The table of a housing without the factor on it, and that factor."""
+    factor = _Scale(**{key: table[key] for key in table if key == "scale"})
+    return {key: value for key, value in table.items() if key != "scale"}, factor.scale

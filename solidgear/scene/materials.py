@@ -83,3 +83,21 @@ def by_name(value: Any) -> Any:
         )
     found = MATERIALS[name]
     return {"E": found.E, "nu": found.nu, "density": found.density, "name": name}
+
+
+def as_table(material: Any) -> Any:
+    """The table that a file might hold in place of the name of a material; anything else as it is.
+
+    Examples
+    --------
+    >>> as_table("42CrMo4")
+    {'E': '210 GPa', 'nu': 0.3, 'density': '7850 kg/m^3'}
+    """
+    try:
+        known = by_name(material) if isinstance(material, str) else None
+    except SceneError:
+        return material  # whoever reads the file tells
+    if known is None:
+        return material
+    modulus, density = f"{known['E'] / 1e9:g} GPa", f"{known['density']:g} kg/m^3"
+    return {"E": modulus, "nu": known["nu"], "density": density}

@@ -226,8 +226,8 @@ class Scene(Displayed, Model):
         Parameters
         ----------
         **changes
-            Fields by name; a new `material` also replaces the old default in the segments, and under
-            a new `load` bearings of catalogue data wait for their stiffness again.
+            Fields by name; constants of a new `material` also replace those of the old one in the
+            segments that have them from it, and under a new `load` bearings of catalogue data wait for their stiffness again.
 
         Returns
         -------
@@ -239,9 +239,9 @@ class Scene(Displayed, Model):
             As for `Scene`.
         """
         if "material" in changes and "segments" not in changes:
-            swap = {self.material: changes["material"]}
             changes["segments"] = tuple(
-                s.with_changes(material=swap.get(s.material, s.material)) for s in self.segments
+                s.with_changes(material=s.material.following(self.material, changes["material"]))
+                for s in self.segments
             )
         if changes.get("load", self.load) != self.load and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)

@@ -99,6 +99,13 @@ class Material(Model):
         same = all(getattr(made, key) == getattr(self, key) for key in _CONSTANTS)
         return made if same or "name" in changes or not made.name else made.with_changes(name="")
 
+    def following(self, usual: Material, other: Material) -> Material:
+        """The material of a segment, of which what is like the usual one becomes like another."""
+        if self == usual:
+            return other
+        keys = [key for key in _CONSTANTS if getattr(self, key) == getattr(usual, key)]
+        return self.with_changes(**{key: getattr(other, key) for key in keys})
+
     @property
     def shear_modulus(self) -> float:
         """G = E / (2 (1 + nu)) in Pa."""

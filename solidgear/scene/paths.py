@@ -2,8 +2,9 @@
 
 A path names keys of tables with dots between. In a list of tables the name of one stands for it, or
 its number, counted from one; the only one of a list may go without. In a list of numbers a number
-stands for its place. A key that the file does not hold is one that the format may know: whoever
-reads the changed tables tells.
+stands for its place. A material by its name is a table of its numbers, and an entry of a stiffness
+may go without the table or matrix that it stands in. A key that the file does not hold is one that
+the format may know: whoever reads the changed tables tells.
 """
 
 from __future__ import annotations
@@ -11,9 +12,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from solidgear.errors import SceneError, listed, nearest
+from solidgear.errors import SceneError, listed, nearest, show
+from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.scene.materials import as_table
 
 Tables = Mapping[str, Any]
+#: what springs are multiplied by
+FACTOR = "scale"
 #: keys and places from the root of a file to an entry
 Keys = tuple[str | int, ...]
 
@@ -27,6 +32,8 @@ def keys_of(path: str, tables: Tables) -> Keys:
     >>> tables = {"bearing": [{"name": "A", "position": "15 mm"}, {"name": "B"}]}
     >>> keys_of("bearing.A.position", tables), keys_of("bearing.2.seat_width", tables)
     (('bearing', 0, 'position'), ('bearing', 1, 'seat_width'))
+    >>> keys_of("bearing.A.kxx", tables)
+    ('bearing', 0, 'stiffness', 'kxx')
     """
     keys: list[str | int] = []
     here: Any = tables
@@ -38,14 +45,17 @@ def keys_of(path: str, tables: Tables) -> Keys:
         elif isinstance(here, Mapping) and keys and _is_own(here, rest):
             rest = _after(rest, _word(rest))
             continue
+        elif rest in STIFFNESS_NAMES and keys[:1] in (["bearing"], ["housing"]):
+            keys += _within_stiffness(tuple(keys), here or {}, rest)
+            return tuple(keys)
         elif isinstance(here, Mapping) or here is None:
             word = _first(rest, here or {}) or _word(rest)
             rest = _after(rest, word)
             keys.append(word)
         else:
-            said = f"is no table with a {_word(rest)}"
+            said = f"holds {show(here, 40)}, in which there is no {_word(rest)}"
             raise SceneError(said, field=label_of(tuple(keys), tables))
-        here = _child(here, keys[-1])
+        here = _child(here, keys[-1]) if rest else _held(here, keys[-1])
     if isinstance(here, list) and len(here) == 1 and isinstance(here[0], Mapping):
         here = here[0]
     if isinstance(here, (Mapping, list)):
@@ -72,11 +82,12 @@ def label_of(keys: Keys, tables: Tables) -> str:
 
 
 def entry(keys: Keys, tables: Tables) -> Any:
-    """Value that a file holds at an entry; None where it holds nothing."""
+    """Value that a file holds at an entry; None where it holds nothing, but 1 for a factor."""
     here: Any = tables
-    for key in keys:
+    for key in keys[:-1]:
         here = _child(here, key)
-    return here
+    value = _held(here, keys[-1])
+    return 1.0 if value is None and keys[-1] == FACTOR else value
 
 
 def changed(tables: Any, keys: Keys, value: Any) -> Any:
@@ -96,14 +107,23 @@ def changed(tables: Any, keys: Keys, value: Any) -> Any:
         out[first] = changed(out[first], tuple(rest), value)
         return out
     table = tables if isinstance(tables, Mapping) else {}
-    return {**table, first: changed(table.get(first), tuple(rest), value)}
+    within = _child(table, first) if rest else None
+    return {**table, first: changed(within, tuple(rest), value)}
+
+
+def put(tables: Tables, keys: Keys, value: Any) -> Tables:
+    """Tables with an entry replaced, of a stiffness matrix with its mirror."""
+    out = changed(tables, keys, value)
+    if len(keys) > 2 and keys[-3] == "matrix":
+        out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
+    return out
 
 
 def entries(tables: Any, before: Keys = ()) -> Iterator[Keys]:
     """Keys of every entry of a file that is no table."""
     if isinstance(tables, Mapping):
-        for key, value in tables.items():
-            yield from entries(value, (*before, key))
+        for key in tables:
+            yield from entries(_child(tables, key), (*before, key))
     elif isinstance(tables, list):
         for k, value in enumerate(tables):
             yield from entries(value, (*before, k))
@@ -158,7 +178,30 @@ def _name(thing: Any) -> str:
     return name if isinstance(name, str) else ""
 
 
+def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
+    """Place of an entry of a stiffness in the table of a bearing or a housing."""
+    if "catalogue" in table:
+        reason = (
+            f"bearing {show(_name(table))} has its stiffness from its catalogue data; vary "
+            f"bearing.{_name(table)}.scale, or an entry of its catalogue"
+        )
+        raise SceneError(reason)
+    if "matrix" in table:
+        row, column, _ = STIFFNESS_NAMES[name]
+        return "matrix", row, column
+    of_bearing = keys[0] == "bearing"
+    within = keys[-1] == "stiffness" or (of_bearing and keys[-1] == "housing")
+    return (name,) if within or name in table else ("stiffness", name)
+
+
 def _child(here: Any, key: str | int) -> Any:
+    """Value under a key, a material by name as its table."""
+    value = _held(here, key)
+    return as_table(value) if key == "material" else value
+
+
+def _held(here: Any, key: str | int) -> Any:
+    """Value that a file holds under a key; None where it holds nothing."""
     if isinstance(here, Mapping):
         return here.get(key)
     return here[key] if isinstance(here, list) and isinstance(key, int) else None

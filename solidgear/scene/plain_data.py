@@ -30,6 +30,8 @@ def plain_data(scene: Scene) -> dict[str, Any]:
             "stiffness": bearing.stiffness.tolist(),
             "entries": stiffness_entries(row.pop("matrix")),
         }
+        if bearing.scale == 1:
+            del row["scale"]
         for key in ("catalogue", "support", "hold", "face", "housing"):
             if row[key] is None:
                 del row[key]

@@ -16,11 +16,11 @@ from solidgear.scene.housing import Elastic, elastic
 from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.recognised import Seat
-from solidgear.scene.rules import MOST_SPRINGS
 from solidgear.scene.support import (
     HOLDS,
     Hold,
     Support,
+    few_springs,
     held_matrix,
     sliding,
     support_problems,
@@ -30,6 +30,7 @@ from solidgear.scene.units import (
     POSITION_DECIMALS,
     SOFTEST,
     AxialSpring,
+    Factor,
     Length,
     Position,
     PositiveLength,
@@ -38,15 +39,6 @@ from solidgear.scene.units import (
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 Face = Literal["start", "end"]
-
-
-def _few_springs(springs: Any) -> Any:
-    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
-        raise SceneError(
-            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; "
-            "write their sum: 1/k = 1/k1 + 1/k2 + ..."
-        )
-    return springs
 
 
 class Bearing(Placed):
@@ -69,6 +61,8 @@ class Bearing(Placed):
         Springs in series with its axial stiffness, N/m.
     housing : Elastic or None
         What its outer ring stands in, in series with all of it.
+    scale : float
+        Factor on the stiffness of all that; loads under which it settles are found without it.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : str
@@ -121,8 +115,9 @@ class Bearing(Placed):
     seat_width: PositiveLength
     matrix: Matrix | None = None
     catalogue: Catalogue | None = None
-    axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(_few_springs)] = ()
+    axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(few_springs)] = ()
     housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
+    scale: Factor = 1.0
     attachment: Attachment = "average"
     status: Status = "assumed"
     note: str = ""
@@ -261,6 +256,7 @@ class Bearing(Placed):
             K = sliding(K)
         if self.housing is not None:
             K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
+        K *= self.scale
         K.flags.writeable = False
         return K
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from solidgear.errors import SceneError
+from solidgear.scene.rules import MOST_SPRINGS
 from solidgear.springs import in_series
 
 if TYPE_CHECKING:
@@ -85,3 +86,13 @@ def support_problems(bearing: Bearing) -> Iterator[SceneError]:
             yield SceneError(
                 "a floating bearing carries nothing along y", path=("catalogue", key, "y")
             )
+
+
+def few_springs(springs: Any) -> Any:
+    """Springs in series, or a refusal of more than there may be."""
+    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
+        raise SceneError(
+            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; "
+            "write their sum: 1/k = 1/k1 + 1/k2 + ..."
+        )
+    return springs

@@ -19,7 +19,7 @@ from solidgear.scene.typed import Gathered, Model
 from solidgear.scene.units import quantity
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Scene
+    from solidgear.scene import Bearing, Scene, Segment
 
 #: what the word "assumed" of a bearing means where its file states no range: a factor two each way
 ASSUMED = "0.5 : 2"
@@ -27,7 +27,7 @@ ASSUMED = "0.5 : 2"
 FACTOR = "dimensionless"
 PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
 _KNOWN = (
-    "a range may have material.E, material.density, load, load.z, housing, bearing.NAME.stiffness, "
+    "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, housing, bearing.NAME.stiffness, "
     "bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
 )
 
@@ -96,6 +96,8 @@ def scaled(scene: Scene, path: str, factor: float) -> Scene:
     if kind == "material":
         constant = getattr(scene.material, rest) * factor
         return scene.with_changes(material=scene.material.with_changes(**{rest: constant}))
+    if kind == "segment":
+        return scene.with_changes(segments=tuple(_of_segments(scene, path, factor)))
     if kind == "housing":
         own, axial = scene.housing, scene.housing_axial
         return scene.with_changes(
@@ -110,6 +112,22 @@ def scaled(scene: Scene, path: str, factor: float) -> Scene:
     return scene.with_changes(
         bearings=tuple(_scaled(b, key, factor) if b is bearing else b for b in scene.bearings)
     )
+
+
+def _of_segments(scene: Scene, path: str, factor: float = 1.0) -> Iterator[Segment]:
+    """All segments, those of a path ``segment.NAME.material.E`` with their constant multiplied."""
+    name, _, constant = path.removeprefix("segment.").rpartition(".material.")
+    for segment in scene.segments:
+        material = segment.material
+        if _is_of(segment, name):
+            value = getattr(material, constant) * factor
+            segment = segment.with_changes(material=material.with_changes(**{constant: value}))
+        yield segment
+
+
+def _is_of(segment: Segment, name: str) -> bool:
+    """True for a segment of a shape of a file, which may have several."""
+    return segment.name == name or segment.name.startswith(f"{name}.")
 
 
 def _scaled(bearing: Bearing, key: str, factor: float) -> Bearing:
@@ -159,6 +177,11 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
     if path in ("material.E", "material.density"):
         name = path.removeprefix("material.")
         value = getattr(scene.material, name)
+        dimension = "pressure" if name == "E" else "density"
+    elif path.startswith("segment.") and path.endswith((".material.E", ".material.density")):
+        shape, _, name = path.removeprefix("segment.").rpartition(".material.")
+        own = [s.material for s in scene.segments if _is_of(s, shape)]
+        value = getattr(own[0], name) if own else None
         dimension = "pressure" if name == "E" else "density"
     elif path == "housing" and (scene.housing or scene.housing_axial):
         value = 1.0

@@ -373,6 +373,7 @@ RatingFactor = Annotated[
 ]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Mass = Annotated[float, _in("mass"), _POSITIVE]
+Factor = Annotated[float, _in("dimensionless"), _POSITIVE]
 Tolerance = Annotated[
     float,
     _in("dimensionless"),

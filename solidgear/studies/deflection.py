@@ -256,7 +256,9 @@ def _firm(bearing: Bearing) -> Bearing:
     """A held seat with springs that Newton's search resolves beside those of the shaft."""
     if bearing.hold is None:
         return bearing
-    return bearing.with_changes(hold=None, matrix=np.minimum(bearing.stiffness, FIRM).tolist())
+    return bearing.with_changes(
+        hold=None, scale=1.0, matrix=np.minimum(bearing.stiffness, FIRM).tolist()
+    )
 
 
 def _holds(one: Mounted) -> bool:

@@ -97,7 +97,9 @@ def open_inputs(scene: Scene) -> tuple[OpenInput, ...]:
             said = f"{data.clearance}, {least} to {most} um"
             found.append(OpenInput(path + CLEARANCE, BEARINGS, said))
     for one in scene.uncertain:
-        source = {"material": MATERIAL, "load": LOAD}.get(one.path.partition(".")[0], BEARINGS)
+        source = {"material": MATERIAL, "segment": MATERIAL, "load": LOAD}.get(
+            one.path.partition(".")[0], BEARINGS
+        )
         usual = (1 - one.low) / (one.high - one.low)
         found.append(OpenInput(one.path, source, one.said, one.low, one.high, usual))
     return tuple(found)
@@ -109,8 +111,9 @@ class Points:
     Parameters
     ----------
     body : Body, optional
-        At which stiffnesses are taken, and no frequencies; by default the beam of
-        :data:`solidgear.studies.loading.SHAFT`, made anew for every material.
+        At which stiffnesses are taken, and no frequencies; by default, and where one of several
+        moduli is open, the beam of :data:`solidgear.studies.loading.SHAFT`, made anew for every
+        material.
 
     Attributes
     ----------
@@ -119,7 +122,8 @@ class Points:
     """
 
     def __init__(self, scene: Scene, inputs: Sequence[OpenInput], body: Body | None = None):
-        self.scene, self.inputs, self.body = scene, inputs, body
+        self.scene, self.inputs = scene, inputs
+        self.body = body if _one_modulus(scene, inputs) else None
         self.lost: dict[str, None] = {}
         self._beams: dict[tuple, Body] = {}
         self._first: ModeSet | None = None
@@ -175,6 +179,13 @@ class Points:
         found = modes(body, scene, scene.ask.modes + FURTHER_MODES)
         pairs = pair_modes(found, self._first)
         return {Quantity(p.reference.name): p.frequency_hz for p in pairs if p.mode is not None}
+
+
+def _one_modulus(scene: Scene, inputs: Sequence[OpenInput]) -> bool:
+    """True where an open modulus is that of all of the shaft, or none is open."""
+    alike = len({segment.material.E for segment in scene.segments}) == 1
+    moduli = [one.path for one in inputs if one.path.endswith("material.E")]
+    return not moduli or (alike and moduli == ["material.E"])
 
 
 def _choice(values: Mapping[str, float]) -> Choice:

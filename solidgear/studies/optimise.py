@@ -1,10 +1,7 @@
 """Entries of a scene chosen for a goal, as far as error bars tell one design from another.
 
 Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its bars are
-within the tolerance. What searches is SciPy: the bounded scalar search of Brent for one entry, which
-wants no derivative and stops after a dozen designs, and COBYQA (Ragonneau and Zhang 2024), a
-derivative-free trust-region method with bounds and constraints, for several or with limits to keep:
-a design costs seconds, and its small jumps from mesh to mesh would spoil differences.
+within the tolerance: it costs seconds, and its small jumps from mesh to mesh would spoil differences.
 """
 
 from __future__ import annotations
@@ -12,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +17,17 @@ import numpy as np
 
 from solidgear.errors import SolidgearError, nearest
 from solidgear.studies.optimum import Design, Optimum
+from solidgear.studies.searching import searched
 from solidgear.studies.sweep import design
-from solidgear.studies.sweep.entries import Entry, in_si
-from solidgear.studies.sweep.scene_task import STATICS, SceneTask, scene_variants
-from solidgear.studies.sweep.vary import plain_number
+from solidgear.studies.sweep.amounts import in_si
+from solidgear.studies.sweep.entries import Entry
+from solidgear.studies.sweep.scene_task import STATICS, SceneTask
+from solidgear.studies.sweep.scene_variants import scene_variants
+from solidgear.studies.sweep.spans import plain_number
 from solidgear.studies.wishes import Wish, limit_of, wish_of
 
-#: designs that are solved at most, with the file as it is: a few for one entry, more for each other
-MOST, MORE = 12, 12
 #: of a range: how near two designs are one, and how near to its end an optimum is at the end
-SAME, AT_END = 0.01, 0.01
+SAME, AT_END = 1e-6, 1e-6
 #: natural frequencies that a goal may be of
 MODES = 12
 
@@ -112,18 +111,13 @@ class _Search:
         self.designs: list[Design] = []
         self.places: list[np.ndarray] = []
 
-    @property
-    def most(self) -> int:
-        return MOST + MORE * (len(self.entries) - 1 + len(self.keep))
-
     def run(self, title: str) -> Optimum:
         """Search from the file as it is, at its place in the ranges as far as it is in them."""
         self._solved(np.full(len(self.entries), math.nan))
         self.places[0] = self._place_of_file()
-        if len(self.entries) == 1 and not self.keep:
-            self._scalar()
-        else:
-            self._trust_region(np.nan_to_num(self.places[0], nan=0.5))
+        misses = [partial(self._shortfall, wish) for wish in self.keep]
+        begin = np.nan_to_num(self.places[0], nan=0.5)
+        how = searched(len(self.entries), self._objective, misses, begin)
         sound = [
             one
             for one, place in zip(self.designs, self.places)
@@ -132,42 +126,13 @@ class _Search:
         ]
         best = min(sound, key=self._loss, default=None)
         at_end = () if best is None else self._at_end(best)
-        return Optimum(title, self.goal, self.keep, tuple(self.designs), best, at_end)
+        return Optimum(
+            title, self.goal, self.keep, tuple(self.designs), best, at_end, how, self.task.model
+        )
 
     def _loss(self, one: Design) -> float:
         assert one.value is not None
         return -one.value if self.goal.upward else one.value
-
-    def _scalar(self) -> None:
-        from scipy.optimize import minimize_scalar
-
-        for end in (0.0, 1.0):
-            self._solved(np.array([end]))
-        how = {"xatol": SAME, "maxiter": self.most - len(self.designs)}
-        minimize_scalar(
-            lambda x: self._objective(np.array([x])), bounds=(0, 1), method="bounded", options=how
-        )
-
-    def _trust_region(self, start: np.ndarray) -> None:
-        from scipy.optimize import NonlinearConstraint, minimize
-
-        limits = [
-            NonlinearConstraint(lambda x, w=wish: self._shortfall(x, w), -np.inf, 0.0)
-            for wish in self.keep
-        ]
-        how = {
-            "maxfev": self.most - len(self.designs),
-            "initial_tr_radius": 0.25,
-            "final_tr_radius": SAME,
-        }
-        minimize(
-            self._objective,
-            start,
-            bounds=[(0.0, 1.0)] * len(start),
-            constraints=limits,
-            method="COBYQA",
-            options=how,
-        )
 
     def _objective(self, place: np.ndarray) -> float:
         """Goal relative to that of the file, to be made small; of a refused design worse than any."""
@@ -178,13 +143,13 @@ class _Search:
             return 2 * max(known, default=1.0) / size
         return self._loss(one) / size
 
-    def _shortfall(self, place: np.ndarray, wish: Wish) -> float:
+    def _shortfall(self, wish: Wish, place: np.ndarray) -> float:
         return min(wish.missing(self._solved(place).row), 10.0)
 
     def _solved(self, place: np.ndarray) -> Design:
         """A design, or one that was solved as near as makes no difference."""
         for one, there in zip(self.designs, self.places):
-            if np.array_equal(place, there) or np.all(abs(place - there) < SAME / 10):
+            if np.array_equal(place, there) or np.all(abs(place - there) < SAME):
                 return one
         number = len(self.designs)
         self.variants.values[0] = [_between(entry, x) for entry, x in zip(self.entries, place)]
@@ -223,7 +188,9 @@ class _Search:
 
     def _at_end(self, best: Design) -> tuple[str, ...]:
         place = self.places[best.number]
-        return tuple(entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) < AT_END)
+        return tuple(
+            entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) <= AT_END
+        )
 
 
 def _between(entry: Entry, x: float) -> float:

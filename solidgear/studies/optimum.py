@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from solidgear.display import Displayed
 from solidgear.studies.change import Change
+from solidgear.studies.sweep.bearing_task import without_bars
 from solidgear.studies.wishes import Wish
 
 
@@ -54,6 +55,10 @@ class Optimum(Displayed):
         None where no design keeps every limit.
     at_end : tuple of str
         Entries of the best design that are at an end of their range.
+    how : str
+        What was searched.
+    model : str or None
+        That was given, and has no bars.
     """
 
     shown: ClassVar[str] = "optimum"
@@ -64,6 +69,8 @@ class Optimum(Displayed):
     path: tuple[Design, ...]
     best: Design | None
     at_end: tuple[str, ...]
+    how: str = ""
+    model: str | None = None
 
     @property
     def gain(self) -> Change | None:
@@ -88,6 +95,8 @@ class Optimum(Displayed):
             "keep": [str(one) for one in self.keep],
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
+            "search": self.how,
+            "bars": without_bars(self.model) if self.model else "beside each value",
             "gain": None if self.gain is None else self.gain.as_dict(),
             "designs": [
                 {
@@ -117,7 +126,9 @@ def _sentences(found: Optimum) -> Iterator[str]:
         return
     values = ", ".join(f"{label} = {value:.6g}" for label, value in best.values.items())
     told = _with_bar(best.value, best.bar)
-    yield f"{found.goal}: {told} (SI) at {values}; {solved} designs solved."
+    yield f"{found.goal}: {told} (SI) at {values}."
+    if found.how:
+        yield f"Searched: {found.how}; {solved} designs solved."
     if best.number == 0:
         yield "No design is better than the file as it is, as far as the error bars tell."
     elif gain is not None:

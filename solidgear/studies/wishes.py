@@ -9,9 +9,9 @@ from typing import Any
 
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.units import quantity, si_factor
-from solidgear.studies.sweep.entries import amount
+from solidgear.studies.sweep.amounts import amount
 from solidgear.studies.sweep.scene_task import MOST_MODES, STATICS
-from solidgear.studies.sweep.vary import plain_number
+from solidgear.studies.sweep.spans import plain_number
 
 _GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
 _KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")
@@ -42,8 +42,7 @@ class Wish:
         value = row.get(column)
         if value is None:
             return None
-        bar = 0.0 if column == "mass" else row.get(f"{column} bar")
-        return float(value), bar
+        return float(value), row.get(f"{column} bar")
 
     def _column(self, row: dict[str, Any]) -> str:
         if first := _FIRST.fullmatch(self.name):

@@ -196,11 +196,12 @@ class Fit:
             )
             if abs(part) >= SHARE * abs(direction).max()
         ]
-        what = " with ".join(among)
-        out = "leave one of them out" if len(among) > 1 else "leave it out"
+        said, out = f"leave {among[0]} open", "leave it out"
+        if len(among) > 1:
+            said, out = f"cannot separate {' and '.join(among)}", "leave one of them out"
         raise SolidgearError(
-            f"identify: these resonances do not tell {what}: {_factor(deviation)}; {out}, or measure a "
-            "mode that it moves"
+            f"identify: these resonances {said}: {_factor(deviation)}; {out}, or measure a mode that "
+            "it moves"
         )
 
 

@@ -208,7 +208,7 @@ def _sentences(found: Identification) -> Iterator[str]:
 def _beside_prior(one: Identified, middle: float, deviation: float) -> Iterator[str]:
     known = f"{middle:.6g}, known to {100 * deviation:.2g} % beforehand"
     if one.untold:
-        yield f"The data do not tell {one.path}: it is as it was, {known}."
+        yield f"The data leave {one.path} open: it is as it was, {known}."
     away = abs(math.log(one.value / middle)) / deviation
     if away > FAR:
         yield f"{one.path} lies {away:.2g} standard deviations from {known}: one of both is wrong."

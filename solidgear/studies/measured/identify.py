@@ -14,7 +14,7 @@ from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
-from solidgear.scene.paths import Tables, changed
+from solidgear.scene.paths import Tables, put
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
@@ -107,7 +107,7 @@ class _Study:
         tables = parse(path)
         ranges = scene_of(tables, path).uncertain if priors else None
         # what is found may lie beside the ranges that the file states
-        self.tables = {key: table for key, table in tables.items() if key != "uncertain"}
+        self.tables: Tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)
         self.keys = [one.keys for one in self.varied]
         self.before = np.array([one.before for one in self.varied])
@@ -122,7 +122,7 @@ class _Study:
         """Tables with the logarithms of entries moved by `x`."""
         tables = self.tables
         for keys, value in zip(self.keys, self.before * np.exp(x)):
-            tables = changed(tables, keys, float(value))
+            tables = put(tables, keys, float(value))
         return tables
 
     def scene_at(self, x: np.ndarray) -> Scene:

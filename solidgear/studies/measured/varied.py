@@ -10,7 +10,7 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.paths import Keys, Tables, entry, keys_of, label_of
 from solidgear.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, ends
 from solidgear.scene.units import DIMENSIONS, quantity
-from solidgear.studies.sweep.entries import in_si
+from solidgear.studies.sweep.amounts import in_si
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,8 @@ def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
         keys = keys_of(path, tables)
         there = entry(keys, tables)
         before = in_si(there)
+        if there is None:
+            raise SceneError("is not in the file, and its value there is where the search begins")
         if before is None or not before > 0:
             raise SceneError(
                 f"the file holds {show(there, 40)}, and what is identified begins at a number above "

@@ -98,7 +98,7 @@ def _follows(low: Body, body: Body, high: Body) -> None:
 
 def _springs(scene: Scene) -> tuple:
     """All that supports are made of."""
-    springs = [(b.matrix, b.axial_series, b.housing) for b in scene.bearings]
+    springs = [b.stiffness.tolist() for b in scene.bearings]
     around = scene.housing and (scene.housing, [b.y for b in scene.bearings])
     return springs, scene.masses, scene.housing_axial, around
 

@@ -12,9 +12,9 @@ from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.scene import Scene
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
-from solidgear.scene.paths import Keys, Tables, changed, entries, entry, label_of
+from solidgear.scene.paths import Keys, Tables, entries, entry, label_of, put
 from solidgear.studies.loading import part_of
-from solidgear.studies.sweep.entries import amount, in_si
+from solidgear.studies.sweep.amounts import amount, in_si
 
 #: relative step of a number in the file, and that of a place, in lengths of the shaft: what
 #: they move is linear in it but for angles, materials and springs in series
@@ -156,14 +156,6 @@ def _stiffened(thing: Any, keys: Sequence[str | int], value: float) -> Any:
     matrix = np.array(thing.matrix)
     matrix[row, column] = matrix[column, row] = value
     return thing.with_changes(matrix=matrix)
-
-
-def put(tables: Tables, keys: Keys, value: str | float) -> Tables:
-    """Tables with a number changed, of a matrix with its mirror."""
-    out = changed(tables, keys, value)
-    if len(keys) > 2 and keys[-3] == "matrix":
-        out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
-    return out
 
 
 def _held(tables: Tables, scene: Scene, where: str) -> Scene:

@@ -25,7 +25,7 @@ from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
 from solidgear.studies.sensitivity.derivatives import Derivatives
 from solidgear.studies.sensitivity.entries import around, numbers
-from solidgear.studies.sweep.entries import in_si
+from solidgear.studies.sweep.amounts import in_si
 
 #: what is asked for
 USUAL = ("bending 1", "C_zz")
@@ -33,6 +33,8 @@ USUAL = ("bending 1", "C_zz")
 MODELS = ("harmonic", "timoshenko", "euler", "solid")
 #: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
 NOTHING = 1e-9
+#: on bars of values and derivatives
+BARS = "from_coarser_mesh is the distance from a coarser mesh where there is one: no proven bound"
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,8 @@ class OfNumber:
     unit : str
     pair : bool
         Whether it is the mean of a pair of equal frequencies.
+    apart : float or None
+        Distance of the value from that on a coarser mesh.
     derivatives : tuple of Derivative
     """
 
@@ -93,6 +97,7 @@ class OfNumber:
     value: float
     unit: str
     pair: bool
+    apart: float | None
     derivatives: tuple[Derivative, ...]
 
     def __getitem__(self, path: str) -> Derivative:
@@ -141,6 +146,7 @@ class Sensitivities:
                     "name": one.name,
                     "value": one.value,
                     "unit": one.unit,
+                    "from_coarser_mesh": one.apart,
                     "mean_of_pair": one.pair,
                     "derivatives": [
                         {
@@ -158,6 +164,7 @@ class Sensitivities:
                 for one in self.of
             ],
             "without": self.without,
+            "bars": BARS,
             "notes": list(self.notes),
         }
 
@@ -253,9 +260,10 @@ def sensitivities(
             told = path, sides.written, sides.at, sides.unit, fine[k], fine[k] * scale
             rows[k].append(Derivative(*told, apart, sides.side))
     first = found[0]
+    coarse = found[-1].values if len(found) > 1 else [None] * len(asked)
     given = [
-        OfNumber(str(q), v, q.unit, pair, _ranked(r))
-        for q, v, pair, r in zip(asked, first.values, first.pairs, rows)
+        OfNumber(str(q), v, q.unit, pair, None if w is None else abs(v - w), _ranked(r))
+        for q, v, w, pair, r in zip(asked, first.values, coarse, first.pairs, rows)
     ]
     return Sensitivities(
         scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -12,15 +12,14 @@ from typing import Any
 from solidgear import __version__
 from solidgear.bearings.solved import waiting
 from solidgear.body import Body
-from solidgear.errors import SolidgearError
+from solidgear.errors import SolidgearError, listed
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.scene import Scene
-from solidgear.studies.sweep import vary
-from solidgear.studies.sweep.bearing_task import Task, columns
-from solidgear.studies.sweep.bearing_variants import SeatedShaft, Variants
+from solidgear.studies.sweep.bearing_task import Task, columns, without_bars
+from solidgear.studies.sweep.bearing_variants import BearingVariants, SeatedShaft
 from solidgear.studies.sweep.rows import RowFile, tell_in_log
 from solidgear.studies.sweep.workers import workers
 
@@ -68,16 +67,15 @@ class Summary:
 
 
 def sweep(
-    scene: Scene,
-    vary_texts: Iterable[str],
+    variants: BearingVariants,
     out: Path | str,
     *,
     fidelity: str = "harmonic",
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
-    sample: int | None = None,
-    seed: int = 0,
     tolerance: float = 1e-6,
+    bars: Mapping[str, float] | None = None,
+    judged_on: int = 0,
     jobs: int = 1,
     dask: str | None = None,
     overwrite: bool = False,
@@ -88,40 +86,49 @@ def sweep(
 
     Parameters
     ----------
-    vary_texts : iterable of str
-        See :mod:`solidgear.studies.sweep.vary`.
+    variants : BearingVariants
+        See :func:`solidgear.studies.sweep.bearing_variants.bearing_variants`.
     out : path
         ``.csv`` or ``.parquet``, see :mod:`solidgear.studies.sweep.rows`.
     fidelity, options
         As for :func:`solidgear.ladder.build`.
     n : int, optional
         Elastic shapes, twins counted twice; as many as the scene asks for by default.
-    sample, seed : int, optional
-        Draw so many points of a Latin hypercube instead of taking all combinations.
     tolerance : float
         Relative error of frequencies against the same body solved in full. A variant whose bound
         exceeds it makes the basis larger, and where that does not do it is solved in full.
+    bars : mapping of str to float, optional
+        Relative, of the mesh, by the names of numbers and modes, as of
+        :func:`solidgear.studies.sweep.choice.bars_of_rows`; bars stand in columns beside numbers.
+    judged_on : int
+        Bearing sets that these are the largest over.
     jobs, dask, overwrite, progress, tell
         As of :func:`solidgear.studies.sweep.file_task.run`.
 
     Raises
     ------
     SolidgearError
-        A text that cannot be read, too many seats, or a file that belongs to another sweep, is
+        Values that no variant can have, too many seats, or a file that belongs to another sweep, is
         being written by one, cannot be written, or is damaged beyond repair. A variant that a scene
         file could not describe is no error: its row says why.
     """
     options = dict(options or {})
+    scene = variants.scene
     n = scene.ask.modes if n is None else n
     number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     number("sweep", "jobs", jobs, least=1, whole=True)
     number("sweep", "tolerance", tolerance, above=0, below=1)
-    variants = variants_of(scene, vary_texts, sample, seed)
+    variants.first_sound()
     team = workers(jobs, dask)
-    plan = _plan(variants, sample, seed, fidelity, options, n, tolerance)
+    plan = _plan(variants, fidelity, options, n, tolerance)
 
     total = len(variants)
-    with RowFile(Path(out), columns(variants, n), plan, total, overwrite, tell) as file:
+    said = without_bars(fidelity)
+    if bars is not None:
+        said = f"of the mesh: the largest over {judged_on} bearing sets"
+    with RowFile(
+        Path(out), columns(variants, n, bars is not None), plan, total, overwrite, tell
+    ) as file:
         skipped, start = len(file.done), time.perf_counter()
         todo = [i for i in range(total) if i not in file.done]
         found = Summary(file.path, total, skipped, settling=_settling(variants))
@@ -132,7 +139,7 @@ def sweep(
             body = build(shaft, fidelity, **options)
             progress(skipped, total, f"reducing {body.size} unknowns")
             basis = reduce(body, n, file.basis or 0)
-            solver = _Solver(body, Task(variants, (basis,), n, tolerance))
+            solver = _Solver(body, Task(variants, (basis,), n, tolerance, bars or {}, said))
             if file.basis is None:
                 # Of all variants, whatever is left of them: the basis is the same after an
                 # interruption.
@@ -159,30 +166,19 @@ def sweep(
     return replace(found, repairs=tuple(file.repairs))
 
 
-def variants_of(
-    scene: Scene, texts: Iterable[str], sample: int | None = None, seed: int = 0
-) -> Variants:
-    """The points of a sweep: all combinations of ``--vary`` texts, or a sample of them."""
-    axes = vary.axes(scene, texts)
-    return Variants(
-        scene, axes, vary.product(axes) if sample is None else vary.sample(axes, sample, seed)
-    )
-
-
-def _settling(variants: Variants) -> str:
+def _settling(variants: BearingVariants) -> str:
     """At which load the stiffness of catalogue bearings is taken in the rows."""
     names = waiting(variants.scene)
     if not names:
         return ""
     which = f"Catalogue {'bearing' if len(names) == 1 else 'bearings'} {', '.join(names)}"
-    fixed = [axis.label for axis in variants.axes if axis.field != "position"]
-    moved = len(fixed) < len(variants.axes)
-    anew = "the tangent under [load], found anew at every position"
-    if not fixed:
+    factors = [one.label for one in variants.entries if variants.multiplies(one)]
+    anew = "stiffness under [load]"
+    if len(factors) < len(variants.entries):
+        anew += ", found anew for every variant"
+    if not factors:
         return f"{which}: {anew}."
-    held = f"{', '.join(fixed)} {'varies' if len(fixed) == 1 else 'vary'} from there"
-    start = anew if moved else "the tangent under [load] as the scene has it"
-    return f"{which}: {start}; {held}, with the loads of the bearings left as they are."
+    return f"{which}: {anew}; {listed(factors)} multiplies it and leaves the loads as they are."
 
 
 class _Solver:
@@ -247,26 +243,21 @@ def _checked_seats(
     return seats
 
 
-def _plan(variants: Variants, sample, seed, fidelity, options, n, tolerance) -> dict[str, Any]:
+def _plan(variants: BearingVariants, fidelity, options, n, tolerance) -> dict[str, Any]:
     scene = {
         key: value
         for key, value in variants.scene.as_dict().items()
         if key not in ("title", "name", "source", "ask")
     }
-    axes = {axis.label: [axis.spacing, *axis.values] for axis in variants.axes}
-    drawn = None if sample is None else {"points": sample, "seed": seed}
     settings = {
         key: list(value) if isinstance(value, tuple) else value for key, value in options.items()
     }
     return {
         "scene": scene,
-        "vary": axes,
-        "sample": drawn,
+        **variants.plan,
         "fidelity": fidelity,
         "set": settings,
         "n": n,
         "tolerance": tolerance,
         "version": __version__,
-        # rows from before positions were settled anew are of another sweep
-        **({"settled": "every position"} if waiting(variants.scene) else {}),
     }

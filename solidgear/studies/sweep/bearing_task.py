@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
-
-import numpy as np
 
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.quantities import size
 from solidgear.machine.threads import pinned
+from solidgear.quantity import Quantity
 from solidgear.reduction.moments import Reduced
 from solidgear.solve.modes import modes
 from solidgear.solve.statics import condense
-from solidgear.studies.sweep.bearing_variants import Variants
+from solidgear.studies.sweep.bearing_variants import BearingVariants
 from solidgear.studies.sweep.ritz import Seats, ritz_modes
 
 #: Entries of the stiffness and the compliance that a row holds.
@@ -24,13 +24,29 @@ ENTRIES = {
 } | {"x_thz": (0, 5), "z_thx": (2, 3)}
 
 
-def columns(variants: Variants, n: int) -> dict[str, type]:
+#: bound of what the reduction leaves of natural frequencies, relative, and words on all other bars
+BOUND, BARS = "reduction_bound", "bars"
+
+
+def without_bars(model: str) -> str:
+    """Words on numbers of a mesh that nothing was told of."""
+    return f"none: the {model} mesh was given; -f auto judges its own"
+
+
+def columns(variants: BearingVariants, n: int, barred: bool) -> dict[str, type]:
     """Names and types of the columns of a row, in order."""
-    out: dict[str, type] = {"variant": int} | {axis.label: float for axis in variants.axes}
-    out |= {"status": str, "how": str, "error_bound": float, "rigid_modes": int}
-    out |= {f"{kind}_{name}": float for kind in "KC" for name in ENTRIES}
+
+    def with_bar(name: str) -> dict[str, type]:
+        names = [name, f"{name} bar"] if barred else [name]
+        return dict.fromkeys(names, float)
+
+    out: dict[str, type] = {"variant": int, **variants.columns}
+    out |= {"status": str, "how": str, BOUND: float, BARS: str, "rigid_modes": int}
+    for kind in "KC":
+        for name in ENTRIES:
+            out |= with_bar(f"{kind}_{name}")
     for k in range(1, n + 1):
-        out |= {f"f{k}_hz": float, f"mode{k}": str}
+        out |= with_bar(f"f{k}_hz") | {f"mode{k}": str}
     return out
 
 
@@ -45,15 +61,21 @@ class Task:
         Elastic shapes wanted, twins counted twice.
     tolerance : float
         Relative error of a frequency that is let pass.
+    bars : mapping of str to float
+        Relative, of the mesh, by the names of numbers and modes; empty where none is known.
+    said : str
+        Where they come from, or why there are none.
     bases : tuple of Reduced
         From small to large, tried one after the other while the bound of a variant exceeds the
         tolerance.
     """
 
-    variants: Variants
+    variants: BearingVariants
     bases: tuple[Reduced, ...]
     n: int
     tolerance: float
+    bars: Mapping[str, float] = field(default_factory=dict)
+    said: str = ""
 
     @pinned
     def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
@@ -75,9 +97,7 @@ class Task:
     def _row(
         self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
     ) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index} | {
-            a.label: float(v) for a, v in zip(self.variants.axes, self.variants.values[index])
-        }
+        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
         frame = basis.frame
         try:
             scene, supports = self.variants.supports(index)
@@ -88,11 +108,12 @@ class Task:
                 seats[place] = Seats(basis, ports)
             found = ritz_modes(basis, seats[place], supports, self.n, self.tolerance)
         except SolidgearError as error:
-            return row | {"status": " ".join(str(error).split()), "how": ""}
+            return row | {"status": self.variants.status(error, index), "how": ""}
         row |= {
             "status": "ok",
             "how": "reduced",
-            "error_bound": found.error_bound,
+            BOUND: found.error_bound,
+            BARS: self.said,
             "rigid_modes": supports.unresisted(frame).shape[1],
         }
         row |= {
@@ -100,11 +121,32 @@ class Task:
             for kind, m in (("K", static.stiffness), ("C", static.compliance))
             for name, at in ENTRIES.items()
         }
-        return row | _modal(found.frequency_hz, found.names)
+        row |= self._static_bars(row)
+        return row | self._modal(found.frequency_hz, found.names)
+
+    def _static_bars(self, row: Mapping[str, Any]) -> dict[str, Any]:
+        """Bars of the entries of a row, in their units."""
+        out = {}
+        for kind in "KC":
+            values = {_quantity(kind, name): row[f"{kind}_{name}"] for name in ENTRIES}
+            for name, quantity in zip(ENTRIES, values):
+                if quantity in self.bars:
+                    width = self.bars[quantity] * size(values, quantity)
+                    out[f"{kind}_{name} bar"] = width
+        return out
+
+    def _modal(self, frequency_hz: Iterable[float], names: Iterable[str]) -> dict[str, Any]:
+        """Natural frequencies of a row with their bars and names."""
+        out: dict[str, Any] = {}
+        for k, (f, name) in enumerate(zip(frequency_hz, names), start=1):
+            out |= {f"f{k}_hz": float(f), f"mode{k}": name}
+            if name in self.bars:
+                out[f"f{k}_hz bar"] = self.bars[name] * float(f)
+        return out
 
     def weak(self, row: dict[str, Any]) -> bool:
         """Tell whether the error bound of a row exceeds the tolerance."""
-        return row["status"] == "ok" and not row["error_bound"] <= self.tolerance
+        return row["status"] == "ok" and not row[BOUND] <= self.tolerance
 
     def in_full(self, row: dict[str, Any], body: Body) -> dict[str, Any]:
         """A row with its modes solved on the body itself."""
@@ -119,14 +161,11 @@ class Task:
         # the residual bounds the error of an eigenvalue, twice that of a frequency
         return (
             row
-            | {"how": "full", "error_bound": found.evidence["residual"] / 2}
-            | _modal(np.array([f for f, _ in shapes]), [name for _, name in shapes])
+            | {"how": "full", BOUND: found.evidence["residual"] / 2}
+            | self._modal([f for f, _ in shapes], [str(name) for _, name in shapes])
         )
 
 
-def _modal(frequency_hz, names) -> dict[str, Any]:
-    return {
-        key: value
-        for k, (f, name) in enumerate(zip(frequency_hz, names), start=1)
-        for key, value in ((f"f{k}_hz", float(f)), (f"mode{k}", name))
-    }
+def _quantity(kind: str, name: str) -> Quantity:
+    """Name of an entry among compared numbers."""
+    return Quantity(f"{kind}_{name.replace('_', ',')}")

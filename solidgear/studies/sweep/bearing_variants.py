@@ -1,33 +1,39 @@
-"""The bearing sets of a sweep as validated scenes, and the one shaft that carries all their seats."""
+"""The bearing sets of a sweep as scenes of a file, and the one shaft that carries all their seats.
+
+What varies is read by the paths and rules of every sweep over a file; here places of seats are read
+once each, and springs from the tables of their bearings alone.
+"""
 
 from __future__ import annotations
 
-import functools
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from functools import cached_property
+from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from solidgear.bearings.solved import solved, waiting
+from solidgear.bearings.solved import solved
 from solidgear.body import Supports, as_supports
-from solidgear.errors import SceneError, SolidgearError, show
-from solidgear.scene import (
-    Bearing,
-    Elastic,
-    Feature,
-    Housing,
-    PointMass,
-    Port,
-    Scene,
-    Segment,
-)
-from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene import Bearing, Feature, PointMass, Port, Scene, Segment
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.outline import Outline
-from solidgear.studies.loading import shaft
-from solidgear.studies.sweep.vary import Axis
+from solidgear.scene.paths import Keys, Tables, entries, entry
+from solidgear.scene.sprung import resprung
+from solidgear.studies.loading import load, scene_of, shaft
+from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.entries import Entry
+from solidgear.studies.sweep.file_variants import OWN
+from solidgear.studies.sweep.scene_variants import SceneVariants, scene_variants
 
-E = TypeVar("E", bound=Elastic)
+#: keys of a bearing that its springs are made of, and those of the housing of all
+SPRINGS = ("stiffness", "matrix", "axial_series", "housing", "scale")
+HOUSING = ("stiffness", "matrix", "axial", "scale")
+POSITION = "position"
+#: words that may name the middle of a bearing
+DATUMS = ("from", "at")
+#: scenes whose catalogue bearings have settled that are kept
+KEPT = 200
 
 
 @dataclass(frozen=True)
@@ -55,75 +61,81 @@ class SeatedShaft:
 
 
 @dataclass(frozen=True)
-class Variants:
-    """Points of a sweep and what they mean.
+class BearingVariants(SceneVariants):
+    """Points of a sweep over springs and positions of bearings alone."""
 
-    Attributes
-    ----------
-    values : (n, len(axes)) ndarray
-        SI.
-    """
+    @cached_property
+    def scene(self) -> Scene:
+        """The file as it is."""
+        return load(self.path)
 
-    scene: Scene
-    axes: tuple[Axis, ...]
-    values: np.ndarray
+    @cached_property
+    def moves(self) -> list[int]:
+        """Places of the entries that move seats."""
+        return [k for k, one in enumerate(self.entries) if one.keys[-1] == POSITION]
 
-    def __len__(self) -> int:
-        return len(self.values)
-
-    @functools.cached_property
-    def _moves(self) -> list[int]:
-        return [k for k, axis in enumerate(self.axes) if axis.field == "position"]
-
-    @functools.cached_property
-    def _placed(self) -> dict[tuple[float, ...], Scene | str]:
-        """Scene, or why there is none, for every placement of the seats that occurs."""
-        out: dict[tuple[float, ...], Scene | str] = {}
-        for key in dict.fromkeys(map(tuple, self.values[:, self._moves].tolist())):
-            bearings = list(self.scene.bearings)
+    @cached_property
+    def _placed(self) -> dict[tuple[float, ...], Scene | SceneError]:
+        """Scene, or why there is none, for every placement of the seats that occurs, catalogue
+        bearings without their stiffness.
+        """
+        moving = [self.entries[k] for k in self.moves]
+        out: dict[tuple[float, ...], Scene | SceneError] = {}
+        for key in dict.fromkeys(map(tuple, self.values[:, self.moves].tolist())):
             try:
-                for k, y in zip(self._moves, key):
-                    b = self.axes[k].seat
-                    bearings[b] = bearings[b].with_changes(y=y)
-                out[key] = settled_anew(self.scene.with_changes(bearings=tuple(bearings)))
+                out[key] = scene_of(self.put(OWN, moving, key), self.path, alone=False)
             except SceneError as error:
-                # the field is that of a scene in memory: what was varied is said as it was asked for
-                where = ", ".join(
-                    f'bearing "{self.scene.bearings[self.axes[k].seat].name}" at {y:.6g} m'
-                    for k, y in zip(self._moves, key)
-                )
-                out[key] = f"{where}: {error.reason}"
+                out[key] = error
         return out
 
     def of(self, index: int) -> Scene:
-        """Scene of one variant.
-
-        Raises
-        ------
-        SceneError
-            If a scene file with these values would be refused.
-        """
-        row = self.values[index]
-        placed = self._placed[tuple(row[self._moves].tolist())]
-        if isinstance(placed, str):
-            raise SceneError(placed)
-        changes: dict[tuple[int | None, bool], list[tuple[str, float]]] = {}
-        for axis, value in zip(self.axes, row.tolist()):
-            if axis.field != "position":
-                changes.setdefault(axis.place, []).append((axis.field, value))
-        if not changes:
+        row = self.values[index].tolist()
+        placed = self._placed[tuple(row[k] for k in self.moves)]
+        if isinstance(placed, SceneError):
+            raise placed
+        springs = [k for k in range(len(row)) if k not in self.moves]
+        if springs:
+            tables = self.put(OWN, [self.entries[k] for k in springs], [row[k] for k in springs])
+            touched = [place.keys for k in springs for place in self.entries[k].places]
+            placed = resprung(placed, tables, touched)
+        if all(bearing.catalogue is None for bearing in placed.bearings):
             return placed
-        around = changes.pop((None, True), [])
-        if around:
-            placed = _rehoused(placed, around)
-        bearings = list(placed.bearings)
-        for b in dict.fromkeys(bearing for bearing, _ in changes if bearing is not None):
-            own, within = (tuple(changes.get((b, housed), ())) for housed in (False, True))
-            try:
-                bearings[b] = _changed(bearings[b], own, within)
-            except SceneError as error:
-                raise SceneError(error.reason, field=f'bearing "{bearings[b].name}"') from None
-        return placed.with_changes(bearings=tuple(bearings))
+        return self._at_load(placed, row)
+
+    def _at_load(self, scene: Scene, row: Sequence[float]) -> Scene:
+        """A scene whose catalogue bearings carry what the load of the scene brings them; what it is
+        multiplied by has no part in it.
+        """
+        key = tuple(v for one, v in zip(self.entries, row) if not self.multiplies(one))
+        if key not in self._at_rest:
+            if len(self._at_rest) >= KEPT:
+                self._at_rest.clear()
+            self._at_rest[key] = settled_anew(scene)
+        settled = {bearing.name: bearing for bearing in self._at_rest[key].bearings}
+        return scene.unjudged(
+            bearings=tuple(
+                bearing
+                if bearing.catalogue is None
+                else bearing.with_changes(matrix=settled[bearing.name].matrix)
+                for bearing in scene.bearings
+            )
+        )
+
+    @cached_property
+    def _at_rest(self) -> dict[tuple[float, ...], Scene]:
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: value for key, value in self.__dict__.items() if key != "_at_rest"}
+
+    def multiplies(self, one: Entry) -> bool:
+        """True for an entry that multiplies catalogue bearings alone."""
+        return all(
+            place.keys[0] == "bearing"
+            and place.keys[2:] == ("scale",)
+            and self.scene.bearings[int(place.keys[1])].catalogue is not None
+            for place in one.places
+        )
 
     def supports(self, index: int) -> tuple[Scene, Supports]:
         """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like
@@ -140,17 +152,18 @@ class Variants:
         SolidgearError
             If nothing can be solved, or a rigid seat is to move.
         """
-        placed = [s for s in self._placed.values() if isinstance(s, Scene)]
+        placed = [scene for scene in self._placed.values() if isinstance(scene, Scene)]
         if not placed:
             raise SolidgearError(
                 f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
             )
-        for k in self._moves:
-            bearing = self.scene.bearings[self.axes[k].seat]
-            if bearing.attachment == "rigid" and len(self.axes[k].values) > 1:
+        for k in self.moves:
+            one = self.entries[k]
+            moved = [self.scene.bearings[int(place.keys[1])] for place in one.places]
+            if len(one.values) > 1 and any(bearing.attachment == "rigid" for bearing in moved):
                 raise SolidgearError(
-                    f"{self.axes[k].label}: a rigid seat stiffens the shaft wherever it is "
-                    "meshed, so it cannot move in one body; use attachment 'average' or 'section'"
+                    f"{one.label}: a rigid seat stiffens the shaft wherever it is meshed, so it "
+                    "cannot move in one body; use attachment 'average' or 'section'"
                 )
         seats = {
             seat_name(b): b.with_changes(name=seat_name(b))
@@ -168,14 +181,64 @@ class Variants:
         )
 
 
-def settled_anew(scene: Scene) -> Scene:
-    """A scene with seats elsewhere, whose catalogue bearings carry what the load of the scene brings
-    them there.
+def bearing_variants(
+    path: Path | str, vary: Iterable[str], sample: int | None = None, seed: int = 0
+) -> BearingVariants | None:
+    """Points of a sweep over springs and positions of bearings, all combinations or a sample of them;
+    None where something else varies, or hangs on a bearing that moves.
 
-    A bearing's tangent is that of its load, and where a seat moves, loads move with it.
+    Examples
+    --------
+    >>> path = "geometry/shaft_stepped.toml"
+    >>> len(bearing_variants(path, ["bearing.A.kxx=1e8,2e8", "bearing.B.position=-40 mm,-30 mm"]))
+    4
+    >>> bearing_variants(path, ["segment.left.diameter=50 mm,52 mm"]) is None
+    True
     """
-    if not waiting(scene):
-        return scene
+    design = Design(tuple(vary), sample, seed)
+    found = scene_variants(Path(path), design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
+    tables = found.files[OWN]
+    keys = [place.keys for one in found.entries for place in one.places]
+    if not all(one.numeric for one in found.entries) or not all(map(_of_bearings, keys)):
+        return None
+    if _hangs_on(
+        tables, [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]
+    ):
+        return None
+    if sample is None:
+        return BearingVariants(*_fields(found))
+    # every seat is meshed: a position is one of those listed
+    listed = tuple(
+        replace(one, spacing="list") if one.keys[-1] == POSITION else one for one in found.entries
+    )
+    drawn = design.drawn(listed)
+    return BearingVariants(*_fields(replace(found, entries=listed, values=drawn)))
+
+
+def _fields(found: SceneVariants) -> tuple[Any, ...]:
+    return found.path, found.files, found.entries, found.values, found.kept, found.design
+
+
+def _of_bearings(keys: Keys) -> bool:
+    """True for an entry of springs or positions of bearings, or of their housing."""
+    if keys[0] == "housing":
+        return keys[1] in HOUSING
+    return keys[0] == "bearing" and (keys[2] in SPRINGS or keys[2:] == (POSITION,))
+
+
+def _hangs_on(tables: Tables, names: Sequence[Any]) -> bool:
+    """True where the place of something that is no bearing is counted from one of some bearings."""
+    middles = {f"bearing.{name}" for name in names}
+    return any(
+        keys[-1] in DATUMS and keys[0] != "bearing" and entry(keys, tables) in middles
+        for keys in entries(tables)
+    )
+
+
+def settled_anew(scene: Scene) -> Scene:
+    """A scene whose catalogue bearings carry what its load brings them: a tangent is that of a load,
+    and where a seat moves, loads move with it.
+    """
     try:
         return solved(scene, shaft(scene)).scene
     except SceneError:
@@ -194,51 +257,3 @@ def seat_name(bearing: Bearing) -> str:
     surface alike.
     """
     return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"
-
-
-def _rehoused(scene: Scene, fields: list[tuple[str, float]]) -> Scene:
-    """A scene with entries of its housing replaced."""
-    try:
-        if scene.housing is None:
-            return scene.with_changes(housing_axial=fields[-1][1])
-        return scene.with_changes(housing=_varied(scene.housing, fields))
-    except SceneError as error:
-        raise SceneError(error.reason, field="housing") from None
-
-
-def _varied(housing: E, fields: list[tuple[str, float]]) -> E:
-    """A housing with some of its entries replaced, then scaled."""
-    given = dict(fields)
-    factor = given.pop("scale", None)
-    _refuse_scale(factor)
-    if given:
-        entries: dict[str, Any] = {"stiffness": housing.entries | given}
-        if isinstance(housing, Housing):
-            entries["y"] = housing.y
-        housing = type(housing)(**entries)
-    return housing if factor is None else housing.scaled(factor)
-
-
-def _refuse_scale(factor: float | None) -> None:
-    if factor is not None and not factor > 0:
-        reason = f"scale = {factor:g}: must be greater than zero"
-        raise SceneError(reason, field="scale", value=show(factor))
-
-
-# In a product of axes the same few bearings come again and again.
-@functools.lru_cache(maxsize=1024)
-def _changed(
-    bearing: Bearing, own: tuple[tuple[str, float], ...], within: tuple[tuple[str, float], ...]
-) -> Bearing:
-    """A bearing with some entries of its own matrix and of its housing replaced, then scaled."""
-    matrix, factor = np.array(bearing.matrix), None
-    for field, value in own:
-        if field == "scale":
-            _refuse_scale(factor := value)
-        else:
-            i, j, _ = STIFFNESS_NAMES[field]
-            matrix[i, j] = matrix[j, i] = value
-    bearing = bearing.with_changes(matrix=matrix)
-    if within and bearing.housing is not None:
-        bearing = bearing.with_changes(housing=_varied(bearing.housing, list(within)))
-    return bearing if factor is None else bearing.scaled(factor)

@@ -7,52 +7,53 @@ finest that one of these needs serves all.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+import math
+from collections.abc import Hashable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.errors import SceneError
-from solidgear.judge.settle import Settled, settle
+from solidgear.judge.settle import Settled, bars_of_modes, settle
+from solidgear.ladder import build
 from solidgear.quantity import Quantity
-from solidgear.studies.sweep.bearing_sweep import variants_of
+from solidgear.solve.modes import modes
 from solidgear.studies.sweep.bench import surface
 
 if TYPE_CHECKING:
     from solidgear.judge.refinement import Progress
     from solidgear.scene import Scene
-    from solidgear.studies.sweep.bearing_variants import Variants
+    from solidgear.studies.sweep.bearing_variants import BearingVariants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged
 MOST = 8
+#: modes beyond those of a row, which bars of the last of a family need
+SPARE = 6
 
 
 def settled_for_sweep(
-    scene: Scene,
-    vary_texts: Iterable[str],
+    variants: BearingVariants,
     tol: float | None = None,
     *,
-    sample: int | None = None,
-    seed: int = 0,
     progress: Progress = lambda _: None,
 ) -> Settled:
     """The cheapest body whose error bars are within a tolerance on the scene and at the ends of a sweep.
 
-    Of a sweep with these texts, sample and seed; the tolerance is relative, that of the scene by
-    default. What is settled is of the finest mesh that one of the bearing sets needs, with the
-    largest bar of each quantity over all of them; ``judged_on`` says how many there were.
+    The tolerance is relative, that of the scene by default. What is settled is of the finest mesh
+    that one of the bearing sets needs, with the largest bar of each quantity over all of them;
+    ``judged_on`` says how many there were.
 
     Examples
     --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/shaft_stepped.toml")
-    >>> vary = [f"bearing.{scene.bearings[0].name}.scale=log:0.1:10:9"]
-    >>> found = settled_for_sweep(scene, vary, 0.05)
+    >>> from solidgear.studies.sweep.bearing_variants import bearing_variants
+    >>> scales = ["bearing.A.scale=log:0.1:10:9"]
+    >>> variants = bearing_variants("geometry/shaft_stepped.toml", scales)
+    >>> found = settled_for_sweep(variants, 0.05)
     >>> found.judged_on, found.reached
     (3, True)
     """
-    scenes = [scene, *_ends(variants_of(scene, vary_texts, sample, seed))]
+    scenes = [variants.scene, *_ends(variants)]
     found: list[Settled] = []
     last: dict[Hashable, Settled] = {}
     for k, one in enumerate(scenes, start=1):
@@ -74,7 +75,24 @@ def settled_for_sweep(
     )
 
 
-def _ends(variants: Variants) -> list[Scene]:
+def bars_of_rows(variants: BearingVariants, settled: Settled, n: int) -> dict[str, float]:
+    """Relative bars of the numbers of rows by their names, those of `n` natural frequencies with them:
+    the largest over the scene and the ends of a sweep, on the mesh that was settled on.
+    """
+    bars: dict[str, float] = {str(name): bar for name, bar in settled.bars.items()}
+    judged = [variants.scene, *_ends(variants)]
+    known: list[set[str]] = []
+    for one in judged:
+        body = build(one, settled.rung, **settled.options)
+        told = bars_of_modes(one, body, modes(body, one, n + SPARE, ovalising=False), settled)
+        known.append({*map(str, told)})
+        for name, bar in told.items():
+            bars[str(name)] = max(bar, bars.get(str(name), 0.0))
+    everywhere = set.intersection(*known) | {*map(str, settled.bars)}
+    return {name: bar for name, bar in bars.items() if name in everywhere and math.isfinite(bar)}
+
+
+def _ends(variants: BearingVariants) -> list[Scene]:
     """Scenes of the variants with the lowest and the highest value of everything that varies."""
     # the ends of all at once first, then of one after the other
     ranks = variants.values.argsort(axis=0).argsort(axis=0).sum(axis=1)

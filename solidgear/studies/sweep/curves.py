@@ -10,13 +10,16 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SolidgearError, listed
-from solidgear.studies.sweep.entries import Entry, in_si
+from solidgear.studies.sweep.amounts import in_si
+from solidgear.studies.sweep.entries import Entry
 from solidgear.studies.sweep.file_variants import POINT, FileVariants
 
 #: rows that curves are made of
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
+#: stiffness of a shaft that a table tells, and its units
+STATICS = {"K_zz": "N/m", "K_thx": "N m/rad"}
 #: what columns of mesh forces begin with
 FORCE = "mesh_force"
 
@@ -63,6 +66,8 @@ class Curves:
         Ascending.
     labels : tuple of str
         Names of the rows where they have some, such as operating points.
+    statics : list of Curve
+        Stiffness at the lumped point of a shaft, to be told in a table.
     radial, axial : list of Curve
         Loads of bearings.
     mesh_force : list of Curve
@@ -77,6 +82,7 @@ class Curves:
     x: np.ndarray
     labels: tuple[str, ...]
     frequencies: list[Curve]
+    statics: list[Curve]
     mesh_force: list[Curve]
     misalignment: list[Curve]
     radial: list[Curve]
@@ -169,6 +175,7 @@ def curves_of(
             for column in modes
             for curve in told(column[:-3], column, "Hz", f"mode{column[1:-3]}")
         ],
+        statics=[curve for name, si in STATICS.items() for curve in told(name, name, si)],
         mesh_force=[
             curve
             for column in columns

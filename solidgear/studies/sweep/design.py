@@ -23,7 +23,7 @@ from solidgear.studies.sweep.entries import (
     entries_of_table,
     kept_of,
 )
-from solidgear.studies.sweep.vary import product, sample
+from solidgear.studies.sweep.spans import product, sample
 
 #: entries that a study looks at beside those it was given, such as operating points
 Further = Callable[[tuple[Entry, ...]], tuple[Entry, ...]]
@@ -98,8 +98,13 @@ class Design:
             if self.sample is not None:
                 raise SolidgearError("give one of --sample and --one-at-a-time")
             return varied, _in_turn(varied), kept
-        drawn = product(varied) if self.sample is None else sample(varied, self.sample, self.seed)
-        return varied, drawn, kept
+        return varied, self.drawn(varied), kept
+
+    def drawn(self, varied: tuple[Entry, ...]) -> np.ndarray:
+        """(n, entries) all combinations of values, or points of the hypercube."""
+        if self.sample is None:
+            return product(varied)
+        return sample(varied, self.sample, self.seed)
 
     def _alone(self) -> None:
         others = {

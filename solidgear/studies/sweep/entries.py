@@ -16,12 +16,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from solidgear.errors import SceneError, SolidgearError, nearest
-from solidgear.scene.paths import Keys, Tables, changed, entries, entry, keys_of, label_of
-from solidgear.scene.units import DIMENSIONS, quantity
-from solidgear.studies.sweep.vary import Span, spread
+from solidgear.errors import SceneError, SolidgearError, did_you_mean, near, nearest
+from solidgear.scene.paths import Keys, Tables, entries, entry, keys_of, label_of, put
+from solidgear.scene.text_keys import is_text
+from solidgear.studies.sweep.amounts import amount, in_si
+from solidgear.studies.sweep.spans import Span, spread
 
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
 #: from a path to the file that holds it, by its name among all, and the path within
 Owner = Callable[[str], tuple[str, str]]
 
@@ -64,6 +64,8 @@ class Entry(Span):
         Whether the values of a range are whole numbers.
     words : tuple
         What is put in of a list, whose `values` count from 0; empty of a range.
+    text : bool
+        Whether its values are words, whatever they look like.
     """
 
     places: tuple[Place, ...]
@@ -71,6 +73,7 @@ class Entry(Span):
     unit: str = ""
     whole: bool = False
     words: tuple[str | float | bool, ...] = ()
+    text: bool = False
 
     @property
     def file(self) -> str:
@@ -97,13 +100,15 @@ class Entry(Span):
     @property
     def shown_in(self) -> str:
         """Unit that its numbers are read in, as the user wrote it; empty for SI."""
+        if self.text:
+            return ""
         units = {found[2] if (found := amount(word)) else "" for word in self.words}
         return self.unit or (units.pop() if len(units) == 1 else "")
 
     @property
     def numeric(self) -> bool:
         """True where every value is a number."""
-        return all(in_si(word) is not None for word in self.words)
+        return not self.text and all(in_si(word) is not None for word in self.words)
 
     def told(self, value: float) -> str | float | None:
         """A value as a row tells it: SI, or a text of a list that has any; that of the file where the
@@ -137,11 +142,17 @@ def entries_of(
         try:
             places = _places(path.strip(), files, owner)
             there = entry(places[0].keys, files[places[0].file])
-            values = _listed(spec.split(","), there) if ":" not in spec else _range(spec)
+            of_words = _is_text(places, there)
+            listed = of_words or ":" not in spec
+            values = _listed(spec.split(","), of_words) if listed else _range(spec)
         except SceneError as error:
             raise SolidgearError(f"--vary {text}: {error}") from None
         made = Entry(
-            label="+".join(one.label for one in places), places=places, there=there, **values
+            label="+".join(one.label for one in places),
+            places=places,
+            there=there,
+            text=of_words,
+            **values,
         )
         _once(f"--vary {text}", [*out, made])
         out.append(made)
@@ -182,13 +193,14 @@ def entries_of_table(
         except SceneError as error:
             raise SolidgearError(f"--table {path}: {head}: {error}") from None
         cells = [row[k].strip() if k < len(row) else "" for row in rows]
-        listed = _listed([cell for cell in cells if cell], there)
-        words, texts = listed["words"], isinstance(there, str) and in_si(there) is None
+        text = _is_text(places, there)
+        listed = _listed([cell for cell in cells if cell], text)
+        words = listed["words"]
         label = "+".join(one.label for one in places)
-        out.append(Entry(label=label, places=places, there=there, **listed))
+        out.append(Entry(label=label, places=places, there=there, text=text, **listed))
         _once(f"--table {path}", out)
         columns.append(
-            [float(words.index(_word(cell, texts))) if cell else math.nan for cell in cells]
+            [float(words.index(_word(cell, text))) if cell else math.nan for cell in cells]
         )
     return tuple(out), [list(row) for row in zip(*columns)]
 
@@ -253,7 +265,7 @@ class Kept:
 
     def put(self, tables: Tables) -> Tables:
         """Tables with the last entry given what is left."""
-        return changed(tables, keys_of(self.places[-1].path, tables), self.left(tables))
+        return put(tables, keys_of(self.places[-1].path, tables), self.left(tables))
 
 
 def kept_of(
@@ -297,13 +309,13 @@ def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[flo
     for one, value in zip(varied, row):
         for place in one.places:
             if place.file == file and not math.isnan(value):
-                tables = changed(tables, keys_of(place.path, tables), one.put(value))
+                tables = put(tables, keys_of(place.path, tables), one.put(value))
     return tables
 
 
 def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
-    """Sentence of an error about a path; of an unknown key with the entry that the whole path stands
-    for, as likely as not, before what those know who know a part of it.
+    """Sentence of an error about a path; of an unknown key with the entry that its last word stands
+    for, as likely as not, among those of the same thing, else with that of the whole path.
     """
     known = [
         f"{file}.{label_of(keys, tables)}".removeprefix(".")
@@ -311,35 +323,12 @@ def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
         for keys in entries(tables)
     ]
     said, unknown, _ = error.sentence.partition("unknown key")
-    hint = nearest(path, known) if unknown else ""
+    thing, _, word = path.rpartition(".")
+    beside = {label.rpartition(".")[2]: label for label in known if label.startswith(f"{thing}.")}
+    if not unknown:
+        return error.sentence
+    hint = did_you_mean(beside.get(near(word, beside))) if beside else nearest(path, known)
     return f"{said}{unknown}{hint}" if hint else error.sentence
-
-
-def in_si(value: object) -> float | None:
-    """A number, or a text with a unit, in SI; None for what is neither.
-
-    Examples
-    --------
-    >>> in_si("20 mm"), in_si("3000 rpm") == in_si("50 Hz"), in_si("concave"), in_si(20)
-    (0.02, False, None, 20.0)
-    """
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return float(value)
-    if not isinstance(value, str):
-        return None
-    if not (found := amount(value)) or not found[2]:
-        return None
-    for dimension in DIMENSIONS:
-        try:
-            return quantity(value, dimension)
-        except SceneError:
-            continue
-    return None
-
-
-def amount(word: object) -> re.Match[str] | None:
-    """Number and unit of a text."""
-    return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
 
 
 def _range(spec: str) -> dict:
@@ -348,7 +337,7 @@ def _range(spec: str) -> dict:
     ends: list[str] = []
 
     def read(text: str) -> float:
-        found = _NUMBER.fullmatch(text)
+        found = amount(text)
         if found is None:
             raise SceneError(f"{text!r} is no number, with or without a unit")
         ends.append(found[1])
@@ -368,12 +357,15 @@ def _range(spec: str) -> dict:
     return fields | {"whole": whole}
 
 
-def _listed(cells: Iterable[str], there: object) -> dict:
-    """Fields of an entry with a list of values; what the file holds there says whether a number is
-    a text.
-    """
-    texts = isinstance(there, str) and in_si(there) is None
-    words = tuple(dict.fromkeys(_word(part.strip(), texts) for part in cells))
+def _is_text(places: Sequence[Place], there: object) -> bool:
+    """True for an entry of words, by the format of files or by what a file holds there."""
+    own = isinstance(there, str) and in_si(there) is None
+    return own or any(is_text(place.keys) for place in places)
+
+
+def _listed(cells: Iterable[str], text: bool) -> dict:
+    """Fields of an entry with a list of values, of which a number may be a text."""
+    words = tuple(dict.fromkeys(_word(part.strip(), text) for part in cells))
     return {"words": words, "values": tuple(map(float, range(len(words)))), "spacing": "list"}
 
 

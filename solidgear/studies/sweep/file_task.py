@@ -47,6 +47,11 @@ class FileTask:
         raise NotImplementedError
 
     @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what does not fit together in variants that can be solved."""
+        return self.variants.cautions
+
+    @property
     def measured(self) -> tuple[str, ...]:
         """Names of the numbers of a misalignment."""
         return ()
@@ -94,6 +99,8 @@ class Swept(Displayed):
         Wall seconds of this run.
     repairs : tuple of str
         What was found damaged in the files and how it was mended, a sentence each.
+    cautions : tuple of str
+        What does not fit together in variants that were solved, a sentence each.
 
     Examples
     --------
@@ -112,6 +119,7 @@ class Swept(Displayed):
     skipped: int
     seconds: float
     repairs: tuple[str, ...]
+    cautions: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.columns["variant"])
@@ -205,4 +213,5 @@ def run(
         skipped,
         time.perf_counter() - start,
         tuple(file.repairs),
+        task.cautions,
     )

@@ -12,6 +12,7 @@ import numpy as np
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.paths import Tables
 from solidgear.studies.sweep.design import Design
+from solidgear.studies.sweep.designations import kept_data
 from solidgear.studies.sweep.entries import Entry, Kept, hinted, put_in
 
 #: name of the file that was asked about, among others that it names
@@ -83,6 +84,11 @@ class FileVariants(Generic[T]):
             one.label: [one.spacing, one.unit, *(one.words or one.values)] for one in self.entries
         }
         return {"vary": vary, "sample": self.design.plan}
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what does not fit together in variants that can be solved."""
+        return tuple(kept_data(self.entries, self.files))
 
     def in_turn(self, numbers: Iterable[int]) -> list[int]:
         """Variants in the order in which they are solved."""
@@ -180,7 +186,8 @@ class FileVariants(Generic[T]):
         tables = put_in(tables, name, *zip(*own)) if own else tables
         for one in self.kept:
             tables = one.put(tables) if one.places[0].file == name else tables
-        return tables
+        # what varies may lie beside the ranges that a file states, of which no row tells
+        return {key: table for key, table in tables.items() if key != "uncertain"}
 
 
 def _meets(path: tuple, keys: tuple) -> bool:

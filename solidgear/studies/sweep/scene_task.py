@@ -1,8 +1,8 @@
-"""Scenes of a sweep: a file with entries replaced, and rows of numbers with their bars."""
+"""Rows of a sweep of scenes: numbers with their bars."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,36 +16,18 @@ from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
 from solidgear.quantity import QUANTITIES
 from solidgear.scene import Scene
-from solidgear.scene.toml_file import parse
-from solidgear.studies.loading import scene_of
 from solidgear.studies.one_shaft import mass_of, one_shaft
+from solidgear.studies.sweep.bearing_task import BARS, without_bars
 from solidgear.studies.sweep.bench import surface
 from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.entries import Entry
 from solidgear.studies.sweep.file_task import FileTask
-from solidgear.studies.sweep.file_variants import OWN, FileVariants, in_own_file, plain
+from solidgear.studies.sweep.file_variants import OWN, plain
+from solidgear.studies.sweep.scene_variants import SceneVariants, scene_variants
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
 #: natural frequencies of a row at most
 MOST_MODES = 30
-
-
-@dataclass(frozen=True)
-class SceneVariants(FileVariants[Scene]):
-    """Points of a sweep over entries of a scene file, catalogue bearings with their stiffness."""
-
-    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Scene:
-        return scene_of(self.put(OWN, varied, row), self.path)
-
-
-def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
-    """Points of a sweep over entries of a scene file; the example of something to vary is told where
-    nothing is.
-    """
-    files = {OWN: parse(str(path))}
-    points = design.points(files, in_own_file, example=example)
-    return SceneVariants(path, files, *points, design)
 
 
 @dataclass(frozen=True)
@@ -81,7 +63,8 @@ class SceneTask(FileTask):
 
     @property
     def columns(self) -> dict[str, type]:
-        out: dict[str, type] = {"model": str, "unknowns": int, "mass": float}
+        out: dict[str, type] = {"model": str, "unknowns": int}
+        out |= {"mass": float, "mass bar": float} | ({BARS: str} if self.model else {})
         for name in STATICS:
             out |= self._with_bar(str(name), float)
         for k in range(1, self.n + 1):
@@ -122,6 +105,7 @@ class SceneTask(FileTask):
             "model": f"{found.settled.rung}, {found.settled.setting}",
             "unknowns": found.settled.body.size,
             "mass": found.mass,
+            "mass bar": found.mass_bar and found.mass_bar * found.mass,
         }
         for name in STATICS:
             out |= {str(name): found.values.get(name), f"{name} bar": found.bar(name)}
@@ -136,10 +120,13 @@ class SceneTask(FileTask):
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
         found = answered(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        mass, exact = mass_of(scene, body)
         out: dict[str, Any] = {
             "model": self.model,
             "unknowns": body.size,
-            "mass": mass_of(scene, body)[0],
+            "mass": mass,
+            "mass bar": exact and exact * mass,
+            BARS: without_bars(self.model),
         }
         out |= {str(name): found.quantities.get(name) for name in STATICS}
         elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]

@@ -15,6 +15,7 @@ from solidgear.models.limits import number
 from solidgear.scene import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
+from solidgear.studies.sweep.bearing_task import BARS, BOUND
 from solidgear.studies.sweep.bench import Bench
 from solidgear.studies.sweep.curves import force_of, misaligned
 from solidgear.studies.sweep.design import Design
@@ -37,6 +38,8 @@ ASKED = (MODES, RESPONSE, DEFLECTION)
 MOST_MODES = 20
 #: most that can be asked for
 MOST_SHAPES = 200
+#: words on bars of a row
+UNBARRED = "none: system-modes and response and deflect have those of one variant"
 #: peaks of the mesh force
 PEAKS = 3
 #: of a bearing, N, N and N m
@@ -93,7 +96,8 @@ class TrainTask(FileTask):
     @property
     def cautions(self) -> tuple[str, ...]:
         """Things that do not fit together in the usual train but can be solved."""
-        return tuple(text for met in contacts(self.usual).values() for text in met.cautions)
+        met = tuple(text for met in contacts(self.usual).values() for text in met.cautions)
+        return met + self.variants.cautions
 
     @property
     def columns(self) -> dict[str, type]:
@@ -107,13 +111,13 @@ class TrainTask(FileTask):
         if train.operation:
             out["unloaded"] = str
         if MODES in self.ask:
-            out |= {"rigid_modes": int, "modes": int, "error_bound": float}
+            out |= {"rigid_modes": int, "modes": int, BOUND: float}
             for k in range(1, (self.n or MOST_MODES) + 1):
                 out |= {f"f{k}_hz": float, f"mode{k}": str}
         if RESPONSE in self.ask:
             for k in range(1, PEAKS + 1):
                 out |= {f"peak{k}_hz": float, f"peak{k}_force": float, f"peak{k}_mode": str}
-        return out
+        return out | {BARS: str}
 
     @property
     def plan(self) -> dict[str, Any]:
@@ -146,9 +150,10 @@ class TrainTask(FileTask):
     def numbers(self, index: int) -> dict[str, Any]:
         train = self.variants.of(index)
         point = self.variants.at(index, train)
-        at, found = train, dict[str, Any]()
+        at, found = train, dict[str, Any]({BARS: UNBARRED})
         if point is not None:
-            at, found = self._at_rest(index, train, point)
+            at, rest = self._at_rest(index, train, point)
+            found |= rest
         if {MODES, RESPONSE} & {*self.ask}:
             found |= self._moving(at)
         return found
@@ -194,7 +199,7 @@ class TrainTask(FileTask):
             found, names = drive.named_modes(max(wanted, drive.reach(limit)), bounded=wanted)
             elastic = slice(found.rigid, found.rigid + wanted)
             out |= {"rigid_modes": found.rigid, "modes": below}
-            out["error_bound"] = float(found.error_bound[elastic].max(initial=0.0))
+            out[BOUND] = float(found.error_bound[elastic].max(initial=0.0))
             for k, (hz, name) in enumerate(
                 zip(found.frequency_hz[elastic], names[elastic]), start=1
             ):

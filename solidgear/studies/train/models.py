@@ -202,6 +202,7 @@ class Workshop:
                 bearing.with_changes(
                     matrix=np.asarray(stiffness[f"{side}.{bearing.name}"]).tolist(),
                     axial_series=(),
+                    scale=1.0,
                     catalogue=None,
                     support=None,
                 )

@@ -1,0 +1,69 @@
+"""Springs of a scene by other tables of its file: no place along the shaft hangs on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SceneError
+from solidgear.scene.bearing_stiffness import one_stiffness
+from solidgear.scene.housing import housing_of
+from solidgear.scene.paths import Keys, Tables
+from solidgear.scene.places import Places
+from solidgear.scene.stations import Bearing
+
+if TYPE_CHECKING:
+    from solidgear.scene.model import Scene
+
+_SPRINGS = ("stiffness", "matrix", "axial_series", "housing", "scale")
+
+
+def resprung(scene: Scene, tables: Tables, touched: Iterable[Keys]) -> Scene:
+    """A scene with the springs of bearings and housing that its file would have with other tables;
+    `touched` are the entries in which they differ.
+
+    Raises
+    ------
+    SceneError
+        As of the file with these tables.
+    """
+    bearings = list(scene.bearings)
+    changes: dict[str, Any] = {}
+    for place in dict.fromkeys(keys[:2] if keys[0] == "bearing" else keys[:1] for keys in touched):
+        if place == ("housing",):
+            changes |= _housing(scene, tables["housing"])
+            continue
+        k = int(place[1])
+        try:
+            bearings[k] = _bearing(bearings[k], tables["bearing"][k])
+        except SceneError as error:
+            raise error.located(None, prefix=place) from None
+    return scene.unjudged(bearings=tuple(bearings), **changes)
+
+
+def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
+    """A bearing with the springs of a table."""
+    one_stiffness(table)
+    try:
+        return bearing.with_changes(**{key: table[key] for key in _SPRINGS if key in table})
+    except SceneError as error:
+        problems = error.problems
+        raise SceneError.of(
+            one.located(None, path=Bearing.key_path(one.path, table)) for one in problems
+        ) from None
+
+
+def _housing(scene: Scene, table: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields of a scene with the housing of a table, where it is."""
+    there = scene.housing
+    places = Places("average")
+    places.at["start"] = 0.0
+    own = {key: value for key, value in table.items() if key != "from"}
+    if there is not None:
+        own["position"] = there.y
+    try:
+        found = housing_of(own, places)
+    except SceneError as error:
+        raise error.located(None, prefix=("housing",)) from None
+    axial = found if isinstance(found, float) else None
+    return {"housing_axial": axial, "housing": None if axial is not None else found}

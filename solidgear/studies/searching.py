@@ -1,0 +1,142 @@
+"""Search of a box for the least of a number that is dear and a little rough: a sample of the whole box
+first, searches from its best places, and a last step where the best stands.
+
+The sample has the corners of a small box and points of Sobol's sequence inside, the searches are those
+of SciPy that want no derivative: Brent's bounded scalar search for one coordinate without limits, and
+COBYQA (Ragonneau and Zhang 2024), a trust-region method with bounds and constraints, for all others.
+A box of one minimum costs little more than one search; that of several is told from it by the sample.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+#: coordinates of a box whose corners are all sampled
+CORNERED = 3
+#: points of the sample: on a line, and for each coordinate of other boxes (a power of two for two)
+LINE, INSIDE = 9, 8
+#: searches from the sample, how far apart they begin, and what one may cost for each coordinate
+STARTS, APART, MOST = 3, 0.25, 12
+#: of a range: where a search ends, where the last step does, and what is brought to an end of its range
+COARSE, FINE, NEAR = 1e-2, 1e-4, 2e-2
+#: of the number, for what misses a limit by all of it
+PENALTY = 2.0
+
+#: of a place in the unit box
+Number = Callable[[np.ndarray], float]
+
+
+def searched(dimension: int, goal: Number, misses: Sequence[Number], begin: np.ndarray) -> str:
+    """Look for the least of a number where no miss is above zero, each in units of its own size.
+
+    Whoever gives the numbers keeps the places that they were asked for, of which the best is the
+    result.
+
+    Parameters
+    ----------
+    begin : (dimension,) ndarray
+        A place that searches begin at beside those of the sample.
+
+    Returns
+    -------
+    str
+        What was searched, in words.
+    """
+    merit = _merit(goal, misses)
+    places = _sample(dimension)
+    merits = [merit(place) for place in places]
+    if dimension == 1 and not misses:
+        count = _on_the_line(goal, [float(place[0]) for place in places], merits)
+        return f"{LINE} designs across the range, then Brent's method from {_best(count)}"
+    starts = _apart([begin, *places], [merit(begin), *merits])
+    best = min(starts, key=merit)
+    for start in starts:
+        best = min(best, _trust_region(goal, misses, start, 0.2, COARSE), key=merit)
+    ends = np.where(best < NEAR, 0.0, np.where(best > 1 - NEAR, 1.0, best))
+    best = min(best, ends, key=merit)
+    _trust_region(goal, misses, best, COARSE, FINE)
+    return (
+        f"{len(places)} designs across the ranges, then COBYQA from {_best(len(starts))}, and a last "
+        f"step of {FINE:g} of the ranges"
+    )
+
+
+def _best(count: int) -> str:
+    return "the best of them" if count == 1 else f"the {count} best that lie apart"
+
+
+def _merit(goal: Number, misses: Sequence[Number]) -> Number:
+    """The number, with what misses limits."""
+
+    def merit(place: np.ndarray) -> float:
+        missing = sum(max(0.0, miss(place)) for miss in misses)
+        return goal(place) + (1.0 + PENALTY * missing if missing else 0.0)
+
+    return merit
+
+
+def _sample(dimension: int) -> list[np.ndarray]:
+    """Places of a sample of the unit box."""
+    from scipy.stats import qmc  # slow to import, and few commands have a use for it
+
+    if dimension == 1:
+        return list(np.linspace(0.0, 1.0, LINE)[:, None])
+    corners = itertools.product((0.0, 1.0), repeat=dimension if dimension <= CORNERED else 0)
+    inside = qmc.Sobol(dimension, scramble=False).random_base2(int(np.log2(INSIDE * dimension)))
+    # the sequence begins in a corner
+    return [*map(np.array, corners if dimension <= CORNERED else ()), *inside[1:]]
+
+
+def _on_the_line(goal: Number, places: Sequence[float], values: Sequence[float]) -> int:
+    """Brent's search about every place of a line that is better than its neighbours, the best first;
+    how many there were.
+    """
+    from scipy.optimize import minimize_scalar
+
+    wall = [np.inf, *values, np.inf]
+    least = [k for k in range(len(places)) if wall[k] > wall[k + 1] <= wall[k + 2]]
+    least = sorted(least, key=lambda k: values[k])[:STARTS]
+    for k in least:
+        low, high = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
+        minimize_scalar(
+            lambda x: goal(np.array([x])),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": COARSE / 2, "maxiter": MOST},
+        )
+    return len(least)
+
+
+def _apart(places: Sequence[np.ndarray], merits: Sequence[float]) -> list[np.ndarray]:
+    """The best places that lie apart."""
+    starts: list[np.ndarray] = []
+    for k in np.argsort(merits, kind="stable"):
+        far = all(np.abs(places[k] - start).max() > APART for start in starts)
+        if far and len(starts) < STARTS:
+            starts.append(places[k])
+    return starts
+
+
+def _trust_region(
+    goal: Number, misses: Sequence[Number], start: np.ndarray, first: float, last: float
+) -> np.ndarray:
+    """Place at which COBYQA ends, by radii of its region."""
+    from scipy.optimize import NonlinearConstraint, minimize
+
+    limits = [NonlinearConstraint(miss, -np.inf, 0.0) for miss in misses]
+    found = minimize(
+        goal,
+        start,
+        bounds=[(0.0, 1.0)] * len(start),
+        constraints=limits,
+        method="COBYQA",
+        options={
+            "maxfev": MOST * len(start) + MOST * bool(misses),
+            "initial_tr_radius": first,
+            "final_tr_radius": last,
+        },
+    )
+    return np.clip(found.x, 0.0, 1.0)
