@@ -251,9 +251,13 @@ class Backlash:
         s, v = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
         return s[:, self.row], v[:, self.row]
 
-    def _swing(self, s: np.ndarray, v: np.ndarray, damped: float = 1.0) -> float:
+    def _swing(self, s: np.ndarray, v: np.ndarray) -> float:
         own, row = self.remainder, self.row
-        return float(np.ptp(own.stiffness[row, row] * s + damped * own.damper[row, row] * v) / 2)
+        return float(np.ptp(own.stiffness[row, row] * s + own.damper[row, row] * v) / 2)
+
+    def _released(self, s: np.ndarray) -> float:
+        """Largest force that a linear motion takes off the teeth, N."""
+        return float(self.remainder.stiffness[self.row, self.row] * (s.mean() - s.min()))
 
     @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:
@@ -306,9 +310,12 @@ class Backlash:
         """
         apart = [one for one in self.every if one.teeth.half_gap > 0] or [self]
         own = self.teeth.mean_force
-        # teeth part as the stretch does: a damper has no part in it
+        # teeth part where the stretch is least: a damper has no part in it
         sizes = [
-            [one._swing(*wave, 0.0) * own / one.teeth.mean_force for wave in one._unbounded[1]]
+            [
+                one._released(stretch) * own / one.teeth.mean_force
+                for stretch, _ in one._unbounded[1]
+            ]
             for one in apart
         ]
         return self.linear[0], np.max(sizes, axis=0)

@@ -21,7 +21,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainModes, train_modes
 from solidgear.studies.train.orders import OrderMap, order_map
 from solidgear.studies.train.pictures import draw_modes, turned_beside
-from solidgear.studies.train.respond import TrainResponse
+from solidgear.studies.train.response import TrainResponse
 
 #: modes that are drawn
 PICTURES = 4

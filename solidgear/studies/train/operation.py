@@ -239,6 +239,15 @@ def torques(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
     return {name: torque * np.eye(6)[4] for name, torque in found.items()}
 
 
+def mean_forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Forces of all meshes at an operating point, N, of a planetary stage those of each planet; those
+    of a loop as Timoshenko shafts divide them under all that loads the train there.
+    """
+    if None in workshop.train.flows.values():
+        return Operating(workshop).at(point).mesh_forces
+    return mesh_forces(workshop.train, workshop.contacts, point)
+
+
 def divided(
     workshop: Workshop, system: System, coordinates: np.ndarray, where: str
 ) -> dict[str, float]:
