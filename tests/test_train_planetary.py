@@ -325,6 +325,7 @@ BAD = {
     "planets = 3": ("planets = 4", "4 planets at equal angles do not assemble: 17 + 85 teeth"),
     "planets = 3 ": ("angles = [0.0, 2.05, 4.1]", "planet 2 does not assemble at 117.456 deg"),
     "planets = 3  ": ("angles = [0.0, 1.4784, 3.69599]", "planets 84.71 deg apart overlap"),
+    "planets = 3    ": ("angles = [0, 2.1, 240]", 'degrees are written as "120 deg"'),
     "planets = 3   ": ("", "give either planets, how many at equal angles, or the angles"),
     "ring_teeth = 85 ": ("ring_teeth = 85\nratio = 5.0", "1 + 85/17 = 6"),
     'sun = "sun"': ('sun = "sun.b"', "the sun has no gear at 'b'; it has sun"),

@@ -31,7 +31,7 @@ from solidgear.studies.train.layout import mesh_forces
 from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
-from solidgear.studies.train.operation import SHAFT, divided, mean_forces, torques
+from solidgear.studies.train.operation import SHAFT, divided, torques
 from solidgear.system.law import Gap
 from solidgear.system.links import RowSpring
 from solidgear.system.system import System
@@ -83,7 +83,7 @@ def teeth_of(
                 'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
                 '--mean-force, such as "5 kN"'
             )
-        forces, source = mean_forces(workshop, point), point.label
+        forces, source = _by_torque(workshop, point), point.label
     else:
         unit = _by_torque(workshop, torque_of(workshop, pair.name, 1.0))
         forces = {name: mean_force * one for name, one in unit.items()}
