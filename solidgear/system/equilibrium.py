@@ -40,6 +40,9 @@ from solidgear.system.system import System
 
 #: work of loads on a free motion, relative to what they could do, that is rounding
 UNBALANCED = 1e-9
+#: of the largest load that a bearing carries, one that is rounding: what is left of digits after a
+#: balance of very stiff and very soft springs
+ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
@@ -258,6 +261,7 @@ class OnBearings:
         missing = (self.balance.places(at) - self._rows @ elastic) / self._size
         free, *_ = np.linalg.lstsq(self._rigid / self._size[:, None], missing, rcond=1e-9)
         tangent = [one.bearing.tangent(q) for one, q in zip(self.balance.bearings, relative)]
+        carried = self._without_rounding(carried)
         lost = tuple(end for end, own in zip(ends, carried) if not own.any())
         return SystemEquilibrium(
             elastic + self.system.free @ free,
@@ -267,6 +271,12 @@ class OnBearings:
             lost,
             at,
         )
+
+    def _without_rounding(self, carried: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Loads (6,) of bearings, components that are rounding beside the largest of all left out."""
+        size = np.repeat([1.0, 1 / self._length], 3)
+        least = ROUNDING * max((np.abs(load * size).max() for load in carried), default=0.0)
+        return [np.where(np.abs(load * size) > least, load, 0.0) for load in carried]
 
 
 def weight(system: System, gravity: Sequence[float]) -> np.ndarray:
