@@ -261,8 +261,8 @@ class OnBearings:
         missing = (self.balance.places(at) - self._rows @ elastic) / self._size
         free, *_ = np.linalg.lstsq(self._rigid / self._size[:, None], missing, rcond=1e-9)
         tangent = [one.bearing.tangent(q) for one, q in zip(self.balance.bearings, relative)]
-        carried = self._without_rounding(carried)
         lost = tuple(end for end, own in zip(ends, carried) if not own.any())
+        carried = without_rounding(carried, self._length)
         return SystemEquilibrium(
             elastic + self.system.free @ free,
             dict(zip(ends, relative)),
@@ -272,11 +272,14 @@ class OnBearings:
             at,
         )
 
-    def _without_rounding(self, carried: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """Loads (6,) of bearings, components that are rounding beside the largest of all left out."""
-        size = np.repeat([1.0, 1 / self._length], 3)
-        least = ROUNDING * max((np.abs(load * size).max() for load in carried), default=0.0)
-        return [np.where(np.abs(load * size) > least, load, 0.0) for load in carried]
+
+def without_rounding(carried: Sequence[np.ndarray], length: float) -> list[np.ndarray]:
+    """Loads (6,) of bearings without components that are rounding beside the largest of all, moments
+    as forces over a length, m.
+    """
+    size = np.repeat([1.0, 1 / length], 3)
+    least = ROUNDING * max((np.abs(load * size).max() for load in carried), default=0.0)
+    return [np.where(np.abs(load * size) > least, load, 0.0) for load in carried]
 
 
 def weight(system: System, gravity: Sequence[float]) -> np.ndarray:
