@@ -203,9 +203,9 @@ class Train(Model):
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
             alone = len(self.meshes) == 1 and not self.planetary
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
-            gears = with_flanks(self, ends, *(self.shafts[s].member(p) for s, p in ends))
-            told = mesh, self.point, idle(self, ends[1])
-            out.append(Pair(name, sides, ports, paths, *gears, *told))
+            first, second = with_flanks(self, ends, *(self.shafts[s].member(p) for s, p in ends))
+            behind = idle(self, ends[1])
+            out.append(Pair(name, sides, ports, paths, first, second, mesh, self.point, behind))
         return tuple(out)
 
     @cached_property
