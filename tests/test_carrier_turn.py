@@ -212,6 +212,12 @@ def test_what_is_no_support_or_error_is_told():
         sg.carrier_turn(stage(), TORQUE, {"planet 1": sg.FixedSupport(1e7)})
     with pytest.raises(SolidgearError, match="2 errors for 3 planets; give each its own"):
         sg.carrier_turn(stage(), TORQUE, errors=[sg.PlanetError()] * 2)
+    with pytest.raises(SolidgearError, match="'planet 4' is no member to be loaded; sun, ring"):
+        sg.carrier_turn(stage(), TORQUE, weights={"planet 4": [0, 0, -9.0, 0, 0, 0]})
+    with pytest.raises(
+        SolidgearError, match=r"the load of ring has shape \(3,\); it must be \(6,\)"
+    ):
+        sg.carrier_turn(stage(), TORQUE, carried={"ring": [0, 0, -9.0]})
     with pytest.raises(SolidgearError, match="the stiffness of a support has -1 on its diagonal"):
         sg.FixedSupport(-1.0)
     with pytest.raises(SolidgearError, match="the torque on the sun contains NaN or infinity"):

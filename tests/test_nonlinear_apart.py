@@ -1,5 +1,6 @@
 """Branches apart: found from starts, closed, and what motion in time says of them."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,8 @@ def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     assert "A branch apart of two mesh periods from 100" in told
     assert "looked for from 1024 starts at 32 speeds" in told and "there may be others" in told
     assert "on a branch apart, 7392 N" in told
+    alone = " ".join(BacklashTold(shop.train, (replace(found, apart=()),), 0.044).sentences())
+    assert "of 1 to 3 mesh periods: none was found, and there may be some." in alone
 
 
 def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else():

@@ -339,6 +339,13 @@ def test_an_idler_between_two_wheels_is_pushed_across_by_both(tmp_path, told):
     push = sum(state.forces()[f"idler.{b}"][:3] for b in ("b0", "b1"))  # of the bearings
     assert np.abs(push) == pytest.approx([0, 0, 2 * 90 / 0.03], abs=1e-6)
     assert state.outside["load"][4] == pytest.approx(90.0 * 40 / 20, rel=1e-10)
+    if told:
+        (tmp_path / "train.toml").write_text(text.replace(told, 'loaded_side = "left"'))
+        with pytest.raises(SolidgearError) as refused:
+            sg.load_train(tmp_path / "train.toml")
+        said = str(refused.value)
+        assert 'loaded_side = "left": is the flank that the idler drives with' in said
+        assert 'write "right" in place of "left", or leave it out' in said
 
 
 BAD = {

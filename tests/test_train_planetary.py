@@ -219,8 +219,7 @@ def test_a_force_on_the_sun_modulates_every_mesh_by_the_closed_form(written):
     point = OperatingPoint(torque=300.0, of="sun", force=(force,))
     train = sg.load_train(written(train_text(), sun, carrier), point)
     (turn,) = deflection(Workshop(train), point, RIGID).turns
-    give = 1 / MESHES["sun"] + 1 / MESHES["ring"] + (2 + 2 * cos(2 * PRESSURE)) / PIN["radial"]
-    shift, path = load / springs, 1 / give
+    shift, path = load / springs, path_stiffness()
     once = path * shift * springs / (springs + 3 / 2 * path)
     assert [planet.once for planet in turn.planets] == pytest.approx([once] * 3, rel=1e-5)
     mean = 300 / (3 * train.stages[0].teeth.base_radii[0])
@@ -237,6 +236,55 @@ def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_p
         there = shop.with_train(turned(train, "stage", turn.angle[k]))
         state = Operating(there, "timoshenko").at(train.point)
         np.testing.assert_allclose(planet_forces(state), [turn.force[k]] * 2, rtol=1e-7)
+
+
+def path_stiffness():
+    """Through one planet with sun, ring and carrier at rest, whose pin carries both tooth forces."""
+    give = 1 / MESHES["sun"] + 1 / MESHES["ring"] + (2 + 2 * cos(2 * PRESSURE)) / PIN["radial"]
+    return 1 / give
+
+
+#: N/m and N m/rad: what springs that stiff give is 1e-6 of what pins do
+STILL = [1e14, 1e14, 1e14, 1e14, 0.0, 1e14]
+
+
+def test_the_weight_of_a_planet_presses_its_teeth_by_what_its_pin_gives(written):
+    # both tooth forces F together push along the carrier's way by 2 F cos a, and the pin gives by
+    # (W + 2 F cos a) / k_pin there, so that F (1 / k_e) = 2 cos a W / k_pin
+    train = sg.load_train(written(train_text(ring=False), STILL, STILL))
+    point = OperatingPoint(torque=300.0, of="sun", weight="-z")
+    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    pressed = 2 * cos(PRESSURE) * PLANET["mass"] * 9.80665 / PIN["radial"]
+    once = path_stiffness() * pressed
+    assert [planet.once for planet in turn.planets] == pytest.approx([once] * 3, rel=1e-5)
+
+
+def test_the_carrier_bears_what_flings_planets_at_unequal_angles(written):
+    train = sg.load_train(written(train_text(planets=UNEQUAL), STILL, STILL))
+    azimuths = np.array(train.stages[0].teeth.azimuths)
+    at_rest, turning = (
+        Operating(Workshop(train), RIGID).at(OperatingPoint(torque=300.0, of="sun", speed=speed))
+        for speed in (None, 600.0)
+    )
+    more = turning.equilibrium.load["carrier.b"] - at_rest.equilibrium.load["carrier.b"]
+    each = PLANET["mass"] * (600.0 / 6) ** 2 * MODULE * (17 + 34) / 2
+    away = np.array([np.cos(azimuths), np.zeros(3), -np.sin(azimuths)]).sum(axis=1)
+    # nothing gives but pins, away from the sun, where both teeth of a planet press as before
+    np.testing.assert_allclose(more[:3], each * away, atol=1e-5 * each)
+
+
+@pytest.mark.parametrize("planets", ["planets = 3", UNEQUAL])
+def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_every_position(
+    written, planets
+):
+    train = sg.load_train(written(train_text(0.3, planets, ring=True)))
+    point = OperatingPoint(torque=50.0, of="sun", weight="-z", speed=2000.0)
+    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    assert turn.planets[0].once > 5.0
+    for k in (0, 25):
+        there = Workshop(turned(train, "stage", turn.angle[k]))
+        found = planet_forces(Operating(there, RIGID).at(point))
+        np.testing.assert_allclose(found, [turn.force[k]] * 2, rtol=1e-9)
 
 
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
@@ -277,6 +325,7 @@ BAD = {
     "planets = 3": ("planets = 4", "4 planets at equal angles do not assemble: 17 + 85 teeth"),
     "planets = 3 ": ("angles = [0.0, 2.05, 4.1]", "planet 2 does not assemble at 117.456 deg"),
     "planets = 3  ": ("angles = [0.0, 1.4784, 3.69599]", "planets 84.71 deg apart overlap"),
+    "planets = 3    ": ("angles = [0, 2.1, 240]", 'degrees are written as "120 deg"'),
     "planets = 3   ": ("", "give either planets, how many at equal angles, or the angles"),
     "ring_teeth = 85 ": ("ring_teeth = 85\nratio = 5.0", "1 + 85/17 = 6"),
     'sun = "sun"': ('sun = "sun.b"', "the sun has no gear at 'b'; it has sun"),

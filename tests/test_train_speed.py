@@ -260,6 +260,8 @@ def test_the_command_tells_orders_and_lays_a_spectrum_over_the_response(tmp_path
     lines = {row["order"]: row for row in table(tmp_path / "out" / "lines.csv")}
     assert float(lines["mesh 1"]["frequency [Hz]"]) == 350.0
     found = json.loads((tmp_path / "out" / "response.json").read_text())["at_speed"]
+    near = table(tmp_path / "out" / "near.csv")
+    assert [row["order"] for row in near] == [one["line"] for one in found["coincidences"]]
     assert found["pinion_rpm"] == pytest.approx(1500) and len(found["measured"]["peaks"]) == 2
     chart = (tmp_path / "out" / "measured.svg").read_text(encoding="utf-8")
     assert "acceleration, g" in chart and "not ours" in chart and "mesh force in N" in chart

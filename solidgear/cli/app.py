@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
@@ -187,7 +188,15 @@ def say(*told: RenderableType, soft_wrap: bool = True) -> None:
     # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
     terminal = Console(highlight=False, markup=False, emoji=False)
     for one in told:
-        terminal.print(one, soft_wrap=soft_wrap and isinstance(one, str), crop=False)
+        if isinstance(one, str) and not soft_wrap:
+            # rich breaks lines at the spaces that hold the digits of a number together as well
+            one = "\n".join(_broken(line, terminal.width) for line in one.split("\n"))
+        terminal.print(one, soft_wrap=isinstance(one, str), crop=False)
+
+
+def _broken(line: str, width: int) -> str:
+    """A line broken at plain spaces."""
+    return textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
 
 
 def caution(text: str) -> str:

@@ -20,7 +20,7 @@ from solidgear.studies.train.at_speed import NEAR, AtSpeed, at_speed, refuse_sha
 from solidgear.studies.train.modes import TrainMode
 
 #: rows of tables on a terminal
-MOST = 30
+MOST, MOST_NEAR = 30, 10
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def _turns(train: Train, text: str, of: str) -> float:
 def say_at_speed(found: AtSpeed) -> None:
     """Print orders at a speed, those near natural frequencies, and measured peaks."""
     say(speed_tables.first_lines(found.lines))
-    near = speed_tables.coincidences(found)
+    near = speed_tables.coincidences(found, MOST_NEAR)
     say(near if near else f"{near.title}: none.")
     if found.spectrum is not None:
         peaks = speed_tables.measured(found, MOST)

@@ -22,6 +22,7 @@ from solidgear.scene.train import Train
 from solidgear.studies import deflection
 from solidgear.studies.loading import explained
 from solidgear.studies.train import deflection as of_train
+from solidgear.studies.train.layout import senses_told
 from solidgear.studies.train.models import Workshop
 
 
@@ -77,9 +78,11 @@ def _train(
         for name, size in judge.mesh_forces.items()
     )
     lead = f"At {at.label}: {force} along the line of action."
+    sense = senses_told(found.senses)
     lines: list[Any] = [
         f"{found.title} at {at.label}",
         f"Mesh force {force} along the line of action, {'coast' if at.coast else 'drive'} flank.",
+        f"{sense[0].upper()}{sense[1:]}.",
         *filter(None, [tables.misalignment(found, shown)]),  # none of planets alone
         *tables.bearings(judge.shafts, shown),
         tables.displacements(judge.shafts, shown),
@@ -98,7 +101,7 @@ def _train(
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",
             [tables.misalignment(found, shown), *turning, *over, *tables.housing(judge, shown)],
-            [*judge.notes, *found.cautions],
+            [sense, *judge.notes, *found.cautions],
             shown,
             judge.turns,
         )

@@ -142,6 +142,7 @@ def nonlinear(
         cautions = [*slips(shop), *shop.cautions]
         if shop.train.planetary:
             cautions.append("teeth of planets are springs that never part")
+        cautions += _beside_torque(shop, mean_force)
         files = []
         if out:
             files = write_nonlinear(out, told, title, described(shop), run.units, cautions)
@@ -156,6 +157,17 @@ def nonlinear(
         say(over_force(told, shown), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
+
+
+def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
+    """Caution on what loads a loop of meshes beside the torque, by which its teeth share it."""
+    point, looped = shop.train.point, None in shop.train.flows.values()
+    if not looped or mean_force is not None or point is None or not (point.weight or point.force):
+        return []
+    return [
+        "weight and forces on shafts, which move the share of each mesh of a loop, are left out here; "
+        "solidgear deflect has them"
+    ]
 
 
 def _mix(shop: Workshop, text: str) -> tuple[str, ...]:

@@ -40,7 +40,7 @@ from solidgear.studies.sweep.bearing_variants import BearingVariants, bearing_va
 from solidgear.studies.sweep.choice import bars_of_rows, settled_for_sweep
 from solidgear.studies.sweep.file_task import Swept
 from solidgear.studies.sweep.scene_task import scene_task
-from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, train_task
+from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, PARTS, train_task
 from solidgear.studies.sweep.train_variants import shafts_in
 from solidgear.studies.train.shaft import JUDGE, told_mix
 
@@ -252,9 +252,10 @@ def _sweep_train(
     made = task.bench.made if rows.jobs == 1 and rows.dask is None else None
     shafts = "" if made is None else f"{made} shafts meshed and reduced; "
     cut, curves = task.cut(found.columns), found.curves
-    written = drawn(curves, title, _lead(found, mix), told.chart, task.cautions)
+    cautions = (*task.cautions, *_parting(found))
+    written = drawn(curves, title, _lead(found, mix), told.chart, cautions)
     if run.as_json:
-        print(record_of(found, bodies=made, cut=cut, title=title, cautions=task.cautions))
+        print(record_of(found, bodies=made, cut=cut, title=title, cautions=cautions))
         ended_rows(found)
         return
     say(f"{title}: {told_mix(mix)}")
@@ -264,8 +265,21 @@ def _sweep_train(
     if found.total > found.skipped:
         work.append(f"{shafts}{solved(found)}")
     say(rows_there(found), *work, *refusals(found), *_limits(cut, told, mix))
-    say(*written, *map(caution, task.cautions))
+    say(*written, *map(caution, cautions))
     ended_rows(found)
+
+
+def _parting(found: Swept) -> list[str]:
+    """Sentence on rows whose teeth part."""
+    lowest = [hz for hz in found.columns.get(PARTS, []) if hz is not None]
+    if not lowest:
+        return []
+    rows = "row" if len(lowest) == 1 else "rows"
+    return [
+        f"in {len(lowest)} {rows} of {found.total} the dynamic mesh force passes the mean one, from "
+        f"{min(lowest):.0f} Hz at the lowest (column {PARTS}): the teeth part, and peaks from there on "
+        "do not hold; ask solidgear nonlinear of that variant"
+    ]
 
 
 def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:

@@ -7,6 +7,7 @@ from functools import partial
 from math import degrees, isfinite
 from typing import Any
 
+from solidgear.errors import listed
 from solidgear.report.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 
@@ -27,14 +28,29 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     columns.append(Column("error bar", _bar))
     if any(m.open is not None for m in judge.misalignment):
         columns.append(Column("left open", lambda m: _range(m, units)))
-    meant = "; ".join(f"{m.name}: {m.meaning}" for m in judge.misalignment)
     note = (
-        f"{meant}. Error bar: what the mesh of the last model leaves, by local problems; models "
+        f"{meanings(judge.misalignment, units)}. Error bar: what the mesh of the last model leaves, by local problems; models "
         "differ by what their theory leaves out."
     )
     if any(m.open is not None for m in judge.misalignment):
         note += " Left open: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, judge.misalignment, note)
+
+
+def meanings(measures: Sequence[Any], units: Units) -> str:
+    """Meanings of all numbers, each once for all meshes, with the faces that they are over."""
+    meanings = {m.name.removesuffix(m.mesh): m.meaning for m in measures}
+    faces: dict[str, list[str]] = {}
+    for m in measures:
+        if m.face is not None:
+            faces.setdefault(units.given(m.face, "m"), []).append(m.mesh.strip())
+    unit = units.unit("m")
+    over = ", ".join(f"{face} {unit} {listed(meshes)}" for face, meshes in faces.items())
+    width = (
+        f"the face ({over})" if len(faces) > 1 else "".join(f"{f} {unit} of face" for f in faces)
+    )
+    each = (f"{name}: {meaning}" for name, meaning in meanings.items())
+    return "; ".join(each).replace("the face", width)
 
 
 def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:

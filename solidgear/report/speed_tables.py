@@ -38,8 +38,10 @@ def all_lines(found: Sequence[Any]) -> Table:
     return Table("", columns, found)
 
 
-def coincidences(found: Any) -> Table:
-    """Orders near natural frequencies."""
+def coincidences(found: Any, most: int | None = None) -> Table:
+    """Orders near natural frequencies, those of meshes and shafts before sidebands and bearings; the
+    first alone where there is a `most`.
+    """
     columns = [
         text("order", lambda one: one.line),
         Column("Hz", lambda one: one.line_hz, hertz),
@@ -49,7 +51,23 @@ def coincidences(found: Any) -> Table:
         Column(f"meet at {found.of} rpm", lambda one: one.rpm, whole),
     ]
     title = f"Orders within {100 * found.within:g} % of a natural frequency"
-    return Table(title, columns, found.coincidences, style="ruled")
+    shown = found.coincidences[:most]
+    left = len(found.coincidences) - len(shown)
+    note = f"{left} more, sidebands and bearings last, are in near.csv." if left else ""
+    return Table(title, columns, shown, note, style="ruled")
+
+
+def all_coincidences(found: Any) -> Table:
+    """All orders near natural frequencies, in SI, for a file."""
+    columns = [
+        text("order", lambda one: one.line),
+        Column("frequency [Hz]", lambda one: one.line_hz, exact),
+        text("mode", lambda one: one.mode),
+        Column("frequency of the mode [Hz]", lambda one: one.mode_hz, exact),
+        Column("off [1]", lambda one: one.off, exact),
+        Column(f"{found.of} speed where they meet [rpm]", lambda one: one.rpm, exact),
+    ]
+    return Table("", columns, found.coincidences)
 
 
 def measured(found: Any, most: int | None = None) -> Table:

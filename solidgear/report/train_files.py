@@ -36,8 +36,8 @@ def write_response(
     """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
     ``response.json`` with peaks and what else is told, and the page ``response.html``, for which
     `train` is what is known of it as plain data; with `orders` these as table and charts; with
-    `speed`, an :class:`solidgear.studies.train.at_speed.AtSpeed`, ``lines.csv``, and of a measured
-    spectrum ``peaks.csv`` and the chart ``measured``.
+    `speed`, an :class:`solidgear.studies.train.at_speed.AtSpeed`, ``lines.csv`` and ``near.csv``, and
+    of a measured spectrum ``peaks.csv`` and the chart ``measured``.
 
     Charts and page are in `units`, all else in SI.
     """
@@ -58,6 +58,7 @@ def write_response(
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
+        tables["near"] = speed_tables.all_coincidences(speed)
         found = [speed_tables.coincidences(speed), speed_tables.first_lines(speed.lines)]
         remarks, notes = speed.notes(), {**notes, "at_speed": speed.as_dict()}
         if speed.spectrum is not None:

@@ -19,6 +19,8 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
     status = train["statuses"]
     rows = [row for mesh in train["meshes"] for row in _mesh(mesh, status, units)]
     rows += [row for stage in train["stages"] for row in _stage(stage, units)]
+    senses = ", ".join(f"{side} {sense}" for side, sense in train["senses"].items())
+    rows.append(["turning, right-handed about each shaft's own y", senses, ""])
     for name in train["rotors"]:
         own = train[name]
         rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])

@@ -8,6 +8,7 @@ from math import degrees
 from typing import Any
 
 from solidgear.report.beside import band, its, names
+from solidgear.report.deflection_tables import meanings
 from solidgear.report.table import Cell, Column, Table, quantity, text, word
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import hertz, percent
@@ -109,8 +110,9 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
         Column("difference", lambda row: _apart(row, units)),
     ]
     told = found.misalignment()
-    meant = "; ".join(f"{name}: {meaning}" for name, _, meaning, _ in told)
-    note = f"{meant}."
+    shown = {row[0] for row in told}
+    both = [m for m in found.a.loaded.misalignment if m.name in shown] if told else []
+    note = f"{meanings(both, units)}."
     if any(change.band is not None for *_, change in told):
         columns.append(Column("both bars", lambda row: band(row[3])))
         columns.append(word("", lambda row: row[3].verdict))

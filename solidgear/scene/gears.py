@@ -176,6 +176,9 @@ class Pair:
         Keys of a file at which ``pinion``, ``gear`` and ``mesh`` stand.
     point : OperatingPoint or None
         At which the train is looked at.
+    idle : bool
+        True where the other gear is first in a further mesh: it drives there with the flank that the
+        file names, and is driven here on the one behind.
     """
 
     name: str
@@ -186,6 +189,7 @@ class Pair:
     gear: Member
     mesh: Mesh
     point: OperatingPoint | None
+    idle: bool = False
 
     @property
     def members(self) -> dict[str, Member]:
@@ -271,7 +275,15 @@ def _flanks(pair: Pair) -> Iterator[SceneError]:
             path=(named[0], "loaded_side"),
         )
     elif named and None not in (pinion.flank, gear.flank):
-        if pinion.flank != gear.flank:
+        if pinion.flank != gear.flank and pair.idle:
+            written = next(flank for flank in FLANKS if flank != gear.flank)
+            yield SceneError(
+                f"is the flank that the {pair.shafts[1]} drives with, so that it is driven on its "
+                f"{gear.flank} one; the {pair.shafts[0]} drives it with its {pinion.flank} one, and left "
+                f'flanks touch left ones: write "{gear.flank}" in place of "{written}", or leave it out',
+                path=("gear", "loaded_side"),
+            )
+        elif pinion.flank != gear.flank:
             yield SceneError(
                 f"is the {gear.flank} flank, and the {pinion.flank} one is loaded on "
                 f"the {pair.shafts[0]}: seen from one side, left flanks touch left ones; correct "

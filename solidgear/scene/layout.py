@@ -130,6 +130,11 @@ def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
     return out[0], out[1]
 
 
+def idle(train: Train, end: tuple[str, str]) -> bool:
+    """True of a gear that is first in a mesh, and so drives another, wherever else it is second."""
+    return end in [ends_of(train, k)[0] for k in range(len(train.meshes))]
+
+
 def with_flanks(
     train: Train, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
 ) -> tuple[Member, Member]:
@@ -140,7 +145,7 @@ def with_flanks(
     is first, and follows from the other where it is not told.
     """
     meshes = [ends_of(train, k) for k in range(len(train.meshes))]
-    if gear.loaded_side and ends[1] in [first for first, _ in meshes]:
+    if gear.loaded_side and idle(train, ends[1]):
         gear = gear.with_changes(loaded_side=OTHER_FLANK[gear.loaded_side])
     driver, end, passed = pinion, ends[0], 0
     while driver.flank is None and passed < len(meshes):

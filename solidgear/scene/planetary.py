@@ -18,9 +18,9 @@ from solidgear.errors import SceneError, SolidgearError, listed, nearest
 from solidgear.scene.gears import Gear, HeadInertia, Pair, Teeth
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.scene.stations import Status
-from solidgear.scene.train_tables import ErrorTable, constant_or_table
+from solidgear.scene.train_tables import Azimuth, ErrorTable, constant_or_table
 from solidgear.scene.typed import Model
-from solidgear.scene.units import MeshSpring, PressureAngle, SignedAngle, TorsionSpring
+from solidgear.scene.units import MeshSpring, PressureAngle, TorsionSpring
 
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
@@ -152,8 +152,8 @@ class Planetary(Model):
     ring_teeth: Teeth
     ratio: Annotated[float, Field(gt=0)] | None = None
     planets: Annotated[int, Field(strict=True, ge=1, le=MOST_PLANETS)] | None = None
-    angles: Annotated[tuple[SignedAngle, ...], Field(max_length=MOST_PLANETS)] = ()
-    position: SignedAngle = 0.0
+    angles: Annotated[tuple[Azimuth, ...], Field(max_length=MOST_PLANETS)] = ()
+    position: Azimuth = 0.0
     planet: PlanetTable
     mesh: PlanetMeshes
     ring: RingTable | None = None

@@ -18,6 +18,7 @@ from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft, pair_problem
 from solidgear.scene.layout import (
     PerTurn,
     ends_of,
+    idle,
     layout_problems,
     turns_of,
     with_flanks,
@@ -202,9 +203,9 @@ class Train(Model):
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
             alone = len(self.meshes) == 1 and not self.planetary
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
-            pinion, gear = (self.shafts[side].member(port) for side, port in ends)
-            pinion, gear = with_flanks(self, ends, pinion, gear)
-            out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point))
+            first, second = with_flanks(self, ends, *(self.shafts[s].member(p) for s, p in ends))
+            behind = idle(self, ends[1])
+            out.append(Pair(name, sides, ports, paths, first, second, mesh, self.point, behind))
         return tuple(out)
 
     @cached_property

@@ -5,13 +5,14 @@ from __future__ import annotations
 from math import pi
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.mesh_cycle import LineCycle, StiffnessCycle, Vector
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
+    TYPED,
     Frequency,
     Inertia,
     Length,
@@ -29,6 +30,19 @@ from solidgear.scene.units import (
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
+
+
+def _within_a_turn(value: float) -> float:
+    if abs(value) > 2 * pi * (1 + TYPED):
+        raise SceneError(
+            "is more than one turn, 360 deg; a number without a unit is in rad, and degrees are "
+            'written as "120 deg"'
+        )
+    return value
+
+
+#: rad, of a place around an axis
+Azimuth = Annotated[SignedAngle, AfterValidator(_within_a_turn)]
 
 
 class TorsionSpringTable(Model):
@@ -192,7 +206,7 @@ class Mesh(Model):
 
     name: str = ""
     between: tuple[str, str] = ("pinion", "gear")
-    azimuth: SignedAngle = 0.0
+    azimuth: Azimuth = 0.0
     stiffness: MeshSpring | None = None
     status: Status = "assumed"
     shaft_angle: ShaftAngle = pi / 2

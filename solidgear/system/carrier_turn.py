@@ -6,7 +6,9 @@ errors make of it, both on a mean bearing k, a support K fixed in space, whose s
 
     (1 + C (K' - k)) u = u_0 + C K' e',        K' = R' K R,    e' = R' e,
 
-at every position R: six equations for each such support, whatever the size of the stage.
+at every position R: six equations for each such support, whatever the size of the stage.  A load f
+that keeps its direction in space, such as weight, is ``R' f`` in these axes, so that ``u_0`` of it
+goes with the cosine and the sine of the position.
 
 With the other members held, N >= 3 equal planets at equal angles are to the sun one spring, the same
 in all directions: ``N k_e / 2`` with ``k_e`` the stiffness through one planet
@@ -170,19 +172,27 @@ def carrier_turn(
     supports: Mapping[str, FixedSupport] | None = None,
     errors: Sequence[PlanetError] = (),
     positions: int = 72,
+    weights: Mapping[str, ArrayLike] | None = None,
+    carried: Mapping[str, ArrayLike] | None = None,
 ) -> CarrierTurn:
     """Equilibrium of a planetary stage at positions of its carrier.
 
     Parameters
     ----------
     torque : float
-        On the sun, N m; what turns freely of carrier or ring takes the other torque.
+        On the sun, N m; what turns freely of carrier or ring takes the other torque, and that of the
+        other loads.
     supports : mapping of str to FixedSupport
         Of ``sun``, ``ring`` or ``carrier``, beside bearings of the stage, which turn with it.
     errors : sequence of PlanetError
         One a planet; none without.
     positions : int
         At equal angles over one turn.
+    weights : mapping of str to (6,) array_like
+        Forces and moments on centres of members, such as ``planet 1``, that keep their direction in
+        space, in the axes of the stage at the first position, N and N m.
+    carried : mapping of str to (6,) array_like
+        The same of those that turn with the carrier, such as centrifugal forces.
 
     Raises
     ------
@@ -240,19 +250,23 @@ def carrier_turn(
     at = [held.motion(f"{name}.centre") for name in supports]
     roots = [root_of(own) for own in mean.values()]
     rows = np.vstack([np.zeros((0, held.size)), *(root.T @ one for root, one in zip(roots, at))])
-    moved = held.static(np.column_stack([_torques(held, torque) - strains.T @ gaps, rows.T]))
     angle = 2 * np.pi * np.arange(positions) / positions
     turns = np.array([rotation(1, a) for a in angle])
-    pushed = _pushed(turns, list(supports.values()), roots, rows @ moved)
+    always, *swinging = _swinging(held, stage, weights or {})
+    always += held.load({"sun.centre": np.array([0, 0, 0, 0, torque, 0])})
+    always += _load(held, stage, carried or {})
+    loads = [_balanced(held, load) for load in (always, *swinging)]
+    loads[0] -= strains.T @ gaps
+    found = held.static(np.column_stack([*loads, rows.T]))
+    moved, give = found[:, : len(loads)] @ _swing(angle), found[:, len(loads) :]
+    pushed = _pushed(turns, list(supports.values()), roots, (rows @ moved).T, rows @ give)
+    moved = moved + give @ pushed.T
     shift, support = {}, {}
     for (name, own), one in zip(supports.items(), at):
-        seen = one @ moved
-        shift[name] = np.einsum("aij,aj->ai", turns, seen[:, 0] + pushed @ seen[:, 1:].T)
+        shift[name] = np.einsum("aij,ja->ai", turns, one @ moved)
         support[name] = (shift[name] - own.off) @ own.matrix
-    stretch = strains @ moved
-    stretch[:, 0] += gaps
-    springs = stretch[:, :1] + stretch[:, 1:] @ pushed.T
-    return _turn(stage, angle, springs.T, where, shift, support)
+    springs = (strains @ moved).T + gaps
+    return _turn(stage, angle, springs, where, shift, support)
 
 
 def _fits(stage: PlanetaryStage) -> None:
@@ -265,9 +279,39 @@ def _fits(stage: PlanetaryStage) -> None:
         )
 
 
-def _torques(held: System, torque: float) -> np.ndarray:
-    """Load of the sun's torque and of what balances it on a member that is free to turn."""
-    load = held.load({"sun.centre": np.array([0, 0, 0, 0, torque, 0])})
+def _load(held: System, stage: PlanetaryStage, forces: Mapping[str, ArrayLike]) -> np.ndarray:
+    """(N,) load of forces (6,) on centres of members in the axes of the stage."""
+    out = np.zeros(held.size)
+    for name, six in forces.items():
+        if name not in stage.parts:
+            raise SolidgearError(
+                f"{name!r} is no member to be loaded; {listed([*stage.parts])} are"
+            )
+        axes = np.kron(np.eye(2), held.port(f"{name}.centre").axes)
+        out += held.load({f"{name}.centre": axes.T @ frozen(f"the load of {name}", six, (6,))})
+    return out
+
+
+def _swinging(
+    held: System, stage: PlanetaryStage, weights: Mapping[str, ArrayLike]
+) -> list[np.ndarray]:
+    """Loads (N,) of forces that keep their direction in space: what is so at every position, and what
+    goes with its cosine and sine.
+    """
+    each = {name: frozen(f"the weight of {name}", six, (6,)) for name, six in weights.items()}
+    axial = np.diag([0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
+    across, quarter = np.eye(6) - axial, rotation(1, np.pi / 2).T
+    ways = (axial, across, quarter @ across)
+    return [_load(held, stage, {name: way @ six for name, six in each.items()}) for way in ways]
+
+
+def _swing(angle: np.ndarray) -> np.ndarray:
+    """(3, a) shares of the loads of :func:`_swinging` at positions."""
+    return np.array([np.ones_like(angle), np.cos(angle), np.sin(angle)])
+
+
+def _balanced(held: System, load: np.ndarray) -> np.ndarray:
+    """A load with what balances its torque on a member that is free to turn."""
     for name in ("carrier", "ring"):
         motion = held.motion(f"{name}.centre")[4]
         freely = motion @ held.free
@@ -303,12 +347,16 @@ def _mean(matrix: np.ndarray) -> np.ndarray:
 
 
 def _pushed(
-    turns: np.ndarray, supports: Sequence[FixedSupport], roots: Sequence[np.ndarray], seen
+    turns: np.ndarray,
+    supports: Sequence[FixedSupport],
+    roots: Sequence[np.ndarray],
+    seen: np.ndarray,
+    give: np.ndarray,
 ) -> np.ndarray:
     """(a, s) loads on the stage beyond its mean bearings ``L L'``, in the coordinates ``L'u`` in
-    which these are one; from ``L'u`` (s, 1 + s) under load and unit loads.
+    which these are one; from ``L'u`` (a, s) under load and (s, s) under unit loads.
     """
-    size = len(seen)
+    size = len(give)
     stiffness, pressed = np.zeros((len(turns), size, size)), np.zeros((len(turns), size))
     start = 0
     for own, root in zip(supports, roots):
@@ -317,8 +365,7 @@ def _pushed(
         stiffness[:, place, place] = into @ own.matrix @ into.transpose(0, 2, 1)
         pressed[:, place] = into @ (own.matrix @ own.off)
     beyond = stiffness - np.eye(size)
-    give = seen[:, 1:]
-    right = seen[:, 0] + pressed @ give.T
+    right = seen + pressed @ give.T
     moved = np.linalg.solve(np.eye(size) + give @ beyond, right[..., None])[..., 0]
     return pressed - np.einsum("aij,aj->ai", beyond, moved)
 

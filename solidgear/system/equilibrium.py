@@ -40,6 +40,9 @@ from solidgear.system.system import System
 
 #: work of loads on a free motion, relative to what they could do, that is rounding
 UNBALANCED = 1e-9
+#: of the largest load that a bearing carries, one that is rounding: what is left of digits after a
+#: balance of very stiff and very soft springs
+ROUNDING = 1e-10
 
 
 @dataclass(frozen=True)
@@ -259,6 +262,7 @@ class OnBearings:
         free, *_ = np.linalg.lstsq(self._rigid / self._size[:, None], missing, rcond=1e-9)
         tangent = [one.bearing.tangent(q) for one, q in zip(self.balance.bearings, relative)]
         lost = tuple(end for end, own in zip(ends, carried) if not own.any())
+        carried = without_rounding(carried, self._length)
         return SystemEquilibrium(
             elastic + self.system.free @ free,
             dict(zip(ends, relative)),
@@ -267,6 +271,15 @@ class OnBearings:
             lost,
             at,
         )
+
+
+def without_rounding(carried: Sequence[np.ndarray], length: float) -> list[np.ndarray]:
+    """Loads (6,) of bearings without components that are rounding beside the largest of all, moments
+    as forces over a length, m.
+    """
+    size = np.repeat([1.0, 1 / length], 3)
+    least = ROUNDING * max((np.abs(load * size).max() for load in carried), default=0.0)
+    return [np.where(np.abs(load * size) > least, load, 0.0) for load in carried]
 
 
 def weight(system: System, gravity: Sequence[float]) -> np.ndarray:

@@ -27,6 +27,7 @@ from solidgear.studies.train.misalignment import measured_names, misalignment
 from solidgear.studies.train.models import KEPT
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.operation import SHAFT, OperatingState, settled
+from solidgear.studies.train.parting import joint_of, parts_from, taken_off
 from solidgear.studies.train.respond import Drive
 from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung
 from solidgear.studies.train.turn import over_a_turn, told_over_a_turn
@@ -42,6 +43,8 @@ MOST_SHAPES = 200
 UNBARRED = "none: system-modes and response and deflect have those of one variant"
 #: peaks of the mesh force
 PEAKS = 3
+#: column of the lowest frequency at which the dynamic mesh force is larger than the mean one, Hz
+PARTS = "parts_from_hz"
 #: of a bearing, N, N and N m
 CARRIED = ("radial", "axial", "moment")
 
@@ -117,6 +120,7 @@ class TrainTask(FileTask):
         if RESPONSE in self.ask:
             for k in range(1, PEAKS + 1):
                 out |= {f"peak{k}_hz": float, f"peak{k}_force": float, f"peak{k}_mode": str}
+            out |= {PARTS: float} if train.operation else {}
         return out | {BARS: str}
 
     @property
@@ -155,7 +159,7 @@ class TrainTask(FileTask):
             at, rest = self._at_rest(index, train, point)
             found |= rest
         if {MODES, RESPONSE} & {*self.ask}:
-            found |= self._moving(at)
+            found |= self._moving(at, found)
         return found
 
     # ------------------------------------------------------------------------------ at rest
@@ -186,8 +190,10 @@ class TrainTask(FileTask):
         return at, out
 
     # ------------------------------------------------------------------------------ moving
-    def _moving(self, train: Train) -> dict[str, Any]:
-        """Natural frequencies and peaks of the mesh force."""
+    def _moving(self, train: Train, at_rest: Mapping[str, Any]) -> dict[str, Any]:
+        """Natural frequencies and peaks of the mesh force, and where the teeth part by what they
+        carry at rest.
+        """
         shop = self.bench.workshop(train, *self.models.values())
         drive = Drive(shop, *self.models.values(), mesh=self.mesh)
         limit = self.max_frequency or train.ask.max_frequency
@@ -206,11 +212,14 @@ class TrainTask(FileTask):
                 out |= {f"f{k}_hz": float(hz), f"mode{k}": name}
         if RESPONSE in self.ask:
             hz = drive.grid(limit)
-            tops = drive.peaks(hz, drive.mesh(hz)[1])
-            largest = sorted(tops, key=lambda top: -top.force)[:PEAKS]
+            largest = sorted(drive.curve(hz).peaks, key=lambda top: -top.force)[:PEAKS]
             for k, top in enumerate(largest, start=1):
                 out |= {f"peak{k}_hz": top.frequency_hz, f"peak{k}_force": top.force}
                 out[f"peak{k}_mode"] = top.mode
+            mean = at_rest.get(force_of(joint_of(drive.pair)))
+            if mean is not None:
+                low = parts_from(hz, taken_off(drive, drive.over_cycle(hz, limit)), mean)
+                out |= {} if low is None else {PARTS: low}
         return out
 
 

@@ -20,8 +20,9 @@ APART = "A branch apart of {0} from {1}: {2}."
 MERGED = "Motions of {0} come off a branch from {1}: {2}."
 SEARCHED = (
     "Branches apart, which a blow can reach and a slow sweep not, were looked for from {0} starts at {1} speeds "
-    "from {2}, of 1 to {3} mesh periods; there may be others."
+    "from {2}, of 1 to {3} mesh periods{4}."
 )
+OTHERS, NONE = "; there may be others", ": none was found, and there may be some"
 UNSEARCHED = "Branches apart from this one were not looked for."
 QUIET = (
     "Branches apart were not looked for: the linear force stays below {0:.0f} % of the mean one."
@@ -82,7 +83,11 @@ def sentences(
         told = MERGED if one.end == "merged" else APART
         lines.append(told.format(PERIODS[one.periods], span(_ends(one.frequency_hz)), what))
     ends = span(_ends(looked.omega / (2 * np.pi)))
-    lines.append(SEARCHED.format(looked.starts, len(looked.omega), ends, max(STARTS)))
+    lines.append(
+        SEARCHED.format(
+            looked.starts, len(looked.omega), ends, max(STARTS), OTHERS if found.apart else NONE
+        )
+    )
     if looked.lost:
         told = ", ".join(at(omega / (2 * np.pi)) for omega in sorted({*looked.lost}))
         lines.append(f"Further motions at {told} could not be followed.")

@@ -251,9 +251,13 @@ class Backlash:
         s, v = balance.stretch(balance.linear(2 * np.pi * hz), 2 * np.pi * hz)
         return s[:, self.row], v[:, self.row]
 
-    def _swing(self, s: np.ndarray, v: np.ndarray, damped: float = 1.0) -> float:
-        own, row = self.remainder, self.row
-        return float(np.ptp(own.stiffness[row, row] * s + damped * own.damper[row, row] * v) / 2)
+    def _swing(self, s: np.ndarray, v: np.ndarray) -> float:
+        stiffness, damper = self.remainder.stiffness, self.remainder.damper
+        return float(np.ptp(stiffness[self.row, self.row] * s + damper[self.row, self.row] * v) / 2)
+
+    def _released(self, s: np.ndarray) -> float:
+        """Largest force that a linear motion takes off the teeth, N; a damper has no part in it."""
+        return float(self.remainder.stiffness[self.row, self.row] * (s.mean() - s.min()))
 
     @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:
@@ -305,13 +309,11 @@ class Backlash:
         mesh part, all mean forces in the ratio of the torques.
         """
         apart = [one for one in self.every if one.teeth.half_gap > 0] or [self]
-        own = self.teeth.mean_force
-        # teeth part as the stretch does: a damper has no part in it
         sizes = [
-            [one._swing(*wave, 0.0) * own / one.teeth.mean_force for wave in one._unbounded[1]]
+            [one._released(wave) / one.teeth.mean_force for wave, _ in one._unbounded[1]]
             for one in apart
         ]
-        return self.linear[0], np.max(sizes, axis=0)
+        return self.linear[0], self.teeth.mean_force * np.max(sizes, axis=0)
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:

@@ -22,6 +22,7 @@ from solidgear.scene.train import Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
 from solidgear.studies.train.housing import facts_of
+from solidgear.studies.train.layout import senses, senses_told
 from solidgear.studies.train.local import undriven
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import (
@@ -130,6 +131,7 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
             f"{stage.shafts[0]}; pins at {1e3 * own.pin_radius:.6g} mm, meshes "
             f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
         )
+    yield senses_told(senses(train, workshop.contacts))
     loss = train.losses
     yield (
         "losses are read as loss factors, twice a damping ratio: "

@@ -16,12 +16,13 @@ from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
 from solidgear.studies.train.housing import alone_hz
 from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
+from solidgear.studies.train.layout import senses
 from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainModes, train_modes
 from solidgear.studies.train.orders import OrderMap, order_map
 from solidgear.studies.train.pictures import draw_modes, turned_beside
-from solidgear.studies.train.respond import TrainResponse
+from solidgear.studies.train.response import TrainResponse
 
 #: modes that are drawn
 PICTURES = 4
@@ -137,6 +138,7 @@ def described(workshop: Workshop) -> dict[str, Any]:
         "shafts": [*train.shafts],
         "meshes": [_mesh(workshop, pair) for pair in train.pairs],
         "stages": [_stage(stage) for stage in train.stages],
+        "senses": senses(train, workshop.contacts),
         "rotors": [*train.rotors],
         "losses": train.losses.model_dump(mode="json", exclude={"status"}),
         "statuses": train.statuses(),

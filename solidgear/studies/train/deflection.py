@@ -18,6 +18,8 @@ from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.components import FORCE_UNITS
 from solidgear.studies.train.housing import BOX, carried_by, mount_rows
+from solidgear.studies.train.layout import senses
+from solidgear.studies.train.measured import Measured
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
@@ -28,28 +30,6 @@ from solidgear.studies.train.turn import StageTurn, over_a_turn
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
 MOVED = ("m moved",) * 3 + ("rad moved",) * 3
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A number of a deflected train.
-
-    Attributes
-    ----------
-    value : float
-        SI.
-    bar : float or None
-        That meshes leave in it, at most, SI; None where it has none to tell.
-    open : (float, float) or None
-        Least and largest value by what the data of its bearings leave open; None where nothing is.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    value: float
-    bar: float | None
-    open: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +83,7 @@ class TrainDeflection:
             **self.models,
             "mesh_force": self.mesh_force,
             "mesh_forces": self.mesh_forces,
-            "misalignment": {m.name: _plain(m) for m in self.misalignment},
+            "misalignment": {m.name: m.as_dict() for m in self.misalignment},
             "displacement": _each(self.displacement),
             "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
             "turns": {one.stage: one.as_dict() for one in self.turns},
@@ -114,11 +94,7 @@ class TrainDeflection:
 
 
 def _each(places: dict[str, tuple[Measured, ...]]) -> dict:
-    return {place: {m.name: _plain(m) for m in six} for place, six in places.items()}
-
-
-def _plain(one: Measured) -> dict:
-    return {"value": one.value, "bar": one.bar, "open": one.open, "unit": one.unit.split()[0]}
+    return {place: {m.name: m.as_dict() for m in six} for place, six in places.items()}
 
 
 @dataclass(frozen=True)
@@ -151,6 +127,8 @@ class Deflections:
         Of the misalignment, relative.
     found : tuple of TrainDeflection
         The judge last.
+    senses : dict of str to str
+        In which each shaft turns, ``+y`` or ``-y`` of its scene.
     points : tuple of TrainDeflection
         By the judge, at every operating point of the train; none where one is asked for.
     """
@@ -160,6 +138,7 @@ class Deflections:
     found: tuple[TrainDeflection, ...]
     standings: tuple[Standing, ...]
     cautions: tuple[str, ...]
+    senses: dict[str, str]
     points: tuple[TrainDeflection, ...] = ()
 
     @property
@@ -200,6 +179,7 @@ class Deflections:
             "models": {one.model: one.as_dict() for one in self.found},
             "standings": [vars(one) for one in self.standings],
             "cautions": list(self.cautions),
+            "senses": self.senses,
             "points": [one.as_dict() for one in self.points],
         }
 
@@ -253,6 +233,7 @@ def deflect_train(
         tuple(found),
         standings,
         workshop.odd,
+        senses(workshop.train, workshop.on_flank(point.coast).contacts, point.coast),
         tuple(points),
     )
 
@@ -307,7 +288,15 @@ def _told(
     bars = StaticBars(workshop, state, rungs)
     measures = misalignment(workshop.on_flank(point.coast), system)
     told = tuple(
-        Measured(m.name, m.unit, m.meaning, float(m.row @ state.coordinates), bars.of(m.row))
+        Measured(
+            m.name,
+            m.unit,
+            m.meaning,
+            float(m.row @ state.coordinates),
+            bars.of(m.row),
+            mesh=m.mesh,
+            face=m.face,
+        )
         for m in measures
     )
     housed = {

@@ -22,12 +22,12 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
-from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import driven, mode_names
 from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
-from solidgear.studies.train.respond import Drive, TrainResponse, respond
+from solidgear.studies.train.respond import Drive, respond
+from solidgear.studies.train.response import TrainResponse
 from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung, ladder_place, told_mix
 from solidgear.studies.train.slips import slips
 
@@ -271,8 +271,7 @@ def judge_train(
         workshop.train.unpublished(),
         (
             *slips(workshop),
-            *workshop.cautions,
-            *local_lines(workshop, judge.system),
+            *judge.responses[all_solid].cautions,
         ),
     )
 

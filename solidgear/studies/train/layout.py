@@ -107,6 +107,24 @@ def _engine_way(train: Train, ways: Mapping[str, float], coast: bool) -> float:
     return next(filter(None, told), -1.0 if coast else 1.0)
 
 
+def senses(train: Train, found: Mapping[str, Contact], coast: bool | None = None) -> dict[str, str]:
+    """Sense in which every shaft turns, right-handed about y of its own scene: ``+y`` or ``-y``, by the
+    flanks that carry; torque and speed of the engine turn the same way where it drives.
+    """
+    point = train.point
+    coast = coast if coast is not None else point is not None and point.coast
+    turns, ways = _turning(train, found)
+    engine = _engine_way(train, ways, coast)
+    forward = -engine if coast else engine
+    return {side: "+y" if forward * turn > 0 else "-y" for side, turn in turns.items()}
+
+
+def senses_told(found: Mapping[str, str]) -> str:
+    """The same in words."""
+    each = ", ".join(f"{side} {sense}" for side, sense in found.items())
+    return f"turning, right-handed about y of each shaft's scene: {each}"
+
+
 def sun_ways(
     train: Train, found: Mapping[str, Contact], coast: bool | None = None
 ) -> dict[str, tuple[float, float]]:

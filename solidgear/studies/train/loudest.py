@@ -4,71 +4,121 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from math import inf, pi
+from math import inf
 from typing import Any
+
+import numpy as np
 
 from solidgear.scene import Scene
 from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.train.modes import TrainMode
-from solidgear.studies.train.respond import Peak, TrainResponse
+from solidgear.studies.train.respond import NO_MODE
+from solidgear.studies.train.response import OrderCurve, TrainResponse
+from solidgear.studies.train.speeds import fastest
 
-RPM = 30 / pi
+#: relative, of frequencies that are the same
+SAME = 1e-9
+HEIGHT = "the height hangs on the losses and has no bar"
+
+
+@dataclass(frozen=True)
+class Top:
+    """The largest force of a part of a curve.
+
+    Attributes
+    ----------
+    frequency_hz : float
+        Of the order of the teeth.
+    force : float
+        Amplitude, N.
+    order : int
+        Of the teeth, counted from 1.
+    mode : str
+        That makes the peak there; empty where the part ends.
+    towards : str
+        Where it ends: the mode whose peak follows as the curve rises; empty where none does.
+    """
+
+    frequency_hz: float
+    force: float
+    order: int
+    mode: str
+    towards: str = ""
 
 
 @dataclass(frozen=True)
 class Loudest:
-    """The largest peak of the mesh force, beside the speeds that the files give.
+    """The largest dynamic mesh force of all orders, beside the speeds that the files give.
 
     Attributes
     ----------
-    peak : Peak or None
-        The largest that the first order of the teeth meets at the speeds given, or of the range where
-        none is; None where there is no peak.
-    beyond : Peak or None
-        A larger one that they do not reach.
+    top : Top
+        The largest that teeth meet at the speeds given, or of the range where none is.
+    peak : Top or None
+        The largest peak there, where the curve ends higher.
+    beyond : Top or None
+        A larger force that they do not reach.
     teeth : PerTurn
         Of the mesh in one turn of the engine's shaft; 0 where a force on a port drives the train,
         which no speed belongs to.
     bar : float or None
-        Relative, of the frequency of its mode; None where a model has no bar.
+        Relative, of the frequency of the mode of `top`; None where a model has no bar.
     rpm : float or None
         Highest speed of the engine's shaft in the files.
     said_by : str
         Where that speed stands.
     asked_hz : float
         Highest frequency of the range.
+    orders : int
+        Of the teeth.
+    parting : tuple of str
+        Sentences on teeth that part.
     what : str
         In words, which of several meshes has it.
     """
 
-    peak: Peak | None
-    beyond: Peak | None
+    top: Top
+    peak: Top | None
+    beyond: Top | None
     teeth: PerTurn
     bar: float | None
     rpm: float | None
     said_by: str
     asked_hz: float
+    orders: int = 1
+    parting: tuple[str, ...] = ()
     what: str = "mesh force"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold."""
         return asdict(self) | {"sentences": self.sentences()}
 
+    @property
+    def limit_hz(self) -> float:
+        """At which the teeth pass at the highest speed given; none where nothing turns there."""
+        return self.rpm * self.teeth / 60 if self.rpm else 0.0
+
     def sentences(self) -> list[str]:
-        """The peak first, then what speeds say of the range."""
-        limit = None if self.rpm is None else self.rpm * self.teeth / 60
+        """The largest first, then what speeds say of the range."""
+        limit = self.limit_hz
         upto = f" up to {self.asked_hz:g} Hz"
         if limit:
             upto = f" up to {self.rpm:.0f} rpm of the {self.teeth.of} ({self.said_by})"
-        lines = [f"There is no peak of the dynamic {self.what}{upto}."]
-        if self.peak is not None:
-            sure = "its model has no bar"
+        sure = HEIGHT
+        if self.top.mode:
+            bar = "its model has no bar"
             if self.bar is not None:
-                sure = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
-            lines = [
-                f"Largest dynamic {self.what}{upto}: {self._told(self.peak)} ({sure} in frequency; "
-                "the height hangs on the losses and has no bar)."
-            ]
+                bar = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
+            sure = f"{bar} in frequency; {HEIGHT}"
+        lines = [f"Largest dynamic {self.what}{upto}: {self._told(self.top)} ({sure})."]
+        if self.peak is not None:
+            lines.append(f"The largest peak up to there: {self._told(self.peak)}.")
+        lines += self.parting
+        if self.rpm == 0:
+            lines.append(
+                f"At 0 rpm ({self.said_by}) no teeth pass, and nothing drives the train: this is of "
+                "the whole range."
+            )
         if not limit:
             return lines
         if self.beyond is not None:
@@ -76,20 +126,31 @@ class Loudest:
                 f"A larger one cannot be reached, for at {self.rpm:.0f} rpm teeth pass at "
                 f"{limit:.0f} Hz: {self._told(self.beyond)}."
             )
-        if self.asked_hz < 0.999 * limit:
+        if self.asked_hz < 0.999 * self.orders * limit:
+            further = f", their order {self.orders} at {self.orders * limit:.0f} Hz"
             lines.append(
                 f"The range asked for, up to {self.asked_hz:g} Hz, does not cover the speeds: teeth "
-                f"pass at {limit:.0f} Hz at {self.rpm:.0f} rpm; raise max_frequency."
+                f"pass at {limit:.0f} Hz at {self.rpm:.0f} rpm{further * (self.orders > 1)}; raise "
+                "max_frequency."
             )
         return lines
 
-    def _told(self, peak: Peak) -> str:
+    def _told(self, top: Top) -> str:
+        speed = f", order {top.order} of the teeth" if top.order > 1 else ""
         if self.teeth:
-            rpm = 60 * peak.frequency_hz / self.teeth
-            speed = f", {self.teeth.of} at {rpm:.0f} rpm"
-        else:
-            speed = ""
-        return f"{_figures(peak.force)} N at {_figures(peak.frequency_hz)} Hz{speed}, {peak.mode}"
+            rpm = 60 * top.frequency_hz / (top.order * self.teeth)
+            speed += f", {self.teeth.of} at {rpm:.0f} rpm"
+        where = top.mode or self._end(top)
+        return f"{_figures(top.force)} N at {_figures(top.frequency_hz)} Hz{speed}, {where}"
+
+    def _end(self, top: Top) -> str:
+        """Words on the place where a part of a curve ends."""
+        limit = top.order * self.limit_hz
+        at_speed = limit > 0 and abs(top.frequency_hz - limit) <= SAME * limit
+        below = top.frequency_hz < 0.5 * min(self.asked_hz, limit or inf)
+        end = "highest speed" if at_speed else "start of the range" if below else "end of the range"
+        rising = f", where it still rises towards {top.towards}" if top.towards else ""
+        return f"the {end}{rising}"
 
 
 def _figures(value: float) -> str:
@@ -105,7 +166,7 @@ def loudest(
     meshes: bool = True,
     mesh: str | None = None,
 ) -> Loudest:
-    """The largest peak of a response.
+    """The largest dynamic mesh force of a response.
 
     Parameters
     ----------
@@ -118,36 +179,52 @@ def loudest(
     mesh : str, optional
         Whose error drives it; the first by default.
     """
-    rpm, said_by = max(_speeds(train, scenes), default=(None, "")) if meshes else (None, "")
+    speed = fastest(train, scenes) if meshes else None
     pair = train.named_mesh(mesh)
     teeth = train.per_turn(pair)
-    limit = inf if rpm is None else rpm * teeth / 60
-    by_force = sorted(response.peaks, key=lambda one: -one.force)
-    peak = next((one for one in by_force if one.frequency_hz <= limit), None)
-    beyond = next(iter(by_force), None)
-    mode = next((m for m in modes if peak is not None and m.name == peak.mode), None)
+    limit = speed.rpm * teeth / 60 * (1 + SAME) if speed is not None and speed.rpm else inf
+    hz = response.frequency_hz
+    reached = [top for c in response.orders for top in _top(c, hz, hz <= c.order * limit)]
+    further = [top for c in response.orders for top in _top(c, hz, hz > c.order * limit)]
+    # a range that begins beyond the speeds has its first point alone
+    top = max(reached or further, key=_force)
+    beyond = max((one for one in further if one.force > top.force), key=_force, default=None)
+    peaks = (
+        Top(p.frequency_hz, p.force, c.order, p.mode)
+        for c in response.orders
+        for p in c.peaks
+        if p.frequency_hz <= c.order * limit
+    )
+    mode = next((m for m in modes if m.name == top.mode), None)
     return Loudest(
-        peak,
-        None if beyond is peak else beyond,
+        top,
+        None if top.mode else max(peaks, key=_force, default=None),
+        beyond if reached else None,
         teeth if meshes else PerTurn(0.0),
         None if mode is None or mode.mesh is None else mode.mesh + mode.bound,
-        rpm,
-        said_by,
-        float(response.frequency_hz[-1]),
+        None if speed is None else speed.rpm,
+        "" if speed is None else speed.said_by,
+        float(hz[-1]),
+        len(response.orders),
+        response.parting,
         f"force of the {pair.name}" if pair.label else "mesh force",
     )
 
 
-def _speeds(train: Train, scenes: Mapping[str, Scene]) -> Iterator[tuple[float, str]]:
-    """Speeds that the files give, rpm of the engine's shaft, and where."""
-    for point in train.operation:
-        if (speed := point.speed_of(train.reference, train.turns)) is not None:
-            yield abs(speed) * RPM, f"operation {point.name!r}" if point.name else "the operation"
-    for side, own in train.turns.items():
-        turns, oil = 1 / own, scenes[side].lubrication
-        if oil is not None and oil.speed:
-            yield turns * abs(oil.speed) * RPM, f"lubrication of the {side}"
-        for bearing in scenes[side].bearings:
-            if bearing.catalogue is not None and bearing.catalogue.speed:
-                speed = abs(bearing.catalogue.speed)
-                yield turns * speed * RPM, f"bearing {bearing.name!r} of the {side}"
+def _force(top: Top) -> float:
+    return top.force
+
+
+def _top(curve: OrderCurve, frequency_hz: np.ndarray, within: np.ndarray) -> Iterator[Top]:
+    """The largest force of a part of a curve; none where it has no point."""
+    places = np.flatnonzero(within)
+    if not len(places):
+        return
+    k = int(places[curve.force[places].argmax()])
+    hz, force = float(frequency_hz[k]), float(curve.force[k])
+    mode = next((p.mode for p in curve.peaks if p.frequency_hz == hz), "")
+    if not mode and places[0] < k < places[-1]:
+        mode = NO_MODE
+    rises = not mode and k == places[-1] and k + 1 < len(curve.force)
+    next_peak = (p.mode for p in curve.peaks if p.frequency_hz > hz) if rises else iter(())
+    yield Top(hz, force, curve.order, mode, next(next_peak, ""))

@@ -55,12 +55,18 @@ class Measure:
         In a few words.
     row : (N,) ndarray
         On the coordinates of a system.
+    mesh : str
+        Where there are several: its name at the end of `name`.
+    face : float or None
+        Width that a meaning over the face is of, m.
     """
 
     name: str
     unit: str
     meaning: str
     row: np.ndarray
+    mesh: str = ""
+    face: float | None = None
 
 
 def measured_names(train: Train) -> tuple[str, ...]:
@@ -110,7 +116,7 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
             found = _parallel(workshop, pair, ports)
         else:
             found = _bevel(ports, along)
-        out += [replace(one, name=f"{one.name}{pair.label}") for one in found]
+        out += [replace(one, name=f"{one.name}{pair.label}", mesh=pair.label) for one in found]
     return out
 
 
@@ -161,10 +167,9 @@ def _parallel(workshop: Workshop, pair: Pair, ports: list[PortMotion]) -> list[M
     ]
     known = [width for width in _widths(pair) if width is not None]
     if known:
-        meaning = (
-            f"equivalent misalignment over {1e3 * min(known):g} mm of face, in the plane of action"
-        )
-        out.append(Measure(shear, "m moved", meaning, min(known) * out[0].row))
+        meaning = "equivalent misalignment over the face, in the plane of action"
+        row = min(known) * out[0].row
+        out.append(Measure(shear, "m moved", meaning, row, face=min(known)))
     return out
 
 

@@ -83,9 +83,9 @@ def teeth_of(
                 'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
                 '--mean-force, such as "5 kN"'
             )
-        forces, source = _forces(workshop, point), point.label
+        forces, source = _by_torque(workshop, point), point.label
     else:
-        unit = _forces(workshop, torque_of(workshop, pair.name, 1.0))
+        unit = _by_torque(workshop, torque_of(workshop, pair.name, 1.0))
         forces = {name: mean_force * one for name, one in unit.items()}
     gaps = {one.name: one.mesh.backlash for one in train.pairs if one.mesh.backlash}
     for name in (pair.name, *gaps):
@@ -192,8 +192,8 @@ def backlash_model(
     )
 
 
-def _forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
-    """Forces of all meshes at an operating point, N; those of a loop as Timoshenko shafts divide them."""
+def _by_torque(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Forces of all meshes by a torque alone, N; those of a loop as Timoshenko shafts divide them."""
     known = mesh_forces(workshop.train, workshop.contacts, point)
     if None in workshop.train.flows.values():
         system = workshop.system(SHAFT)
@@ -205,7 +205,7 @@ def _forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
 def torque_of(workshop: Workshop, mesh: str, force: float) -> OperatingPoint:
     """The torque of the engine's shaft that brings a force to a mesh, N."""
     unit = OperatingPoint(torque=1.0, of=workshop.train.reference)
-    own = _forces(workshop, unit)[mesh]
+    own = _by_torque(workshop, unit)[mesh]
     if not own:
         raise SolidgearError(f"no torque passes the {mesh} between engine and load")
     return unit.with_changes(torque=force / own)

@@ -30,6 +30,7 @@ from solidgear.studies.train.housing import under
 from solidgear.studies.train.layout import mesh_forces, rotor_torques
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.own_loads import refuse_own_loads, scene_load
+from solidgear.studies.train.planet_loads import flung, held_against_weight
 from solidgear.studies.train.stages import mesh_row
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
 from solidgear.system.port_forces import port_forces
@@ -192,7 +193,7 @@ class Operating:
         shop, held = self._on(point.coast)
         forces = mesh_forces(shop.train, shop.contacts, point)
         loads, notes = self._loads(shop, point, forces)
-        total = held.system.load(loads)
+        total = held.system.load(loads) + flung(shop, held.system, point)
         if point.weight is not None:
             total = total + weight(held.system, point.gravity)
         same = start is not None and start.point.coast == point.coast
@@ -217,6 +218,12 @@ class Operating:
         loads, notes = torques(shop, point), []
         for outside in point.force:
             loads[outside.at] = loads.get(outside.at, np.zeros(6)) + outside.six
+        for end, torque in held_against_weight(shop, point).items():
+            loads[end] = loads.get(end, np.zeros(6)) + torque * np.eye(6)[4]
+            notes.append(
+                f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m: it is "
+                "balanced there, and no shaft carries it"
+            )
         for side, scene in shop.scenes.items():
             added, said = scene_load(shop, side, forces)
             notes += said
@@ -230,6 +237,15 @@ def torques(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
     """(6,) torques of engines and loads."""
     found = rotor_torques(workshop.train, workshop.contacts, point)
     return {name: torque * np.eye(6)[4] for name, torque in found.items()}
+
+
+def mean_forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Forces of all meshes at an operating point, N, of a planetary stage those of each planet; those
+    of a loop as Timoshenko shafts divide them under all that loads the train there.
+    """
+    if None in workshop.train.flows.values():
+        return Operating(workshop).at(point).mesh_forces
+    return mesh_forces(workshop.train, workshop.contacts, point)
 
 
 def divided(

@@ -79,8 +79,15 @@ def _contradictions(pair: Pair) -> Iterator[tuple[str, str, bool]]:
             yield "face_width", words, False
     if pinion.loaded_side and pinion.loaded_side == gear.loaded_side and pinion.spiral_angle:
         if pinion.loaded_side in ("concave", "convex"):
+            same, other = gear.loaded_side, "concave" if gear.loaded_side == "convex" else "convex"
             words = (
-                f"{gear.loaded_side} like that of the pinion, where a concave flank touches a "
-                "convex one; that of the pinion is taken"
+                f"{same} like that of the pinion, where a concave flank touches a convex one; that of "
+                "the pinion is taken"
             )
+            if pair.idle:
+                words = (
+                    f"is {other}, the flank that it drives with, so that it is driven on its {same} one "
+                    f"by a {same} one, where a concave flank touches a convex one; that of the pinion "
+                    f"is taken: write {same}, or leave it out"
+                )
             yield "loaded_side", words, False

@@ -9,7 +9,6 @@ times what their seats move: all six components, the whole row and not the diago
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,7 +21,9 @@ from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
-from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.parting import parting_lines
+from solidgear.studies.train.response import OrderCurve, Peak, TrainResponse
+from solidgear.studies.train.speeds import fastest
 from solidgear.studies.train.stages import mesh_row, phases_of
 from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks, stands_out
@@ -46,64 +47,6 @@ LITERAL = (
     "at {0:.0f} Hz the mesh then has a loss factor of {1:.0f}. Read them as loss factors 2 zeta "
     "(--damping hysteretic) unless this very reading is what is asked"
 )
-
-
-@dataclass(frozen=True)
-class Peak:
-    """A peak of the mesh force.
-
-    Attributes
-    ----------
-    force : float
-        Amplitude, N.
-    mode : str
-        That makes it.
-    """
-
-    frequency_hz: float
-    force: float
-    mode: str
-
-
-@dataclass(frozen=True, eq=False)
-class TrainResponse:
-    """Amplitudes over frequency.
-
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    frequency_hz : (f,) ndarray
-        Of the excitation; the mesh frequency of its first order.
-    columns : dict of str to (f,) complex ndarray
-        By name and unit, such as ``mesh force [N]``, of the mesh whose error drives the train;
-        harmonics of the mesh over the frequency of the first.
-    peaks : tuple of Peak
-        Of the mesh force.
-    seconds : float
-        To build and reduce both shafts.
-    name : str
-        Of the train, where it is shown beside another one.
-    """
-
-    models: dict[str, str]
-    damping: str
-    frequency_hz: np.ndarray
-    columns: dict[str, np.ndarray]
-    peaks: tuple[Peak, ...]
-    cautions: tuple[str, ...]
-    seconds: float
-    name: str = ""
-
-    @property
-    def label(self) -> str:
-        """Name in a legend: the train, or the models of its shafts."""
-        return self.name or told_mix(self.models)
-
-    @property
-    def force(self) -> np.ndarray:
-        """(f,) dynamic mesh force, N, complex."""
-        return self.columns["mesh force [N]"]
 
 
 class Drive:
@@ -264,7 +207,7 @@ class Drive:
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
 
-        seen = seen or (lambda hz: np.column_stack([*felt(self, hz), *self.mesh(hz)]))
+        seen = seen or self._seen
         points = self.steady.grid(lowest, highest_hz, seen)
         tops = peaks(np.abs(seen(points)[:, -1]))
         if len(tops) > MOST_PEAKS:
@@ -273,11 +216,44 @@ class Drive:
                 "is so large or small beside the others that no digit is left; check their units"
             )
         fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
-        return np.unique(np.concatenate([points, *fine]))
+        ends = [hz for hz in self._ends() if lowest < hz < highest_hz]
+        return np.unique(np.concatenate([points, *fine, ends]))
 
-    def peaks(self, frequency_hz: np.ndarray, force: np.ndarray) -> tuple[Peak, ...]:
-        """Peaks of the mesh force, each with the mode that makes it."""
-        return tuple(Peak(*top) for top in self.tops(frequency_hz, np.abs(force), self.row))
+    def _seen(self, frequency_hz: np.ndarray) -> np.ndarray:
+        """(f, q) motions whose peaks a grid may not miss; orders of one mesh have the same."""
+        further = range(2, self.orders + 1) if len(self.phases) > 1 else ()
+        forces = [self.mesh(frequency_hz, order)[1] for order in further]
+        return np.column_stack([*felt(self, frequency_hz), *forces, *self.mesh(frequency_hz)])
+
+    def _ends(self) -> list[float]:
+        """Frequencies of all orders at the highest speed in the files, Hz."""
+        speed = None if self.forces else fastest(self.workshop.train, self.workshop.scenes)
+        first = 0.0 if speed is None else speed.rpm * self.workshop.train.per_turn(self.pair) / 60
+        return [order * first for order in range(1, self.orders + 1)]
+
+    @property
+    def orders(self) -> int:
+        """Orders that drive the train."""
+        return 1 if self.forces else max(1, len(self.error.orders))
+
+    def over_cycle(self, frequency_hz: np.ndarray, highest_hz: float) -> list[np.ndarray]:
+        """(f,) mesh force of every order at frequencies of the mesh, N; NaN of an order beyond the
+        highest frequency.
+        """
+        out = []
+        for order in range(1, self.orders + 1):
+            there = order * frequency_hz <= highest_hz
+            force = np.full(len(frequency_hz), np.nan + 0j)
+            force[there] = self.mesh(order * frequency_hz[there], order)[1]
+            out.append(force)
+        return out
+
+    def curve(self, frequency_hz: np.ndarray, order: int = 1) -> OrderCurve:
+        """Mesh force by one order, its peaks each with the mode that makes it."""
+        force = np.abs(self.mesh(frequency_hz, order)[1])
+        load = self.load if order == 1 else self._load(order)
+        peaks = tuple(Peak(*top) for top in self.tops(frequency_hz, force, self.row, load))
+        return OrderCurve(order, force, peaks)
 
     def named_modes(self, n: int, bounded: int = 0) -> tuple[SystemModes, list[str]]:
         """Lowest elastic modes of the train, some of them with a bound, and free motions, with their
@@ -293,7 +269,11 @@ class Drive:
         return max(1, int((self.system.elastic[0] <= 4 * np.pi * highest_hz).sum()))
 
     def tops(
-        self, frequency_hz: np.ndarray, size: np.ndarray, row: np.ndarray
+        self,
+        frequency_hz: np.ndarray,
+        size: np.ndarray,
+        row: np.ndarray,
+        load: np.ndarray | None = None,
     ) -> list[tuple[float, float, str]]:
         """Frequency, size and mode of every peak of an amplitude.
 
@@ -302,12 +282,15 @@ class Drive:
         frequency_hz, size : (f,) ndarray
         row : (N,) ndarray
             Of the motion that is looked at.
+        load : (N,) ndarray, optional
+            That drives it, where it is not that of the first order.
         """
+        load = self.load if load is None else load
         omega, shapes = self.system.elastic
         within = self.reach(frequency_hz[-1])
         found, every = self.named_modes(within)
         names = every[found.rigid :]
-        share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ self.load)
+        share = (row @ shapes[:, :within]) * (shapes[:, :within].T @ load)
         each = [self.steady.loss.get(name, 0.0) * share for name, share in found.energy.items()]
         lost = np.sum(each, axis=0)[found.rigid :]
         out = []
@@ -370,19 +353,15 @@ def respond(
     told = drive.columns(hz)
     first = list(told)[:2]
     columns = {name: told.pop(name) for name in first}
-    force = columns[first[1]]
-    orders = len(drive.error.orders) if not drive.forces else 1
-    for order in range(2, orders + 1):
-        there = order * hz <= highest
-        found = np.full(len(hz), np.nan + 0j)
-        found[there] = drive.mesh(order * hz[there], order)[1]
-        columns[f"mesh force, order {order} [N]"] = found
+    for order, force in enumerate(drive.over_cycle(hz, highest)[1:], start=2):
+        columns[f"mesh force, order {order} [N]"] = force
     columns |= told
     cautions = [*workshop.cautions, *local_lines(workshop, drive.system)]
     if damping == "literal":
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
-    found_peaks = drive.peaks(hz, force)
+    parting = tuple(parting_lines(drive, hz, columns))
+    curves = tuple(drive.curve(hz, order) for order in range(1, drive.orders + 1))
     seconds = workshop.seconds(*models)
     rungs = workshop.mix(models)
-    return TrainResponse(rungs, damping, hz, columns, found_peaks, tuple(cautions), seconds)
+    return TrainResponse(rungs, damping, hz, columns, curves, parting, tuple(cautions), seconds)

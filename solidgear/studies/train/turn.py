@@ -2,7 +2,9 @@
 
 What a train with its bearings at the operating point is to a stage are a stiffness and a place at
 rest of sun and carrier: those of :func:`solidgear.system.carrier_turn.carrier_turn`, condensed from
-the rest of the train.  At the position of the file its forces are those of the train at rest.
+the rest of the train.  Weight of planets and ring and centrifugal forces act on the stage itself
+(:mod:`solidgear.studies.train.planet_loads`).  At the position of the file its forces are those of
+the train at rest.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from solidgear.scene.planetary import Stage, turned
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import OperatingState, settled
+from solidgear.studies.train.planet_loads import centrifugal, weights
 from solidgear.studies.train.stages import StageAtWork
 from solidgear.system.carrier_turn import FixedSupport, carrier_turn
 from solidgear.system.port_forces import port_forces
@@ -118,7 +121,14 @@ def over_a_turn(
             for member, end in zip(("sun", "carrier"), one.ends)
         }
         torque = state.mesh_forces[one.stage.name] * abs(one.stage.levers[0])
-        found = carrier_turn(one.model, torque, supports, positions=POSITIONS)
+        found = carrier_turn(
+            one.model,
+            torque,
+            supports,
+            positions=POSITIONS,
+            weights=weights(workshop, one, state.point),
+            carried=centrifugal(workshop, one, state.point),
+        )
         force = found.sun_mesh
         if one.turns != one.way:  # it turns the other way than the stage is told
             force = np.roll(force[::-1], 1, axis=0)

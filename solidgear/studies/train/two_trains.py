@@ -27,7 +27,6 @@ from solidgear.studies.beside import Beside, Side, decibels
 from solidgear.studies.change import Change
 from solidgear.studies.train import two_trains_told as told
 from solidgear.studies.train.deflection import TrainDeflection, deflection, with_ranges
-from solidgear.studies.train.local import local_lines
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.pairing import (
     BEYOND,
@@ -39,7 +38,8 @@ from solidgear.studies.train.pairing import (
     shared_ports,
     told_modes,
 )
-from solidgear.studies.train.respond import Peak, TrainResponse, respond
+from solidgear.studies.train.respond import respond
+from solidgear.studies.train.response import Peak, TrainResponse
 from solidgear.studies.train.shaft import JUDGE, LUMPED, told_mix
 from solidgear.studies.train.slips import slips
 
@@ -272,7 +272,7 @@ def _one_train(
     if shop.train.point is not None and at_rest:
         progress(f"{letter}: at {shop.train.point.label}")
         loaded = with_ranges(shop, deflection(shop, shop.train.point, *rungs))
-    cautions = (*slips(shop), *shop.cautions, *local_lines(shop, system))
+    cautions = (*response.parting, *slips(shop), *response.cautions)
     own = tuple(dict.fromkeys(cautions))
     return OneTrain(letter, name, own, shop, response, modes, loaded), seen
 
