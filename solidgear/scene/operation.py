@@ -232,7 +232,13 @@ def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 
 def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
-    """A duty table that is not whole."""
+    """Operating points of one name, and a duty table that is not whole."""
+    names = [point.name for point in points]
+    for k, name in enumerate(names):
+        if name and name in names[:k]:
+            reason = f"{name!r} is there twice; give the operating points names of their own"
+            yield SceneError(reason, path=("operation", k, "name"))
+            return
     for key in ("share", "hours"):
         given = [getattr(point, key) for point in points]
         if any(given) and None in given:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, cos, pi, tan
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 MATES = ("sun", "ring")
 MOST_PLANETS = 20
-#: relative, of inertias
-TYPED = 1e-6
 
 
 class Seat(Model):
@@ -65,21 +63,7 @@ class HeldSeat(Seat):
         return held
 
 
-class Round(HeadInertia):
-    """A rigid body of revolution."""
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        if self.bending < (1 - TYPED) * self.torsional / 2:
-            raise SceneError(
-                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
-                "no body has",
-                path=("bending",),
-            )
-        return self
-
-
-class PlanetTable(Round):
+class PlanetTable(HeadInertia):
     """Each of the planets, rigid.
 
     Attributes
@@ -99,7 +83,7 @@ class PlanetTable(Round):
         return self
 
 
-class RingTable(Round):
+class RingTable(HeadInertia):
     """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
 
     support: HeldSeat
