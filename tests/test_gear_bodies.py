@@ -109,8 +109,8 @@ def test_no_body_has_half_of_its_torsional_inertia_across():
 
 @pytest.mark.parametrize("train", [BOX, REDUCER], ids=["pair", "stage"])
 def test_a_torque_that_no_teeth_bear_is_told(train):
-    """A thousand times what the gears are made for; thirty times is no slip."""
-    for factor, told in ((30.0, False), (1000.0, True)):
+    """A thousand times what the gears are made for; ten times is no slip."""
+    for factor, told in ((10.0, False), (1000.0, True)):
         (point, *_) = train.operation
         loads = {"torque": factor * point.torque, "output_torque": None, "share": None}
         out = [

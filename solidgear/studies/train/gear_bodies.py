@@ -220,7 +220,7 @@ def _loads(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
         if stress > STRONG:
             wide = "" if wheel.face_width else ", were it as wide as its pitch circle"
             yield (
-                f"{name}: {label} bring {force / 1e3:.4g} kN to its teeth, {1e-6 * stress:.3g} MPa "
+                f"{name}: {label} brings {force / 1e3:.4g} kN to its teeth, {1e-6 * stress:.0f} MPa "
                 f"of face width times module{wide}, and hardened steel breaks at some "
                 f"{1e-6 * STRONG:.0f} MPa; check the torque and its unit, face width and module"
             )
