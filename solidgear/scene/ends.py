@@ -1,14 +1,18 @@
-"""Seats that end a hair beside a face or a step end there.
+"""Seats that end a hair beside a face or a step end there, and rigid masses sit beside steps.
 
 Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
 cell in one is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no line
-to a CAD kernel.
+to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest piece,
+and the mass stays where it was.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypeVar
+
+from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
@@ -24,10 +28,30 @@ Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 
 def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
-    hair; the same ones where there are none.
+    hair, masses beside steps and with names; the same ones where there are none.
     """
     marks = [segments[0].y0, *(s.y1 for s in segments)]
-    return tuple(_snapped(station, marks) for station in stations)
+    out = [_snapped(station, marks) for station in stations]
+    steps = Outline(segments).steps if any("mass" in type(s).model_fields for s in out) else ()
+    return tuple(
+        _on_one_surface(station, steps, k) if "mass" in type(station).model_fields else station
+        for k, station in enumerate(out, 1)
+    )
+
+
+def _on_one_surface(mass: Station, steps: Sequence[float], number: int) -> Station:
+    """A mass with a name, on the longest piece of a seat that steps divide."""
+    if not mass.name:
+        mass = mass.model_copy(update={"name": f"mass {number}"})
+    if mass.seat_width is None or getattr(mass, "patch", None):
+        return mass
+    inside = [y for y in steps if mass.lo + TOUCH < y < mass.hi - TOUCH]
+    if not inside:
+        return mass
+    lo, hi = max(pairwise([mass.lo, *inside, mass.hi]), key=lambda piece: piece[1] - piece[0])
+    y, (x, along, z) = (lo + hi) / 2, mass.offset
+    moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
+    return mass.model_copy(update=moved)
 
 
 def _snapped(station: Station, marks: Sequence[float]) -> Station:

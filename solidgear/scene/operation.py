@@ -168,6 +168,14 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
     if not train.operation:
         return
+    lacking = [f"[{k}]" for k, own in (("engine", train.engines), ("load", train.loads)) if not own]
+    if lacking:
+        reason = (
+            "a torque comes in at the engine and goes out at the load: write "
+            f"{' and '.join(lacking)} with inertia and spring, or leave [operation] out"
+        )
+        yield SceneError(reason, path=("operation",))
+        return
     if not any(flow is None or flow for flow in train.flows.values()):
         reason = (
             f"engine and load both turn with the {train.reference}: no mesh carries their torque"
@@ -208,7 +216,7 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Torque and speed of the other end that are not those of the teeth."""
-    first, last = train.reference, train.load.shaft
+    first, last = train.reference, train.output
     other = first if point.of == last else last
     torque, speed = point.torque_of(other, train.torque_turns), point.speed_of(other, train.turns)
     given = point.output_torque

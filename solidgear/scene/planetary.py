@@ -12,13 +12,13 @@ from functools import cached_property
 from math import atan, cos, pi, tan
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError, SolidgearError, listed, nearest
 from solidgear.scene.gears import Gear, HeadInertia, Pair, Teeth
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.scene.stations import Status
-from solidgear.scene.train_tables import ErrorTable, constant_or_table
+from solidgear.scene.train_tables import Error, ErrorTable
 from solidgear.scene.typed import Model
 from solidgear.scene.units import MeshSpring, PressureAngle, SignedAngle, TorsionSpring
 
@@ -98,14 +98,14 @@ class PlanetMeshes(Model):
         Of the meshes with sun and ring, N/m.
     pressure_angle : float
         Normal to the tooth, at the reference cylinder, rad.
-    transmission_error : ErrorTable
-        Of each mesh; a single number is a constant amplitude, m.
+    transmission_error : ErrorTable or None
+        Of each mesh; a single number is a constant amplitude, m; needed where it drives a motion.
     """
 
     sun_stiffness: MeshSpring
     ring_stiffness: MeshSpring
     pressure_angle: PressureAngle
-    transmission_error: Annotated[ErrorTable, BeforeValidator(constant_or_table)]
+    transmission_error: Error = None
     status: Status = "assumed"
 
 
@@ -360,3 +360,16 @@ def named_pair(train: Train, word: str | None) -> Pair:
             f"these may: {known}"
         )
     return found
+
+
+def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
+    """Transmission error of a mesh that drives a motion; refuses one that has none."""
+    if (error := driver.mesh.transmission_error) is not None:
+        return error
+    planets = isinstance(driver, PlanetMesh)
+    table = ("planetary", driver.stage.called, "mesh") if planets else driver.paths["mesh"]
+    raise SceneError(
+        'this key is missing, and it is what drives the teeth; write transmission_error = "1 um", or '
+        "orders or a table over frequency",
+        path=(*table, "transmission_error"),
+    )

@@ -157,6 +157,8 @@ def _losses(train: Train) -> Iterator[str]:
 
 def _error(pair: Pair | PlanetMesh, limit: float) -> Iterator[str]:
     table = pair.mesh.transmission_error
+    if table is None:
+        return
     if table.frequency and table.frequency[-1] < limit:
         yield (
             f"the transmission error is given up to {table.frequency[-1]:g} Hz and is taken as "

@@ -10,6 +10,7 @@ from math import cos, pi, sin, sqrt
 
 from solidgear.scene import Scene
 from solidgear.scene.gears import HeadInertia, Pair
+from solidgear.scene.layout import ends_of, told_flanks
 from solidgear.scene.planetary import Stage
 from solidgear.scene.tooth_fit import (
     ADDENDUM,
@@ -83,22 +84,37 @@ def wheel_of(pair: Pair, k: int) -> Wheel | None:
 def gear_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
     """Sentences on gears that cannot be what the file says, or hardly."""
     known: set[tuple[str, str]] = set()
-    for pair in train.pairs:
+    for k, pair in enumerate(train.pairs):
         of = f"{pair.name}: " if pair.label else ""
+        if not _told(train, k):
+            yield (
+                f"{of}loaded_side is not given: the {pair.pinion.flank} flank of the "
+                f"{pair.shafts[0]} is taken to carry; the other one moves numbers where bearings "
+                "differ across the shaft"
+            )
         if (fit := fit_of(pair)) is not None:
             yield from (of + text for text in backlash_cautions(fit, pair.mesh.backlash))
             yield from (of + text for text in fit_cautions(fit, pair.shafts))
-        for k, end in enumerate(zip(pair.shafts, pair.ports)):
-            wheel = wheel_of(pair, k)
+        for which, end in enumerate(zip(pair.shafts, pair.ports)):
+            wheel = wheel_of(pair, which)
             if wheel is None or end in known:
                 continue
             known.add(end)
             if fit is not None:
-                yield from wheel_cautions(fit, k, _called(train, *end))
+                yield from wheel_cautions(fit, which, _called(train, *end))
             yield from _of_gear(train, *end, wheel)
     for stage in train.stages:
         yield from _of_stage(train, stage, known)
     yield from _loads(train, contacts)
+
+
+def _told(train: Train, k: int) -> bool:
+    """Tell whether a file says which flanks of a mesh carry, where the line of action needs them."""
+    mesh, ends = train.meshes[k], ends_of(train, k)
+    if mesh.shaft_angle or mesh.line_of_action or mesh.contact_cells:
+        return True
+    pinion, gear = (train.shafts[side].member(port) for side, port in ends)
+    return told_flanks(train, ends, pinion, gear)[0].flank is not None
 
 
 def _called(train: Train, side: str, port: str) -> str:
