@@ -11,6 +11,7 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
+from solidgear.cli.check import thoughts
 from solidgear.judge.study import study
 from solidgear.ladder.registry import LADDER
 from solidgear.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
@@ -725,11 +726,19 @@ def test_command_prints_cautions_and_what_will_hold(run):
     code, out, _ = run("check", ROOT / "geometry" / "pinion_overhung.toml", "-f", "timoshenko")
     # what will not hold is no fault of the program: the exit code stays 0
     assert code == 0
-    assert "caution: timoshenko, lumped: C_thx" in out and "Holds: harmonic, solid." in out
-    assert (
-        "Will not hold: euler (beam against solid), timoshenko (beam against solid), lumped (beam against solid, frequency range)."
-        in out
-    )
+    first, second, *_ = out.splitlines()  # the verdict comes first
+    assert first == "Holds: harmonic, solid." and second.startswith("Will not hold: euler (beam")
+    assert max(map(len, out.splitlines())) <= 80
+    said = " ".join(out.split())
+    assert "caution: timoshenko, lumped: C_thx" in said
+    assert "lumped (beam against solid, frequency range)." in said
+
+
+def test_a_thought_is_a_sentence_of_its_own():
+    """Semicolons within brackets join what belongs together, names stay as they are written."""
+    told = thoughts("of 1 mm (a; b), more than 1 %; use 'a' or [b; c]; solidgear budget says it")
+    assert told == "of 1 mm (a; b), more than 1 %. Use 'a' or [b; c]. solidgear budget says it."
+    assert thoughts("It holds.") == "It holds."
 
 
 def test_no_model_holds_without_a_word_on_a_shaft_that_is_free():
@@ -832,7 +841,8 @@ def test_narrow_seats_are_told_in_one_sentence():
 
 def test_check_says_in_a_dozen_lines_what_it_says_of_an_ordinary_shaft():
     """Cautions of one kind stand in one line with their places."""
-    printed = command("check", "geometry/intermediate_shaft.toml").stdout.splitlines()
+    wrapped = command("check", "geometry/intermediate_shaft.toml").stdout
+    printed = wrapped.replace("\n  ", " ").splitlines()
     assert len(printed) <= 12
     (steps,) = [line for line in printed if "shoulder" in line]
     assert "shoulders between" in steps and steps.count(" at y = ") > 1

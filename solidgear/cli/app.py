@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import sys
+import textwrap
 import time
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
@@ -188,6 +189,14 @@ def say(*told: RenderableType, soft_wrap: bool = True) -> None:
     terminal = Console(highlight=False, markup=False, emoji=False)
     for one in told:
         terminal.print(one, soft_wrap=soft_wrap and isinstance(one, str), crop=False)
+
+
+def filled(text: str) -> str:
+    """A text in lines as wide as the terminal, all but the first set in."""
+    from rich.console import Console  # start-up: as in `say`
+
+    whole = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.fill(text, Console().width, subsequent_indent="  ", **whole)
 
 
 def caution(text: str) -> str:
