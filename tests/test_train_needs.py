@@ -110,12 +110,12 @@ def test_as_many_modes_are_listed_as_are_asked_for(pair):
     """Without a frequency, so many; with one, at most so many."""
     file = pair(more="[ask]\nmodes = 8")
     train = load_train(file)
-    found = train_modes(Workshop(train), "euler", most=train.ask.modes)
+    found = train_modes(Workshop(train), "euler", at_most=train.ask.modes)
     assert len(found.modes) == 8 + found.rigid
     done = command("system-modes", file, "--pinion", "euler", "--gear", "euler")
     assert done.exit_code == 0 and "\n 9 │" in done.output and "\n10 │" not in done.output
     low = found.modes[3].frequency_hz * 1.0001
-    assert len(train_modes(Workshop(train), "euler", max_frequency=low, most=8).modes) < 8
+    assert len(train_modes(Workshop(train), "euler", max_frequency=low, at_most=8).modes) < 8
 
 
 CHAIN = """[shaft.{a}]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def partners(scene: Scene) -> dict[str, str]:
 
 
 def _nearest(
-    one: Bearing, way: str | None, rows: list[tuple[Bearing, str | None]]
+    one: Bearing, way: str | None, rows: Sequence[tuple[Bearing, str | None]]
 ) -> Bearing | None:
     """The nearest row that holds the shaft the other way; None where there is none."""
     opposite = [b for b, other in rows if b is not one and other != way]

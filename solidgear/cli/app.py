@@ -195,8 +195,13 @@ def filled(text: str) -> str:
     """A text in lines as wide as the terminal, all but the first set in."""
     from rich.console import Console  # start-up: as in `say`
 
-    whole = {"break_long_words": False, "break_on_hyphens": False}
-    return textwrap.fill(text, Console().width, subsequent_indent="  ", **whole)
+    return textwrap.fill(
+        text,
+        Console().width,
+        subsequent_indent="  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def caution(text: str) -> str:

@@ -28,27 +28,29 @@ Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 
 def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
-    hair, masses beside steps and with names; the same ones where there are none.
+    hair; the same ones where there are none.
     """
     marks = [segments[0].y0, *(s.y1 for s in segments)]
-    out = [_snapped(station, marks) for station in stations]
-    steps = Outline(segments).steps if any("mass" in type(s).model_fields for s in out) else ()
-    return tuple(
-        _on_one_surface(station, steps, k) if "mass" in type(station).model_fields else station
-        for k, station in enumerate(out, 1)
-    )
+    return tuple(_snapped(station, marks) for station in stations)
 
 
-def _on_one_surface(mass: Station, steps: Sequence[float], number: int) -> Station:
-    """A mass with a name, on the longest piece of a seat that steps divide."""
+def seated(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
+    """Masses with names, each on the longest piece of a seat that steps divide; the same ones where
+    there is nothing to do.
+    """
+    steps = Outline(segments).steps if masses else ()
+    return tuple(_seated(mass, steps, k) for k, mass in enumerate(masses, 1))
+
+
+def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
     if not mass.name:
         mass = mass.model_copy(update={"name": f"mass {number}"})
-    if mass.seat_width is None or getattr(mass, "patch", None):
+    if mass.seat_width is None:
         return mass
-    inside = [y for y in steps if mass.lo + TOUCH < y < mass.hi - TOUCH]
-    if not inside:
+    between = [y for y in steps if mass.lo + TOUCH < y < mass.hi - TOUCH]
+    if not between:
         return mass
-    lo, hi = max(pairwise([mass.lo, *inside, mass.hi]), key=lambda piece: piece[1] - piece[0])
+    lo, hi = max(pairwise([mass.lo, *between, mass.hi]), key=lambda piece: piece[1] - piece[0])
     y, (x, along, z) = (lo + hi) / 2, mass.offset
     moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
     return mass.model_copy(update=moved)

@@ -366,8 +366,11 @@ def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
     """Transmission error of a mesh that drives a motion; refuses one that has none."""
     if (error := driver.mesh.transmission_error) is not None:
         return error
-    planets = isinstance(driver, PlanetMesh)
-    table = ("planetary", driver.stage.called, "mesh") if planets else driver.paths["mesh"]
+    table: tuple
+    if isinstance(driver, PlanetMesh):
+        table = ("planetary", driver.stage.called, "mesh")
+    else:
+        table = driver.paths["mesh"]
     raise SceneError(
         'this key is missing, and it is what drives the teeth; write transmission_error = "1 um", or '
         "orders or a table over frequency",

@@ -194,8 +194,8 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
 
 def _two_preloads(rows: Sequence[tuple[int, Bearing, Catalogue]]) -> Iterator[SceneError]:
     """A pair whose bearings are told forces that differ, which no shaft at rest has."""
-    forces = [data.preload.force for *_, data in rows if data.preload is not None]
-    if None not in forces and not isclose(*forces, rel_tol=TYPED):
+    forces = [data.preload.force or 0.0 for *_, data in rows if data.preload is not None]
+    if all(forces) and not isclose(forces[0], forces[1], rel_tol=TYPED):
         told = " and ".join(
             f"{force:.6g} N at {b.name!r}" for force, (_, b, _) in zip(forces, rows)
         )

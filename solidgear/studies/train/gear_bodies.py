@@ -214,8 +214,8 @@ def _fit(stage: Stage, teeth: tuple[int, int]) -> ToothFit:
 
 def _wheel(fit: ToothFit, k: int) -> Wheel:
     """The first or the second wheel, which rolls on its reference circle."""
-    sizes = (abs(pair[k]) for pair in (fit.radii, fit.roots, fit.tips))
-    return Wheel(*sizes, fit.module, fit.face_width)
+    radius, root, tip = (abs(pair[k]) for pair in (fit.radii, fit.roots, fit.tips))
+    return Wheel(radius, root, tip, fit.module, fit.face_width)
 
 
 def _loads(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:

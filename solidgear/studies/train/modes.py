@@ -199,7 +199,7 @@ def wrench_lines(met: Contact) -> tuple[str, ...]:
 
 
 def train_modes(
-    workshop: Workshop, *models: str, max_frequency: float | None = None, most: int | None = None
+    workshop: Workshop, *models: str, max_frequency: float | None = None, at_most: int | None = None
 ) -> TrainModes:
     """Modes of a train with its shafts by models.
 
@@ -207,8 +207,8 @@ def train_modes(
     ----------
     max_frequency : float, optional
         Hz; that of the file by default.
-    most : int, optional
-        Elastic modes at most; up to any frequency where neither file nor caller names one.
+    at_most : int, optional
+        Elastic modes; up to any frequency where neither file nor caller names one.
 
     Raises
     ------
@@ -228,9 +228,9 @@ def train_modes(
     system = workshop.system(*models)
     omega, _ = system.elastic
     count = int((omega <= 2 * np.pi * limit).sum())
-    if most is not None:
+    if at_most is not None:
         open_ended = max_frequency is None and "max_frequency" not in train.ask.model_fields_set
-        count = min(most, len(omega) if open_ended else count)
+        count = min(at_most, len(omega) if open_ended else count)
         limit = float(omega[count - 1]) / (2 * np.pi) if open_ended else limit
     found = system.modes(max(1, count))
     refuse_unresolved(workshop, system, limit)
