@@ -102,7 +102,8 @@ def working(
     least = reference * cos(transverse)
     if centre <= least:
         raise SceneError(
-            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears",
+            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears, which have "
+            f"no backlash at {1e3 * loose:.6g} mm",
             path=("mesh", "centre_distance"),
         )
     at_work = acos(least / centre)
