@@ -185,7 +185,7 @@ def test_stiffness_between_two_patches_is_told_with_their_bars(beam, run):
     assert "'tip' at (5.000, 30.000, 5.500) mm (average)" in out.replace("\n", "") and code == 0
     assert "between tip and base" in out
     code, out, _ = run("check", path)
-    assert code == 0 and "held at 'foot'" in out
+    assert code == 0 and "Held at 'foot'" in out
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,10 @@ import numpy as np
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
+from solidgear.bearings.pairs import divided, partners
 from solidgear.errors import SceneError
 from solidgear.scene import Scene
+from solidgear.scene.catalogue import Preload
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -137,9 +140,10 @@ def solved(
         motion[name] = made[name].bearing.seen(at)
         tangent[name] = made[name].bearing.tangent(at)
         if not tangent[name].any() and not waits:
+            once = " (once for both of a pair)" * data.one_sided
             reason = (
-                "without load a bearing has no stiffness: give load or displacement, a preload, a "
-                "negative clearance, or a [load] on the port"
+                f"without load a bearing has no stiffness: give load or displacement, a preload{once}, "
+                "a negative clearance, or a [load] on the port"
             )
             raise located(SceneError(reason), k)
     bearings = tuple(_with(b, tangent) for b in scene.bearings)
@@ -147,23 +151,36 @@ def solved(
 
 
 def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
-    """Bearings of a scene that catalogue data describe, by name."""
-    made = {}
-    for k, bearing in enumerate(scene.bearings):
-        if bearing.catalogue is None:
-            continue
-        own = choice.apart.get(bearing.name, choice)
+    """Bearings of a scene that catalogue data describe, by name; a preload that one of a pair is told is
+    of both.
+    """
+    places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
+
+    def make(name: str, of: str, preload: Preload | None = None) -> Catalogued:
+        bearing = scene.bearings[places[name]]
+        own, data = choice.apart.get(name, choice), bearing.catalogue
+        assert data is not None
         try:
-            made[bearing.name] = catalogued(
-                bearing.catalogue,
+            return catalogued(
+                data if preload is None else data.with_changes(preload=preload),
                 own.end,
                 clearance_share=own.clearance,
-                preload_factor=own.preload,
+                preload_factor=choice.apart.get(of, choice).preload,
                 floats=bearing.support == "floating",
             )
         except SceneError as error:
-            raise located(error, k) from None
-    return made
+            raise located(error, places[name]) from None
+
+    told: dict[str, tuple[str, Preload | None]] = {name: (name, None) for name in places}
+    for name, giver in partners(scene).items():
+        data = scene.bearings[places[giver]].catalogue
+        assert data is not None and data.preload is not None
+        first, second = data.preload, data.preload
+        if data.preload.displacement is not None:
+            rows = partial(make, giver, giver), partial(make, name, giver)
+            first, second = divided(data.preload.displacement, *rows)
+        told |= {giver: (giver, first), name: (giver, second)}
+    return {name: make(name, *own) for name, own in told.items()}
 
 
 def located(error: SceneError, index: int) -> SceneError:

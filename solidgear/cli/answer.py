@@ -33,6 +33,7 @@ from solidgear.report.where_chart import draw_where, worth_naming
 from solidgear.report.words import bar_of, count, percent, seconds
 from solidgear.scene import Scene
 from solidgear.studies.budget import beside
+from solidgear.studies.guards.bearings import misfits
 from solidgear.studies.guards.data import facing_one_way
 
 
@@ -65,7 +66,7 @@ def answer(
     if picture is not None:
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
-    for sentence in facing_one_way(loaded):
+    for sentence in (*facing_one_way(loaded), *misfits(loaded)):
         print(caution(sentence), file=sys.stderr)
     places: WhereRecord | None = None
     unplaced = ""

@@ -199,6 +199,19 @@ def _broken(line: str, width: int) -> str:
     return textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
 
 
+def filled(text: str) -> str:
+    """A text in lines as wide as the terminal, all but the first set in."""
+    from rich.console import Console  # start-up: as in `say`
+
+    return textwrap.fill(
+        text,
+        Console().width,
+        subsequent_indent="  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
 def caution(text: str) -> str:
     return f"caution: {text}"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from solidgear.cli.app import command
+from solidgear.cli.app import caution, command, filled
 from solidgear.cli.shared import MODEL, Fixed, Run, SceneFile, refuse
 from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
@@ -15,6 +15,9 @@ from solidgear.ladder.registry import LADDER
 from solidgear.scene.toml_file import is_train
 from solidgear.studies.check import VERDICTS, check_scene
 from solidgear.studies.loading import load
+
+#: not capitalised where it begins a sentence
+COMMAND = "solidgear"
 
 
 @command
@@ -43,24 +46,51 @@ def check(
 
 
 def print_check(found: dict) -> None:
-    """Facts, cautions, faults and verdicts of one shaft, as
+    """Verdicts, faults, cautions and facts of one shaft, as
     :func:`solidgear.studies.check.check_scene` gives them.
     """
-    told = [record for record in found["records"] if not _spared(record, found["verdicts"])]
-    for record in (r for r in told if r["level"] == "fact"):
-        print(record["sentence"])
-    for level in ("caution", "open", "avoid"):
-        for record in (r for r in told if r["level"] == level):
-            words = ("caution", ", ".join(record["models"]), record["sentence"])
-            print(": ".join(filter(None, words)))
-    for line in found["faults"]:
-        print(f"fault: {line}")
     _print_verdicts(
         {
             name: (told["verdict"], ", ".join(told["guards"]).replace("_", " "))
             for name, told in found["verdicts"].items()
         }
     )
+    said = [record for record in found["records"] if not _spared(record, found["verdicts"])]
+    cautions = [
+        ": ".join(filter(None, (", ".join(record["models"]), record["sentence"])))
+        for level in ("caution", "open", "avoid")
+        for record in said
+        if record["level"] == level
+    ]
+    facts = [record["sentence"] for record in said if record["level"] == "fact"]
+    _print_sentences(found["faults"], cautions, facts)
+
+
+def _print_sentences(faults: list[str], cautions: list[str], facts: list[str]) -> None:
+    """Lines as wide as the terminal, a thought a sentence."""
+    lines = [*(f"fault: {text}" for text in faults), *map(caution, cautions), *facts]
+    for line in lines:
+        print(filled(thoughts(line)))
+
+
+def thoughts(text: str) -> str:
+    """A text in which each thought that a semicolon joins is a sentence.
+
+    Examples
+    --------
+    >>> thoughts("too soft (1 N/m; 2 N/m); use a beam")
+    'too soft (1 N/m; 2 N/m). Use a beam.'
+    """
+    parts, depth = [""], 0
+    for k, letter in enumerate(text):
+        depth += (letter in "([{") - (letter in ")]}")
+        if text[k : k + 2] == "; " and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    first, *others = (part.strip() for part in parts)
+    begun = [part if part.startswith(COMMAND) else part[:1].upper() + part[1:] for part in others]
+    return ". ".join([first, *begun]) + "." * (not text.endswith("."))
 
 
 def _spared(record: dict, verdicts: dict) -> bool:
@@ -85,7 +115,7 @@ def _print_verdicts(models: dict[str, tuple[str, str]]) -> None:
         own = {name: why for name, (here, why) in models.items() if here == verdict}
         if own:
             told = (f"{name} ({why})" if why else name for name, why in own.items())
-            print(f"{verdict.capitalize()}: {', '.join(told)}.")
+            print(filled(f"{verdict.capitalize()}: {', '.join(told)}."))
 
 
 def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
@@ -103,21 +133,16 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     if as_json:
         print(json.dumps(found, default=float))
     else:
-        for side in shop.train.shafts:
-            print(f"== {side}")
-            print_check(found[side])
         print("== train")
-        for line in found["facts"]:
-            print(line)
-        for line in found["cautions"]:
-            print(f"caution: {line}")
-        for line in found["faults"]:
-            print(f"fault: {line}")
         _print_verdicts(
             {
                 name: (told["verdict"], " and ".join(told["shafts"]))
                 for name, told in found["verdicts"].items()
             }
         )
+        _print_sentences(found["faults"], found["cautions"], found["facts"])
+        for side in shop.train.shafts:
+            print(f"== {side}")
+            print_check(found[side])
     if found["faults"] or any(found[side]["faults"] for side in shop.train.shafts):
         raise typer.Exit(1)

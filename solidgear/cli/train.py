@@ -56,7 +56,8 @@ def system_modes(
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     said = slips(shop)
     mix = tuple(models.by_shaft(shop.train).values())
-    found = train_modes(shop, *mix, max_frequency=reduced.max_frequency)
+    count = shop.train.ask.modes
+    found = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
     if run.units != UNITS and turn is None:
         raise SolidgearError(
             f"--units {run.units}: the table has Hz and rpm alone; add --turn model.html, whose page "

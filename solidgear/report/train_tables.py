@@ -173,7 +173,9 @@ def _levers(mesh: Mapping[str, Any], units: Units) -> str:
     return " and ".join(f"{arm} {units.unit('m')}" for arm in arms)
 
 
-def _error(table: Mapping[str, Any], units: Units) -> str:
+def _error(table: Mapping[str, Any] | None, units: Units) -> str:
+    if table is None:
+        return "none"
     unit = units.unit("m moved")
     if table["orders"]:
         sizes = ", ".join(units.given(v, "m moved") for v in table["orders"])

@@ -54,6 +54,8 @@ PAIRED = ("tandem", "back_to_back", "face_to_face")
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
 #: other words of the field for these
 _CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
+#: what people call a moment about the axis
+ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -72,6 +74,18 @@ class BearingLoad(Model):
     z: Newtons = 0.0
     thx: Torque | None = None
     thz: Torque | None = None
+
+    def __init__(self, /, **data: Any):
+        about = [key for key in data if key.lower() in ABOUT_AXIS]
+        if about:
+            raise SceneError(
+                "no bearing carries a moment about the axis of the shaft, which turns freely: write "
+                "forces x, y, z and tilting moments thx, thz alone; a torque is that of an "
+                '[operation] of a train, or of solidgear stress --drive "A=115 N*m"',
+                path=(about[0],),
+                value=show(data[about[0]]),
+            )
+        super().__init__(**data)
 
     @property
     def six(self) -> list[float]:

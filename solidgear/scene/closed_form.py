@@ -14,7 +14,7 @@ import numpy as np
 from solidgear.scene.outline import Outline
 
 if TYPE_CHECKING:
-    from solidgear.scene import Corner, Segment
+    from solidgear.scene import Corner, Scene, Segment
     from solidgear.scene.outline import Piece
 
 
@@ -74,6 +74,19 @@ def mass_properties(outline: Outline[Segment]) -> MassProperties:
     return MassProperties(
         mass=float(mass), centre=float(centre), ixx=float(0.5 * polar + axial), iyy=float(polar)
     )
+
+
+def whole_mass(scene: Scene) -> MassProperties:
+    """Mass, centre and inertia of a shaft with the rigid masses on it; transverse about x."""
+    shaft, places = mass_properties(scene.outline), {s.name: s.y for s in scene.stations}
+    each = [(m, places[m.on] + m.offset[1] if m.on else m.y + m.offset[1]) for m in scene.masses]
+    mass = shaft.mass + sum(m.mass for m, _ in each)
+    centre = (shaft.mass * shaft.centre + sum(m.mass * y for m, y in each)) / mass
+    ixx = shaft.ixx + shaft.mass * (shaft.centre - centre) ** 2
+    ixx += sum(m.inertia[0] + m.mass * ((y - centre) ** 2 + m.offset[2] ** 2) for m, y in each)
+    iyy = shaft.iyy
+    iyy += sum(m.inertia[1] + m.mass * (m.offset[0] ** 2 + m.offset[2] ** 2) for m, _ in each)
+    return MassProperties(mass=mass, centre=centre, ixx=ixx, iyy=iyy)
 
 
 def _inside(piece: Piece, density: float) -> tuple[float, ...]:

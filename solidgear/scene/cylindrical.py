@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from solidgear.scene.gears import Member
     from solidgear.scene.train_tables import Mesh
 
+#: relative, of a pitch radius that is typed with three digits
+RADIUS = 5e-3
 #: words of cylindrical gears, by the table that has them
 WORDS = {
     "pinion": ("module", "helix_angle", "profile_shift"),
@@ -100,7 +102,8 @@ def working(
     least = reference * cos(transverse)
     if centre <= least:
         raise SceneError(
-            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears",
+            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears, which have "
+            f"no backlash at {1e3 * loose:.6g} mm",
             path=("mesh", "centre_distance"),
         )
     at_work = acos(least / centre)
@@ -147,6 +150,15 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
                 f"is {two:.6g} and that of the pinion {one:.6g} (SI); wheels that mesh share it"
             )
             yield SceneError(reason, path=("gear", key))
+    distance = mesh.centre_distance
+    for side, own in (("pinion", pinion), ("gear", gear)):
+        due = (distance or 0.0) * own.teeth / (pinion.teeth + gear.teeth)
+        if distance and own.pitch_radius and not isclose(own.pitch_radius, due, rel_tol=RADIUS):
+            reason = (
+                f"and centre_distance contradict: wheels of {pinion.teeth} and {gear.teeth} teeth "
+                f"{1e3 * distance:.6g} mm apart roll at {1e3 * due:.6g} mm; correct or leave out one"
+            )
+            yield SceneError(reason, path=(side, "pitch_radius"))
     shifted = [side for side, own in (("pinion", pinion), ("gear", gear)) if own.profile_shift]
     if shifted and pinion.module is None and gear.module is None:
         yield SceneError("counts in modules; give the module", path=(shifted[0], "profile_shift"))

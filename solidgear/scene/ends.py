@@ -1,14 +1,18 @@
-"""Seats that end a hair beside a face or a step end there.
+"""Seats that end a hair beside a face or a step end there, and rigid masses sit beside steps.
 
 Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
 cell in one is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no line
-to a CAD kernel.
+to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest piece,
+and the mass stays where it was.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypeVar
+
+from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
@@ -28,6 +32,28 @@ def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[S
     """
     marks = [segments[0].y0, *(s.y1 for s in segments)]
     return tuple(_snapped(station, marks) for station in stations)
+
+
+def seated(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
+    """Masses with names, each on the longest piece of a seat that steps divide; the same ones where
+    there is nothing to do.
+    """
+    steps = Outline(segments).steps if masses else ()
+    return tuple(_seated(mass, steps, k) for k, mass in enumerate(masses, 1))
+
+
+def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
+    if not mass.name:
+        mass = mass.model_copy(update={"name": f"mass {number}"})
+    if mass.seat_width is None:
+        return mass
+    between = [y for y in steps if mass.lo + TOUCH < y < mass.hi - TOUCH]
+    if not between:
+        return mass
+    lo, hi = max(pairwise([mass.lo, *between, mass.hi]), key=lambda piece: piece[1] - piece[0])
+    y, (x, along, z) = (lo + hi) / 2, mass.offset
+    moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
+    return mass.model_copy(update=moved)
 
 
 def _snapped(station: Station, marks: Sequence[float]) -> Station:

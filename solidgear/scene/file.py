@@ -21,6 +21,7 @@ from solidgear.scene.ask import Ask
 from solidgear.scene.blends import BLENDS
 from solidgear.scene.body_file import BodyTable, with_port
 from solidgear.scene.catalogue import BearingLoad
+from solidgear.scene.ends import seated
 from solidgear.scene.features import FEATURES
 from solidgear.scene.housing import Housing, housing_of
 from solidgear.scene.lubrication import Lubrication
@@ -331,6 +332,7 @@ class _Reading:
         whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
         things = {key: [row.thing for row in of] for key, of in sound.items()}
+        things["masses"] = [*seated(things["masses"], self.segments)]
         found = [*rules.problems_between(self.segments, **things, whole=whole)]
         if whole and things["ports"]:
             found += rules.question_problems(things["ports"], self.file.ask.quantities)

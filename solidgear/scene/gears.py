@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isclose, pi
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,7 @@ from solidgear.scene.cylindrical import cylindrical_problems, rolling
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.stations import Status
+from solidgear.scene.tooth_fit import fit_problems
 from solidgear.scene.train_tables import Mesh
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
@@ -26,6 +27,8 @@ from solidgear.scene.units import (
     SpiralAngle,
 )
 
+#: relative, of inertias: the last of three digits
+ROUNDED = 5e-3
 #: teeth that a wheel may have
 FEWEST_TEETH, MOST_TEETH = 3, 2000
 
@@ -35,7 +38,7 @@ FLANKS = ("left", "right")
 
 
 class HeadInertia(Model):
-    """A rigid mass at the lumped point of a shaft, beside the mass of its segments.
+    """A rigid body of revolution at the lumped point of a shaft, beside the mass of its segments.
 
     Attributes
     ----------
@@ -49,6 +52,16 @@ class HeadInertia(Model):
     torsional: Inertia
     bending: Inertia
     status: Status = "assumed"
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.bending < (1 - ROUNDED) * self.torsional / 2:
+            raise SceneError(
+                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
+                "no body has",
+                path=("bending",),
+            )
+        return self
 
 
 class Gear(Model):
@@ -232,7 +245,10 @@ def pair_problems(pair: Pair) -> Iterator[SceneError]:
             path=("gear", "hand"),
         )
     yield from _flanks(pair)
-    yield from cylindrical_problems(pinion, gear, mesh)
+    if wrong := [*cylindrical_problems(pinion, gear, mesh)]:
+        yield from wrong
+    else:
+        yield from fit_problems(pair)
     ratio, given = pair.ratio, mesh.ratio
     if given is not None and not isclose(given, ratio, rel_tol=TYPED):
         yield SceneError(

@@ -135,10 +135,33 @@ def idle(train: Train, end: tuple[str, str]) -> bool:
     return end in [ends_of(train, k)[0] for k in range(len(train.meshes))]
 
 
-def with_flanks(
+def with_flanks(train: Train, k: int, pinion: Member, gear: Member) -> tuple[Member, Member]:
+    """The two gears of a mesh with the flanks that are loaded there: those of a file, or on parallel
+    shafts without an operating point the usual ones.
+    """
+    ends = ends_of(train, k)
+    pinion, gear = told_flanks(train, ends, pinion, gear)
+    if pinion.loaded_side is None and train.point is None and not train.meshes[k].shaft_angle:
+        pinion = pinion.with_changes(loaded_side=_usual_flank(train, ends[0][0]))
+    return pinion, gear
+
+
+def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
+    """Flank of gears that a shaft drives with, where no file tells it: of the first shaft the left
+    one, and each in turn is driven on one flank and drives with the other.
+    """
+    for k in range(len(train.meshes)):
+        (driver, port), (driven, _) = ends_of(train, k)
+        if driven == side and driver not in passed:
+            own = train.shafts[driver].gears[port].flank
+            return OTHER_FLANK[own or _usual_flank(train, driver, (*passed, side))]
+    return "left"
+
+
+def told_flanks(
     train: Train, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
 ) -> tuple[Member, Member]:
-    """The two gears of a mesh with the flanks that are loaded there.
+    """The two gears of a mesh with the flanks that a file tells.
 
     A gear that is second in one mesh and first in another passes a torque on: what drives it pushes
     on the flank behind those that it drives with.  Its `loaded_side` is that of the mesh in which it
@@ -147,6 +170,8 @@ def with_flanks(
     meshes = [ends_of(train, k) for k in range(len(train.meshes))]
     if gear.loaded_side and idle(train, ends[1]):
         gear = gear.with_changes(loaded_side=OTHER_FLANK[gear.loaded_side])
+    if pinion.flank is None and gear.loaded_side in ("left", "right"):
+        return pinion.with_changes(loaded_side=gear.loaded_side), gear  # they touch their own kind
     driver, end, passed = pinion, ends[0], 0
     while driver.flank is None and passed < len(meshes):
         before = next((first for first, second in meshes if second == end), None)

@@ -168,6 +168,14 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
     if not train.operation:
         return
+    lacking = [f"[{k}]" for k, own in (("engine", train.engines), ("load", train.loads)) if not own]
+    if lacking:
+        reason = (
+            "a torque comes in at the engine and goes out at the load: write "
+            f"{' and '.join(lacking)} with inertia and spring, or leave [operation] out"
+        )
+        yield SceneError(reason, path=("operation",))
+        return
     if not any(flow is None or flow for flow in train.flows.values()):
         reason = (
             f"engine and load both turn with the {train.reference}: no mesh carries their torque"
@@ -208,7 +216,7 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Torque and speed of the other end that are not those of the teeth."""
-    first, last = train.reference, train.load.shaft
+    first, last = train.reference, train.output
     other = first if point.of == last else last
     torque, speed = point.torque_of(other, train.torque_turns), point.speed_of(other, train.turns)
     given = point.output_torque
@@ -232,7 +240,13 @@ def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 
 def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
-    """A duty table that is not whole."""
+    """Operating points of one name, and a duty table that is not whole."""
+    names = [point.name for point in points]
+    for k, name in enumerate(names):
+        if name and name in names[:k]:
+            reason = f"{name!r} is there twice; give the operating points names of their own"
+            yield SceneError(reason, path=("operation", k, "name"))
+            return
     for key in ("share", "hours"):
         given = [getattr(point, key) for point in points]
         if any(given) and None in given:

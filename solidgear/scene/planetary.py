@@ -10,15 +10,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, cos, pi, tan
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError, SolidgearError, listed, nearest
 from solidgear.scene.gears import Gear, HeadInertia, Pair, Teeth
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.scene.stations import Status
-from solidgear.scene.train_tables import Azimuth, ErrorTable, constant_or_table
+from solidgear.scene.train_tables import Azimuth, Error, ErrorTable
 from solidgear.scene.typed import Model
 from solidgear.scene.units import MeshSpring, PressureAngle, TorsionSpring
 
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 MATES = ("sun", "ring")
 MOST_PLANETS = 20
-#: relative, of inertias
-TYPED = 1e-6
 
 
 class Seat(Model):
@@ -65,21 +63,7 @@ class HeldSeat(Seat):
         return held
 
 
-class Round(HeadInertia):
-    """A rigid body of revolution."""
-
-    @model_validator(mode="after")
-    def _possible(self) -> Self:
-        if self.bending < (1 - TYPED) * self.torsional / 2:
-            raise SceneError(
-                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
-                "no body has",
-                path=("bending",),
-            )
-        return self
-
-
-class PlanetTable(Round):
+class PlanetTable(HeadInertia):
     """Each of the planets, rigid.
 
     Attributes
@@ -99,7 +83,7 @@ class PlanetTable(Round):
         return self
 
 
-class RingTable(Round):
+class RingTable(HeadInertia):
     """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
 
     support: HeldSeat
@@ -114,14 +98,14 @@ class PlanetMeshes(Model):
         Of the meshes with sun and ring, N/m.
     pressure_angle : float
         Normal to the tooth, at the reference cylinder, rad.
-    transmission_error : ErrorTable
-        Of each mesh; a single number is a constant amplitude, m.
+    transmission_error : ErrorTable or None
+        Of each mesh; a single number is a constant amplitude, m; needed where it drives a motion.
     """
 
     sun_stiffness: MeshSpring
     ring_stiffness: MeshSpring
     pressure_angle: PressureAngle
-    transmission_error: Annotated[ErrorTable, BeforeValidator(constant_or_table)]
+    transmission_error: Error = None
     status: Status = "assumed"
 
 
@@ -376,3 +360,19 @@ def named_pair(train: Train, word: str | None) -> Pair:
             f"these may: {known}"
         )
     return found
+
+
+def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
+    """Transmission error of a mesh that drives a motion; refuses one that has none."""
+    if (error := driver.mesh.transmission_error) is not None:
+        return error
+    table: tuple
+    if isinstance(driver, PlanetMesh):
+        table = ("planetary", driver.stage.called, "mesh")
+    else:
+        table = driver.paths["mesh"]
+    raise SceneError(
+        'this key is missing, and it is what drives the teeth; write transmission_error = "1 um", or '
+        "orders or a table over frequency",
+        path=(*table, "transmission_error"),
+    )

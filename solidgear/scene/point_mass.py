@@ -27,6 +27,7 @@ class PointMass(Placed):
     Attributes
     ----------
     name : str
+        Of one without, its scene makes one.
     mass : float
         kg.
     inertia : tuple of float
@@ -58,7 +59,7 @@ class PointMass(Placed):
     (0.1, 0.8)
     """
 
-    name: str
+    name: str = ""
     mass: Mass
     inertia: Annotated[tuple[float, float, float], three("inertia", "about x, y and z")] = (
         0.0,

@@ -68,6 +68,8 @@ def carried_of(train: Train) -> dict[str, float]:
 def share_problems(train: Train) -> Iterator[SceneError]:
     """Problems of how a torque divides among engines or loads."""
     for kind, names in (("engine", train.engines), ("load", train.loads)):
+        if not names:
+            continue
         given = [train.rotors[name].share for name in names]
         path = (*train.rotor_path(names[0]), "share")
         if len(names) > 1 and None in given:

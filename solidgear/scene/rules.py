@@ -6,6 +6,7 @@ Numbers in m. Paths of problems are those of a `Scene`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import isclose
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError, listed, nearest, show
@@ -13,9 +14,11 @@ from solidgear.quantity import AT, STIFFNESS, Quantity
 from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.features import feature_problems
 from solidgear.scene.outline import TOUCH, Outline
+from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Blend, Feature, Material, PointMass, Port, Segment
+    from solidgear.scene.catalogue import Catalogue
 
 #: least diameter and least length of a part over the length of the shaft, least wall over the
 #: radius; what is thinner would ask for meshes without end, or drown in rounding, and comes from a
@@ -172,6 +175,8 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
     rows = [row for row in rows if row[2].one_sided]
     pressed = [b for _, b, data in rows if data.preload is not None]
     ways = {data.holds for *_, data in rows}
+    if len(pressed) == len(rows) == 2 and len(ways) == 2:
+        yield from _two_preloads(rows)
     if len(pressed) < 2 or len(ways) > 1:
         return
     way = ways.pop()
@@ -185,6 +190,20 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
         f"arrangement {o[1].name!r}, for X {x[1].name!r}, or leave the preload out",
         path=("bearings", o[0], "catalogue", "holds"),
     )
+
+
+def _two_preloads(rows: Sequence[tuple[int, Bearing, Catalogue]]) -> Iterator[SceneError]:
+    """A pair whose bearings are told forces that differ, which no shaft at rest has."""
+    forces = [data.preload.force or 0.0 for *_, data in rows if data.preload is not None]
+    if all(forces) and not isclose(forces[0], forces[1], rel_tol=TYPED):
+        told = " and ".join(
+            f"{force:.6g} N at {b.name!r}" for force, (_, b, _) in zip(forces, rows)
+        )
+        yield SceneError(
+            f"two bearings that hold the shaft against each other feel one preload, and this is "
+            f"{told}; give it once, at either",
+            path=("bearings", rows[1][0], "catalogue", "preload"),
+        )
 
 
 def station_problems(

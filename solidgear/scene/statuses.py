@@ -17,7 +17,8 @@ def statuses_of(train: Train) -> dict[str, str]:
         line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
         out[f"{name}.stiffness"] = mesh.status
         out[f"{name}.{line}"] = mesh.line_of_action_status
-        out[f"{name}.transmission_error"] = mesh.transmission_error_status
+        if mesh.transmission_error is not None:
+            out[f"{name}.transmission_error"] = mesh.transmission_error_status
     for name, rotor in train.rotors.items():
         out[f"{name}.inertia"] = rotor.status
         out[f"{name}.spring.stiffness"] = rotor.spring.status

@@ -55,7 +55,7 @@ class Train(Model):
         By name; scenes are laid out, and weight acts, in the axes of the first.
     meshes : tuple of Mesh
     rotors : dict of str to Rotor
-        ``engine`` and ``load``, between which torque passes, and others.
+        ``engine`` and ``load``, between which torque passes, and others; none for modes alone.
     engines, loads : tuple of str
         Rotors that bring torque and that take it, where they are others than these two.
     planetary : dict of str to Planetary
@@ -176,8 +176,13 @@ class Train(Model):
 
     @property
     def reference(self) -> str:
-        """Shaft that the first engine turns with, to which speeds are told."""
-        return self.engine.shaft
+        """Shaft that the first engine turns with, to which speeds are told; else the first."""
+        return self.engine.shaft if self.engines else next(iter(self.shafts))
+
+    @property
+    def output(self) -> str:
+        """Shaft that the first load turns with; else the last."""
+        return self.load.shaft if self.loads else [*self.shafts][-1]
 
     @property
     def housed(self) -> tuple[str, ...]:
@@ -203,9 +208,10 @@ class Train(Model):
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
             alone = len(self.meshes) == 1 and not self.planetary
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
-            first, second = with_flanks(self, ends, *(self.shafts[s].member(p) for s, p in ends))
+            pinion, gear = (self.shafts[side].member(port) for side, port in ends)
+            pinion, gear = with_flanks(self, k, pinion, gear)
             behind = idle(self, ends[1])
-            out.append(Pair(name, sides, ports, paths, first, second, mesh, self.point, behind))
+            out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point, behind))
         return tuple(out)
 
     @cached_property
@@ -232,7 +238,8 @@ class Train(Model):
     def short(self) -> bool:
         """True where a file may call it by [pinion], [gear] and [mesh] alone."""
         turned = {name: rotor.shaft for name, rotor in self.rotors.items()}
-        return turned == SHORT and tuple(self.shafts) == SIDES and len(self.meshes) == 1
+        named = turned.items() <= SHORT.items() and tuple(self.shafts) == SIDES
+        return named and len(self.meshes) == 1
 
     def gear_path(self, side: str, port: str) -> tuple:
         """Keys of a file under which a gear stands."""
@@ -258,13 +265,7 @@ class Train(Model):
         return PerTurn(teeth * self.turns[side], self.reference)
 
     def named_mesh(self, word: str | None) -> Pair | PlanetMesh:
-        """A mesh by its name, with or without the word mesh before it; the first by default.
-
-        Raises
-        ------
-        SolidgearError
-            If it has no such mesh.
-        """
+        """A mesh by its name, with or without the word mesh before it; the first by default."""
         for pair in (*self.drivers, *self.teeth):
             if word in (None, pair.name, pair.label.strip()):
                 return pair
@@ -291,12 +292,7 @@ class Train(Model):
         return {side: self.turns[side] / share for side, share in self.carried.items()}
 
     def only(self) -> Pair:
-        """The one pair of gears of a train that has no other.
-
-        Raises
-        ------
-        SolidgearError
-        """
+        """The one pair of gears of a train that has no other; refuses a train of several."""
         if len(self.teeth) > 1:
             raise SolidgearError(
                 f"{self.name} has {len(self.teeth)} meshes, and what is asked is there for a "
@@ -332,7 +328,7 @@ class Train(Model):
     @property
     def ratio(self) -> float:
         """Turns of the engine's shaft in one turn of the load's."""
-        return self.turns[self.reference] / self.turns[self.load.shaft]
+        return self.turns[self.reference] / self.turns[self.output]
 
     def named_shaft(self, side: str) -> Shaft:
         """A shaft by its name."""

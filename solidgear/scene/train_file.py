@@ -56,8 +56,8 @@ class _Tables(Model):
     title: str = ""
     name: str = "train"
     source: str = ""
-    engine: dict[str, Rotor]
-    load: dict[str, Rotor]
+    engine: dict[str, Rotor] = {}
+    load: dict[str, Rotor] = {}
     losses: Losses = Losses()
     housing: TrainHousing | None = None
     operation: Operation = ()
@@ -67,8 +67,8 @@ class _Tables(Model):
     @classmethod
     def _by_name(cls, given: dict[str, Any]) -> dict[str, Any]:
         """One engine or load, which needs no name, by what it is."""
-        one = {role: given[role] for role in SHORT if not _several(given.get(role, {"": {}}))}
-        return {**given, **{role: {role: own} for role, own in one.items() if own is not None}}
+        there = [role for role in SHORT if given.get(role)]
+        return {**given, **{r: {r: given[r]} for r in there if not _several(given[r])}}
 
     def train(
         self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
@@ -144,7 +144,7 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
         _read_meshes(data, kind is LongFile, folder)
         if isinstance(box := raw.get(HOUSING), Mapping) and "matrices" in box:
             data[HOUSING] = _with_matrices(box, folder)
-        for role in SHORT:
+        for role in (role for role in SHORT if role in raw):
             for name in [*raw[role]] if _several(raw.get(role)) else [""]:
                 problems.read(partial(_whole_rotor, raw, role, name))
         if kind is LongFile:
@@ -248,7 +248,7 @@ def _whole_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
     path = (rotor, name) if name else (rotor,)
     table = raw[rotor][name] if name else raw.get(rotor)
     if not isinstance(table, Mapping):
-        reason = f"this table is missing; write [{rotor}] with its inertia, and [{rotor}.spring]"
+        reason = f"holds inertia and a spring: write [{rotor}] with inertia, and [{rotor}.spring]"
         raise SceneError(reason, path=(rotor,))
     side = table.get("shaft", SHORT[rotor])
     misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # told as such

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene.mesh_cycle import LineCycle, StiffnessCycle, Vector
+from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.stations import Status
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
@@ -137,7 +138,13 @@ class ErrorTable(Model):
 
 def constant_or_table(value: Any) -> Any:
     """One number as a table of one order."""
-    return value if isinstance(value, (dict, ErrorTable)) else {"orders": (value,)}
+    if value is None or isinstance(value, (dict, ErrorTable)):
+        return value
+    return {"orders": (value,)}
+
+
+#: of a mesh; a single number is a constant amplitude, m
+Error = Annotated[ErrorTable | None, BeforeValidator(constant_or_table)]
 
 
 class Cell(Model):
@@ -191,8 +198,8 @@ class Mesh(Model):
         the middle of the face.
     loaded_error, unloaded_error : float or None
         Static transmission error under the load of the cells and without it, m.
-    transmission_error : ErrorTable
-        A single number is a constant amplitude, m.
+    transmission_error : ErrorTable or None
+        A single number is a constant amplitude, m; needed where it drives a motion.
     stiffness_cycle : StiffnessCycle or None
         Stiffness over a mesh cycle; of nonlinear motion alone.
     line_cycle : LineCycle or None
@@ -220,7 +227,7 @@ class Mesh(Model):
     gear_position: Vector | None = None
     loaded_error: Thickness | None = None
     unloaded_error: Thickness | None = None
-    transmission_error: Annotated[ErrorTable, BeforeValidator(constant_or_table)]
+    transmission_error: Error = None
     transmission_error_status: Status = "assumed"
     stiffness_cycle: StiffnessCycle | None = None
     line_cycle: LineCycle | None = None
@@ -281,6 +288,8 @@ class TrainAsk(Model):
 
     Attributes
     ----------
+    modes : int or None
+        Elastic modes that system-modes lists; by default all up to `max_frequency`.
     max_frequency : float
         Hz.
     tolerance : float
@@ -289,6 +298,7 @@ class TrainAsk(Model):
         Of the mesh force.
     """
 
+    modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] | None = None
     max_frequency: Frequency = 4000.0
     tolerance: Tolerance = 0.02
     decibels: Annotated[float, Field(gt=0, le=60)] = 3.0

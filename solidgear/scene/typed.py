@@ -24,6 +24,11 @@ _Read = TypeVar("_Read")
 
 #: words of the field for what a scene calls otherwise
 OTHER_WORDS = {
+    "fx": "x",
+    "fy": "y",
+    "fz": "z",
+    "mx": "thx",
+    "mz": "thz",
     "rho": "density",
     "young": "E",
     "youngs_modulus": "E",

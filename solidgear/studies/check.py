@@ -16,7 +16,7 @@ from solidgear.judge.solution import Solution
 from solidgear.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
-from solidgear.scene.closed_form import mass_properties
+from solidgear.scene.closed_form import mass_properties, whole_mass
 from solidgear.scene.outline import Outline
 from solidgear.scene.shaft import named, resolved, without_axis
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
@@ -301,8 +301,8 @@ def _held_at(scene: Scene) -> str:
 
 
 def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
-    """Length, mass and inertia."""
-    exact = mass_properties(scene.outline)
+    """Length, mass and inertia, with all rigid masses."""
+    shaft, exact = mass_properties(scene.outline), whole_mass(scene)
     yield Notice(
         "fact",
         (),
@@ -310,6 +310,17 @@ def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
         f"{1e3 * exact.centre:.4g} mm, polar inertia {exact.iyy:.4g}, transverse {exact.ixx:.4g} "
         f"kg m^2 (closed form{' of the round part' * (scene.body is not None)})",
     )
+    if scene.masses:
+        each = listed(
+            f"{m.name!r} {m.mass:.4g} kg"
+            + (
+                f" on y = {1e3 * m.lo:.6g} to {1e3 * m.hi:.6g} mm"
+                if m.on is None
+                else f" on {m.on!r}"
+            )
+            for m in scene.masses
+        )
+        yield Notice("fact", (), f"of this mass the shaft has {shaft.mass:.4g} kg, {each}")
 
 
 def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:

@@ -146,9 +146,9 @@ LIMITS = {
     "E Pa": (1e8, 1.5e12),
     "density kg/m3": (500.0, 25000.0),
     "wave speed m/s": (300.0, 20000.0),
-    "first bending, free, Hz": (5.0, 2e5),
-    "bearing radial / (E d)": (1e-3, 10.0),
-    "bearing axial / (E d)": (1e-4, 5.0),
+    "first bending, free, Hz": (1.0, 2e5),
+    "bearing radial / (E d)": (2e-5, 10.0),
+    "bearing axial / (E d)": (5e-6, 5.0),
     "tilt arm over d": (0.03, 2.0),
 }
 

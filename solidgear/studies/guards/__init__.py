@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.studies.guards import data, edges, elements, lumped, models
+from solidgear.studies.guards import bearings, data, edges, elements, lumped, models
 from solidgear.studies.guards.notice import LEVELS, Notice, Notices
 from solidgear.studies.guards.probe import Probe
 
@@ -26,6 +26,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         data.one_way,
         data.axial_support,
         data.split_pair,
+        bearings.bearing_fit,
         models.beam_against_solid,
         models.slenderness,
         models.shoulder,

@@ -78,7 +78,8 @@ def sure(bar: float | None) -> str:
 def slip_in_units(
     found: Iterable[tuple[str, float, str]], sound: Mapping[str, tuple[float, float]], legend: str
 ) -> str:
-    """Sentence on numbers whose order of magnitude no part has; nothing if there are none.
+    """Sentence on numbers whose order of magnitude no part has, the worst of each kind; nothing if there
+    are none.
 
     Parameters
     ----------
@@ -89,12 +90,18 @@ def slip_in_units(
     legend : str
         Symbols in the names, in brackets behind them.
     """
-    out = []
+    odd: dict[str, list[tuple[float, str]]] = {}
     for name, value, where in found:
         least, most = sound[name]
         if not least <= value <= most:
-            what = f"{name} of {where}" if where else name
-            out.append(f"{what} is {value:.3g}, outside {least:g} to {most:g}")
+            odd.setdefault(name, []).append((value, where))
+    out = []
+    for name, ones in odd.items():
+        least, most = sound[name]
+        value, where = min(ones) if min(ones)[0] < least else max(ones)
+        what = f"{name} of {where}" if where else name
+        others = f", and so are {len(ones) - 1} others" if len(ones) > 1 else ""
+        out.append(f"{what} is {value:.3g}, outside {least:g} to {most:g}{others}")
     if not out:
         return ""
     told = f" ({legend})" if legend else ""

@@ -18,6 +18,7 @@ from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.planetary import PlanetMesh
+from solidgear.scene.tooth_fit import fit_line, fit_of
 from solidgear.scene.train import Train
 from solidgear.studies.check import check_scene
 from solidgear.studies.guards import Probe
@@ -118,6 +119,8 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
             f"{levers[1]:.2f} mm, mesh {met.stiffness:.4g} N/m along "
             f"({', '.join(f'{v:.3f}' for v in met.pinion.normal)}) on the {pair.shafts[0]}"
         )
+        if (fit := fit_of(pair)) is not None:
+            yield of + fit_line(fit)
         teeth = train.per_turn(pair)
         yield (
             f"{of}{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / teeth:.0f} "
@@ -156,6 +159,8 @@ def _losses(train: Train) -> Iterator[str]:
 
 def _error(pair: Pair | PlanetMesh, limit: float) -> Iterator[str]:
     table = pair.mesh.transmission_error
+    if table is None:
+        return
     if table.frequency and table.frequency[-1] < limit:
         yield (
             f"the transmission error is given up to {table.frequency[-1]:g} Hz and is taken as "

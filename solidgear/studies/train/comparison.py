@@ -200,7 +200,7 @@ def _stage(stage: Stage) -> dict[str, Any]:
 def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
     """A mesh as plain data, the pinion first where there are two of a thing."""
     met = workshop.contacts[pair.name]
-    vectors = met.pinion, met.gear
+    vectors, error = (met.pinion, met.gear), pair.mesh.transmission_error
     return {
         "name": pair.name,
         "between": [f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports)],
@@ -208,7 +208,7 @@ def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
         "teeth": [own.teeth for own in pair.members.values()],
         "shaft_angle": pair.mesh.shaft_angle,
         "stiffness": met.stiffness,
-        "transmission_error": pair.mesh.transmission_error.model_dump(mode="json"),
+        "transmission_error": None if error is None else error.model_dump(mode="json"),
         "line_of_action": [[float(v) for v in one.normal] for one in vectors],
         "point": [[float(v) for v in one.point] for one in vectors],
         "lever": [one.lever for one in vectors],

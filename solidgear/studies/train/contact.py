@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.frames import rotation
-from solidgear.scene.gears import FLANKS, Pair
+from solidgear.scene.gears import Pair
 from solidgear.studies.train.own_numbers import compared
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
@@ -44,6 +44,8 @@ LOAD_ASIDE = np.radians(20.0)
 GEOMETRY = ("hand", "loaded_side", "pitch_radius", "pitch_angle", "spiral_angle", "face_width")
 #: how parallel shafts call them
 CYLINDRICAL = {"spiral_angle": "helix_angle", "pitch_radius": "module"}
+#: flanks of bevel gears, which say which side they face together with a hand
+CURVED = ("concave", "convex")
 #: pressure angle to judge a given line with, where the file has none
 USUAL_PRESSURE_ANGLE = np.radians(20.0)
 
@@ -172,14 +174,18 @@ def _in_scene(pair: Pair, side: str, vector: MeshVector) -> MeshVector:
 
 def _needs(pair: Pair, *keys: str, what: str) -> None:
     missing = [key for key in keys if getattr(pair.pinion, key) is None]
-    straight = not pair.pinion.spiral_angle
-    if straight and pair.pinion.loaded_side in FLANKS:
-        missing = [key for key in missing if key != "hand"]  # straight teeth have none
+    straight, parallel = not pair.pinion.spiral_angle, not pair.mesh.shaft_angle
     words = dict.fromkeys(GEOMETRY, "")
-    if straight and {"hand", "loaded_side"} & set(missing):
+    if parallel:
+        words["loaded_side"] = ': write "left" or "right", the flank that carries the torque'
+    if parallel and straight and pair.pinion.loaded_side not in CURVED:
+        missing = [key for key in missing if key != "hand"]  # straight teeth have none
+    elif straight and {"hand", "loaded_side"} & set(missing):
         both = ": of straight teeth both together say which flank is loaded"
         words |= {"hand": both, "loaded_side": both}
-    called = {} if pair.mesh.shaft_angle else CYLINDRICAL
+    if pair.pinion.pitch_angle == 0:
+        missing = [key for key in missing if key != "face_width"]  # the radius is one all along
+    called = CYLINDRICAL if parallel else {}
     if missing:
         raise SceneError.of(
             SceneError(
@@ -202,7 +208,10 @@ def _mean_radius(pair: Pair) -> float:
     what = "a mesh point from gear geometry"
     _needs(pair, "pitch_radius", "pitch_angle", "face_width", what=what)
     p = pair.pinion
-    assert p.pitch_radius is not None and p.pitch_angle is not None and p.face_width is not None
+    assert p.pitch_radius is not None and p.pitch_angle is not None
+    if p.pitch_angle == 0:
+        return p.pitch_radius
+    assert p.face_width is not None
     try:
         return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
     except SolidgearError as error:

@@ -22,6 +22,7 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
+from solidgear.scene.planetary import error_of
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import driven, mode_names
@@ -242,6 +243,8 @@ def judge_train(
     for mix in mixes:
         for rung in mix:
             checked_rung(rung)
+    for driver in workshop.train.drivers:
+        error_of(driver)  # refused before anything is solved
     progress(f"judge: {workshop.train.every} shafts {JUDGE}")
     judge = _Judge(workshop, highest)
     found: dict[tuple[str, ...], Departure] = {}

@@ -177,6 +177,12 @@ def mesh_forces(
 
 def _power(train: Train, turns: Mapping[str, float], point: OperatingPoint) -> float:
     """All of the power in one turn of the engine's shaft, by the lever arms, N m."""
+    if point.of not in train.carried:
+        raise SceneError(
+            f"no torque passes the {point.of}: it comes in at [engine] and goes out at [load]; write "
+            "both with inertia and spring",
+            path=(),
+        )
     return abs(point.torque * turns[point.of]) / train.carried[point.of]
 
 

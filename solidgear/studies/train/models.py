@@ -21,6 +21,7 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
+from solidgear.studies.train.gear_bodies import gear_cautions
 from solidgear.studies.train.housing import cautions_of, losses_of, mounts_of, part_of, standing_in
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
@@ -240,10 +241,11 @@ class Workshop:
 
     @property
     def odd(self) -> tuple[str, ...]:
-        """Cautions on meshes, shafts that take the same space, and the housing, in words."""
+        """Cautions on meshes, gears, shafts that take the same space, and the housing, in words."""
         several = len(self.contacts) > 1
         met = [(f"{name}: " * several, own.cautions) for name, own in self.contacts.items()]
         told = [head + text for head, cautions in met for text in cautions]
+        told += gear_cautions(self.train, self.contacts)
         told += map(str, overlaps(self.train, self.scenes, self.places))
         return (*told, *cautions_of(self.train, self.places))
 

@@ -198,13 +198,17 @@ def wrench_lines(met: Contact) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = None) -> TrainModes:
+def train_modes(
+    workshop: Workshop, *models: str, max_frequency: float | None = None, at_most: int | None = None
+) -> TrainModes:
     """Modes of a train with its shafts by models.
 
     Parameters
     ----------
     max_frequency : float, optional
         Hz; that of the file by default.
+    at_most : int, optional
+        Elastic modes; up to any frequency where neither file nor caller names one.
 
     Raises
     ------
@@ -223,7 +227,12 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
     limit = max_frequency or train.ask.max_frequency
     system = workshop.system(*models)
     omega, _ = system.elastic
-    found = system.modes(max(1, int((omega <= 2 * np.pi * limit).sum())))
+    count = int((omega <= 2 * np.pi * limit).sum())
+    if at_most is not None:
+        open_ended = max_frequency is None and "max_frequency" not in train.ask.model_fields_set
+        count = min(at_most, len(omega) if open_ended else count)
+        limit = float(omega[count - 1]) / (2 * np.pi) if open_ended else limit
+    found = system.modes(max(1, count))
     refuse_unresolved(workshop, system, limit)
     names, moved = mode_names(workshop, system, found), driven(system, found)
     found = replace(found, energy=mounts_together(found.energy))

@@ -24,7 +24,7 @@ from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.scene.gears import Pair
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.planetary import named_pair
+from solidgear.scene.planetary import error_of, named_pair
 from solidgear.studies.train.apart import largest, searched
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
 from solidgear.studies.train.layout import mesh_forces
@@ -94,12 +94,12 @@ def teeth_of(
             raise SolidgearError(
                 f"a mean force of {forces[name]:g} N holds no teeth{of}; give more than 0"
             )
-    if pair.mesh.transmission_error.frequency:
+    error, table = error_of(pair), pair.mesh.stiffness_cycle
+    if error.frequency:
         raise SolidgearError(
             "the transmission error is a table over frequency, which has no cycle in time; give it "
             'by orders in the file, or --error "10 um"'
         )
-    error, table = pair.mesh.transmission_error, pair.mesh.stiffness_cycle
     cycle: tuple[tuple[float, float], ...] = ()
     if table is not None:
         mean, orders = orders_of(np.array(table.angle), np.array(table.stiffness)[:, None])

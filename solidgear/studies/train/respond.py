@@ -9,12 +9,15 @@ times what their seats move: all six components, the whole row and not the diago
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cached_property
 
 import numpy as np
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError, show
 from solidgear.machine.threads import pinned
+from solidgear.scene.planetary import error_of
+from solidgear.scene.train_tables import ErrorTable
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
 from solidgear.studies.train.housing import columns_of, felt, seat_motion
 from solidgear.studies.train.local import local_lines
@@ -92,8 +95,12 @@ class Drive:
         self.first = next(iter(self.phases))
         self.row, self.stiffness = self.meshes[self.first]
         self.forces = dict(forces or {})
-        self.error = self.pair.mesh.transmission_error
         self.load = self._load()
+
+    @cached_property
+    def error(self) -> ErrorTable:
+        """Transmission error that drives the train; refused where the file has none."""
+        return error_of(self.pair)
 
     def _load(self, order: int = 1) -> np.ndarray:
         """(N,) load of forces, or of an error of 1 m where it drives, each behind by its phase."""

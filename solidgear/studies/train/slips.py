@@ -51,11 +51,11 @@ def slips_of_meshes(workshop: Workshop) -> list[str]:
             met, teeth = workshop.contacts[pair.name], pair.pinion.teeth
             lever, stiffness = abs(met.pinion.lever), met.stiffness
         table = pair.mesh.transmission_error
-        error = max((*table.orders, *table.amplitude), default=0.0)
+        error = max((*table.orders, *table.amplitude), default=0.0) if table else 0.0
         values = stiffness / (stiff * lever), error * teeth / (2 * lever)
         found = [(name, value, "") for name, value in zip(SOUND, values)]
         if not error:
-            found.pop()  # told by itself
+            found.pop()  # zero is told by itself, and without any there is nothing to say
         legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
         if sentence := slip_in_units(found, SOUND, legend):
             out.append(f"{pair.name}: {sentence}" if pair.label else sentence)

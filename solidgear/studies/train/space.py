@@ -1,6 +1,7 @@
 """Shafts of a train that take the same space: a gear that runs into a shaft, or a shaft into another.
 
-Every shaft is its segments as bodies of revolution and its gears up to their tips.  Teeth that mesh
+Every shaft is its segments as bodies of revolution, its gears up to their tips and its bearings of
+catalogue data.  Teeth that mesh
 take each other's space as far as their tips reach.  On parallel axes what lies over the same stretch
 of both is compared, which is exact; of axes at an angle points of the one are looked for in the
 other, on circles that are close beside the radii.
@@ -18,6 +19,7 @@ import numpy as np
 from solidgear.scene import Scene
 from solidgear.scene.gears import Pair
 from solidgear.scene.train import Train
+from solidgear.studies.guards.bearings import width_of
 from solidgear.studies.train.layout import Place
 
 #: m; less is how numbers are typed
@@ -151,7 +153,18 @@ def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> li
         if segment.part == "backcone":  # of the head before it or behind it
             head = blanks[max(k - 1, 0) : k + 2]
             blanks[k] = replace(blanks[k], meshes=frozenset().union(*(b.meshes for b in head)))
-    return [*blanks, *gears]
+    return [*blanks, *gears, *_bearings(scene)]
+
+
+def _bearings(scene: Scene) -> Iterator[Piece]:
+    """Bearings of catalogue data up to their outer diameter."""
+    for bearing in scene.bearings:
+        if (data := bearing.catalogue) is not None:
+            half = width_of(data) / 2
+            sizes = data.outer_diameter / 2, data.bore / 2
+            outer, inner = ((size, size) for size in sizes)
+            name, ends = f'bearing "{bearing.name}"', (bearing.y - half, bearing.y + half)
+            yield Piece(name, ends, outer, inner)
 
 
 def _gear(pair: Pair, side: str, port: str, scene: Scene) -> tuple[Piece, float] | None:

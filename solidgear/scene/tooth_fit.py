@@ -1,0 +1,318 @@
+r"""Teeth of two cylindrical gears at their centre distance: backlash, clearance, contact ratio.
+
+Everything is exact in the transverse plane (ISO 21771:2007, 5.4 and 5.5), for teeth of the basic
+rack of ISO 53 without allowances: tips one module beyond the reference circle, roots a module and
+a quarter within it, both moved out by the profile shift.  A ring counts its teeth below zero, and
+so do its radii and the centre distance.  With the working pressure angle alpha_wt of the centre
+distance a,
+
+    cos alpha_wt = (rb1 + rb2) / a,
+    j = mt cos alpha_t ((z1 + z2) (inv alpha_wt - inv alpha_t) - 2 (x1 + x2) tan alpha) cos beta_b
+
+is the gap between both flanks along the line of action, inv being tan minus angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import acos, atan, copysign, cos, pi, sin, sqrt, tan
+from typing import TYPE_CHECKING
+
+from solidgear.errors import SceneError
+from solidgear.scene.cylindrical import working
+
+if TYPE_CHECKING:
+    from solidgear.scene.gears import Pair
+
+#: modules that a tooth reaches beyond its reference circle and within it (ISO 53)
+ADDENDUM, DEDENDUM = 1.0, 1.25
+#: modules of overlap that two digits of the profile shifts leave open, and that the usual thinning
+#: of both wheels takes up (DIN 3967, cd25): less than the first is not told, more than the other refused
+ROUNDED, THINNED = 5e-3, 0.05
+#: modules of backlash above which no drawing asks for it: ISO/TR 10064-2 recommends 0.04 to 0.13
+LOOSE = 0.25
+#: modules of undercut that are let pass: that of a wheel of 14 teeth without profile shift
+PASSED = 0.185
+
+
+def involute(angle: float) -> float:
+    """Involute function of an angle, rad."""
+    return tan(angle) - angle
+
+
+@dataclass(frozen=True)
+class ToothFit:
+    """Teeth of two cylindrical gears where they meet.
+
+    Attributes
+    ----------
+    teeth : (int, int)
+        Of a ring, which comes second, below zero.
+    module : float
+        Normal, m.
+    helix_angle, pressure_angle : float
+        At the reference cylinder, the latter normal to the tooth, rad.
+    shift : (float, float)
+        Profile shifts, in modules.
+    centre_distance : float
+        m; below zero with a ring.
+    face_width : float
+        That both share, m; zero where it is not known.
+
+    Examples
+    --------
+    The spur gears of Kohara's Gear Technical Reference (2015), table 4.3, have no backlash at
+    56.4999 mm; half a millimetre further out they have.
+
+    >>> from math import radians
+    >>> fit = ToothFit((12, 24), 3e-3, 0.0, radians(20), (0.6, 0.36), 57.0e-3)
+    >>> round(1e6 * fit.backlash), round(fit.contact_ratio, 2)
+    (448, 1.22)
+    """
+
+    teeth: tuple[int, int]
+    module: float
+    helix_angle: float
+    pressure_angle: float
+    shift: tuple[float, float]
+    centre_distance: float
+    face_width: float = 0.0
+
+    @property
+    def transverse(self) -> float:
+        """Transverse pressure angle at the reference cylinder, rad."""
+        return atan(tan(self.pressure_angle) / cos(self.helix_angle))
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Of the reference circles, m."""
+        first, second = (self.module * z / (2 * cos(self.helix_angle)) for z in self.teeth)
+        return first, second
+
+    @property
+    def base_radii(self) -> tuple[float, float]:
+        """Of the base circles, m."""
+        first, second = (radius * cos(self.transverse) for radius in self.radii)
+        return first, second
+
+    @property
+    def tips(self) -> tuple[float, float]:
+        """Radii of the tip circles, m."""
+        first, second = (
+            radius + self.module * (ADDENDUM + x) for radius, x in zip(self.radii, self.shift)
+        )
+        return first, second
+
+    @property
+    def roots(self) -> tuple[float, float]:
+        """Radii of the root circles, m."""
+        first, second = (
+            radius - self.module * (DEDENDUM - x) for radius, x in zip(self.radii, self.shift)
+        )
+        return first, second
+
+    @property
+    def at_work(self) -> float:
+        """Transverse pressure angle at the centre distance, rad."""
+        return acos(sum(self.base_radii) / self.centre_distance)
+
+    @property
+    def backlash(self) -> float:
+        """Gap between both flanks along the line of action, m; below zero where teeth overlap."""
+        grown = involute(self.at_work) - involute(self.transverse)
+        pitches = sum(self.teeth) * grown - 2 * sum(self.shift) * tan(self.pressure_angle)
+        at_base = self.module / cos(self.helix_angle) * cos(self.transverse) * pitches
+        base_helix = atan(tan(self.helix_angle) * cos(self.transverse))
+        return at_base * cos(base_helix)
+
+    @property
+    def tight(self) -> float:
+        """Centre distance without backlash of two wheels with outer teeth, m."""
+        known = self.module, self.helix_angle, self.pressure_angle, self.shift
+        return working(self.teeth, *known).without_backlash
+
+    @property
+    def clearances(self) -> tuple[float, float]:
+        """Between the tip of each wheel and the root of the other, m."""
+        (tip, other_tip), (root, other_root) = self.tips, self.roots
+        a = self.centre_distance
+        return a - tip - other_root, a - other_tip - root
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio, as far as involutes go; below zero where tips do not meet."""
+        reach = self.centre_distance * sin(self.at_work)
+        lengths = [
+            copysign(sqrt(max(0.0, tip**2 - base**2)), tip)
+            for tip, base in zip(self.tips, self.base_radii)
+        ]
+        if reach > 0:
+            lengths = [min(length, reach) for length in lengths]
+        pitch = pi * self.module / cos(self.helix_angle) * cos(self.transverse)
+        return (sum(lengths) - reach) / pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """Of the face width, by the helix."""
+        return self.face_width * sin(abs(self.helix_angle)) / (pi * self.module)
+
+    def undercut(self, k: int) -> float:
+        """Profile shift that a wheel lacks to have no undercut; below zero where it has none."""
+        if self.teeth[k] < 0:
+            return -1.0
+        straight = self.teeth[k] * sin(self.transverse) ** 2 / (2 * cos(self.helix_angle))
+        return ADDENDUM - self.shift[k] - straight
+
+    def tip_thickness(self, k: int) -> float:
+        """Transverse thickness of a tooth at its tip, m; below zero where flanks meet before."""
+        tip, base, teeth = self.tips[k], self.base_radii[k], self.teeth[k]
+        if abs(tip) <= abs(base):
+            return self.module
+        half = (pi / 2 + 2 * self.shift[k] * tan(self.pressure_angle)) / teeth
+        return 2 * tip * (half + involute(self.transverse) - involute(acos(base / tip)))
+
+
+def fit_of(pair: Pair) -> ToothFit | None:
+    """Teeth of a pair of cylindrical gears; None where the file does not tell them.
+
+    Raises
+    ------
+    SceneError
+        As :func:`solidgear.scene.cylindrical.working`.
+    """
+    pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
+    module = pinion.module or gear.module
+    if mesh.shaft_angle or module is None or mesh.pressure_angle is None:
+        return None
+    helix = pinion.helix_angle or gear.helix_angle or 0.0
+    teeth, shift = (pinion.teeth, gear.teeth), (pinion.profile_shift, gear.profile_shift)
+    known = (teeth, module, helix, mesh.pressure_angle, shift)
+    wheels = working(*known, mesh.centre_distance)
+    faces = [wheel.face_width for wheel in (pinion, gear) if wheel.face_width]
+    return ToothFit(*known, sum(wheels.radii), min(faces, default=0.0))
+
+
+def fit_problems(pair: Pair) -> Iterator[SceneError]:
+    """Problems of teeth that cannot be where the centre distance puts them, or have no root."""
+    try:
+        fit = fit_of(pair)
+    except SceneError as error:
+        yield from error.problems
+        return
+    if fit is None:
+        return
+    yield from _distance(pair, fit)
+    for k, (side, wheel) in enumerate(pair.members.items()):
+        y, root = wheel.scene.port.y, fit.roots[k]
+        bore = min(s.radius_at(y)[0] for s in wheel.scene.segments if s.y0 <= y <= s.y1)
+        if root <= bore:
+            yield SceneError(
+                f"puts the roots of its teeth at {_mm(root)} from the axis, within the bore of its "
+                f"shaft, {_mm(bore)}: nothing holds the teeth; correct the teeth, the module, the "
+                "profile shift or the bore",
+                path=(side, "teeth"),
+            )
+
+
+def _distance(pair: Pair, fit: ToothFit) -> Iterator[SceneError]:
+    """Problems of the centre distance."""
+    if pair.mesh.centre_distance is None:
+        return
+    path, given = ("mesh", "centre_distance"), f"{fit.teeth[0]} and {fit.teeth[1]} teeth of "
+    given += f"{_mm(fit.module)} module with profile shifts that sum to {sum(fit.shift):.4g}"
+    if fit.backlash < -THINNED * fit.module:
+        yield SceneError(
+            f"is too short: {given} overlap there by {_um(-fit.backlash)} along the line of "
+            f"action; they have no backlash at {_mm(fit.tight)}; correct the distance, the teeth, "
+            "the module, the helix angle or the profile shifts",
+            path=path,
+        )
+    elif fit.contact_ratio <= 0:
+        yield SceneError(
+            f"is too long: {given} do not reach each other, for their tips lie at "
+            f"{_mm(fit.tips[0])} and {_mm(fit.tips[1])}; correct the distance, the teeth, the "
+            "module, the helix angle or the profile shifts",
+            path=path,
+        )
+
+
+def fit_cautions(fit: ToothFit, sides: tuple[str, str]) -> Iterator[str]:
+    """Sentences on two wheels whose tips reach too far or not far enough, by what carries them."""
+    for clearance, side, other in zip(fit.clearances, sides, sides[::-1]):
+        if clearance < 0:
+            yield (
+                f"tips of the {side} reach {_um(-clearance)} into the roots of the {other}, "
+                "with teeth of ISO 53: profile shifts and centre distance ask for shorter tips"
+            )
+    if fit.contact_ratio + fit.overlap_ratio < 1:
+        helical = f" and {fit.overlap_ratio:.2f} by their helix" * bool(fit.helix_angle)
+        yield (
+            f"the contact ratio is {fit.contact_ratio:.2f}{helical}, below 1: no teeth touch for a "
+            "part of each pitch; correct centre distance, profile shifts, module or teeth"
+        )
+
+
+def wheel_cautions(fit: ToothFit, k: int, side: str) -> Iterator[str]:
+    """Sentences on the teeth of the first or second wheel, by what carries it."""
+    if fit.undercut(k) > PASSED:
+        yield (
+            f"the {fit.teeth[k]} teeth of the {side} are undercut by their rack: without "
+            f"undercut their profile shift is at least {fit.shift[k] + fit.undercut(k):.2f}"
+        )
+    if fit.tip_thickness(k) < 0:
+        yield (
+            f"teeth of the {side} end in a point before their tip circle: a profile shift of "
+            f"{fit.shift[k]:g} is too much for {fit.teeth[k]} teeth"
+        )
+
+
+def backlash_cautions(fit: ToothFit, given: float | None) -> Iterator[str]:
+    """Sentences on a backlash that is large, or is not that which a file gives, m."""
+    gap, loose = fit.backlash, LOOSE * fit.module
+    where = f"teeth without allowances leave {_um(gap)} along the line of action at"
+    where += f" {_mm(abs(fit.centre_distance))}"
+    if gap < -ROUNDED * fit.module:
+        yield (
+            f"teeth without allowances overlap by {_um(-gap)} along the line of action at "
+            f"{_mm(fit.centre_distance)}: they turn only if allowances thin them by more; they have "
+            f"no backlash at {_mm(fit.tight)}"
+        )
+    if gap > loose:
+        yield (
+            f"the backlash is large: {where}, which is {gap / fit.module:.2g} modules; check centre "
+            "distance, profile shifts, module and teeth"
+        )
+    if given is None:
+        return
+    if given < gap - ROUNDED * fit.module:
+        yield (
+            f"backlash = {_um(given)} is less than the numbers of the teeth leave: {where}, and "
+            "allowances only add to it; correct one of them"
+        )
+    elif given > max(gap, 0.0) + loose:
+        yield (
+            f"backlash = {_um(given)} is far more than the numbers of the teeth leave: {where}; "
+            "teeth would have to be thinner by the rest; correct one of them"
+        )
+
+
+def fit_line(fit: ToothFit) -> str:
+    """The backlash and the contact ratio in a sentence."""
+    ratio = f"{fit.contact_ratio:.3f}"
+    if fit.overlap_ratio:
+        ratio += f" and {fit.overlap_ratio:.3f} by their helix"
+    return (
+        f"axes {_mm(abs(fit.centre_distance))} apart: backlash of teeth without allowances "
+        f"{_um(fit.backlash)} along the line of action, contact ratio {ratio}"
+    )
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.6g} mm"
+
+
+def _um(length: float) -> str:
+    if length >= 1e-3:
+        return f"{1e3 * length:.4g} mm"
+    return f"{round(1e6 * length, 1) + 0.0:.4g} um"
