@@ -13,7 +13,9 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from solidgear.bounds.safety import REFINEMENT
-from solidgear.judge.bars import left_over, step_bars
+from solidgear.elements import ELEMENTS
+from solidgear.judge.bars import left_over, same_size, shrinkage, sizes_of, step_bars
+from solidgear.judge.refinement import ONE_MESH
 from solidgear.judge.sequence_bars import RIGID_EDGE, sharpest
 from solidgear.judge.solving import Statics, numbers
 from solidgear.ladder import build
@@ -61,7 +63,8 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
         return {}
     shapes = sum(mode.multiplicity for mode in found.modes if mode.frequency_hz > 0)
     coarse = modes(before, scene, shapes + MORE)
-    nested = scene.body is not None and scene.body.kind == "block" and not scene.bearings
+    block = scene.body is not None and scene.body.kind == "block" and not scene.bearings
+    nested = block and ELEMENTS[body.mesh["element"]].order > 1
     factor = LEFT if nested else REFINEMENT.steps[0] * _left_over(scene, before, body)
     unseen = body.mesh["element"].startswith("hex") and not _fewer_around(options)
     bars = {}
@@ -91,7 +94,19 @@ def static_bars(
     return {name: bar.width for name, bar in bars.items()}
 
 
+def no_bar(scene: Scene, body: Body, options: Options) -> str:
+    """Reason for no bar of a body from mesh files."""
+    before = _coarser(scene, body, options)
+    return ONE_MESH if before is None else same_size(sizes_of(before.mesh), sizes_of(body.mesh))
+
+
 def _before(scene: Scene, body: Body, options: Options) -> Body | None:
+    """The body on a mesh whose cells are larger in every direction; None where there is none."""
+    before = _coarser(scene, body, options)
+    return before if before is not None and _shrunk(before, body) > 1 else None
+
+
+def _coarser(scene: Scene, body: Body, options: Options) -> Body | None:
     """The body on the next coarser mesh; None where there is none, or none that can be made."""
     if scene.body is not None and scene.body.one_mesh:
         coarser = {"coarser": options.get("coarser", 0) + 1}
@@ -101,29 +116,30 @@ def _before(scene: Scene, body: Body, options: Options) -> Body | None:
         shrink = HALF if without_axis(scene) else SHRINK[body.mesh["element"][:3]]
         coarser = {"refinement": shrink * options.get("refinement", 1.0)}
     try:
-        before = build(scene, body.fidelity, **{**options, **coarser})
+        return build(scene, body.fidelity, **{**options, **coarser})
     except MeshError:  # too coarse to be made
         return None
-    return before if _size(before) > _size(body) else None
 
 
-def _size(body: Body) -> float:
-    return body.mesh["representative_size"]
+def _shrunk(before: Body, body: Body) -> float:
+    return shrinkage(sizes_of(before.mesh), sizes_of(body.mesh))
 
 
 def _left_over(scene: Scene, before: Body, body: Body) -> float:
     """Share of a step between two meshes that it leaves, by the sharpest edge: without an axis concave
     ones, the ends of rigid patches, and of those in the mean, where pressure jumps.
     """
+    shrunk, order = _shrunk(before, body), ELEMENTS[body.mesh["element"]].order
     if not without_axis(scene):
-        return left_over(_size(before), _size(body), sharpest(scene))
+        return left_over(shrunk, sharpest(scene))
     patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
     exponent = min(
         SHOULDER if is_notched(body.geometry.mesh) else CONVEX,  # type: ignore[union-attr]
         RIGID_EDGE if any(s.attachment == "rigid" for s in patches) else CONVEX,
         1.0 if patches else CONVEX,
+        order,
     )
-    return left_over(_size(before), _size(body), exponent)
+    return left_over(shrunk, exponent)
 
 
 def _fewer_around(options: Options) -> bool:

@@ -27,10 +27,10 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.answer import climbed, usable
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
-from solidgear.judge.coarser_mesh import coarser_bars, static_bars
+from solidgear.judge.coarser_mesh import coarser_bars, no_bar, static_bars
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question, mesh_words
-from solidgear.judge.refinement import ONE_MESH, Progress
+from solidgear.judge.refinement import FINER_FILE, NO_FINER, Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
 from solidgear.ladder import build
@@ -236,11 +236,9 @@ def _settled_body(
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
-        finer = (
-            "no finer mesh is calibrated" if block else "list a finer mesh beside those of the file"
-        )
-        why = finer if bars else ONE_MESH
-        why *= done and not reached
+        why = ""
+        if done and not reached:
+            why = NO_FINER if block else FINER_FILE if bars else no_bar(scene, body, options)
         spent = time.perf_counter() - start
         steps.append(
             Step(
