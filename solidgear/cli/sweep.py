@@ -117,7 +117,7 @@ def _sweep_shaft(
     loaded = load(scene)
     # before a file of rows is begun
     settled = None
-    if model.automatic():
+    if model.automatic(loaded):
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(
                 loaded, vary, model.tol, sample=rows.sample, seed=rows.seed, progress=steps

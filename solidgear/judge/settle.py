@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -35,6 +35,7 @@ from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
+from solidgear.machine.memory import NoRoom
 from solidgear.machine.threads import pinned
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
 from solidgear.scene.shaft import without_axis
@@ -209,7 +210,7 @@ def bars_of_modes(
 #: the only model that holds a body without an axis
 MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
-NESTED = (1.0, 2.0, 4.0)
+NESTED = (0.5, 1.0, 2.0, 4.0)
 
 
 def _settled_body(
@@ -225,14 +226,17 @@ def _settled_body(
     meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
     for mesh in meshes:
         start = time.perf_counter()
-        options = {**LADDER[MODEL].given(scene, {}), **mesh}
-        progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
-        body = build(scene, MODEL, **options)
-        bars = static_bars(scene, body, points, options) if ask != "modes" else {}
-        if ask != "stiffness":
-            found = modes(body, scene, scene.ask.modes)
-            told = coarser_bars(scene, body, found, options)
-            bars |= {Quantity(name): bar for name, bar in told.items()}
+        level = {**LADDER[MODEL].given(scene, {}), **mesh}
+        progress(f"{LADDER[MODEL].title}: {mesh_words(level)}")
+        try:
+            body, bars = _judged_body(scene, ask, points, level)
+        except (NoRoom, MemoryError) as error:
+            if not steps:
+                raise
+            why = f"the next mesh could not be solved: {error or 'not enough memory'}"
+            steps[-1] = replace(steps[-1], why=why, chosen=True)
+            break
+        options = level
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
@@ -259,6 +263,19 @@ def _settled_body(
     return Settled(
         scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
     )
+
+
+def _judged_body(
+    scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
+) -> tuple[Body, dict[Quantity, float]]:
+    """The body on one mesh, and the bars of what is asked."""
+    body = build(scene, MODEL, **options)
+    bars = static_bars(scene, body, points, options) if ask != "modes" else {}
+    if ask != "stiffness":
+        found = modes(body, scene, scene.ask.modes)
+        told = coarser_bars(scene, body, found, options)
+        bars |= {Quantity(name): bar for name, bar in told.items()}
+    return body, bars
 
 
 class Whole(Climb):

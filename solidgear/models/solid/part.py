@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.body import Body
+from solidgear.elements import SOLVED_AS
 from solidgear.errors import SolidgearError
 from solidgear.kernel.room import assemblable
 from solidgear.machine.isolated import IsolatedError, isolated
@@ -24,8 +25,6 @@ from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
 #: seconds after which a mesh is given up
 MESH_SECONDS = 900.0
-#: elements of first order that a file may have, by those that they are solved with
-SOLVED_AS = {"tet4": "tet10", "hex8": "hex20"}
 #: planes across a part reach beyond its largest radius by this factor
 BEYOND = 1.1
 
