@@ -102,7 +102,7 @@ def _falls(scene: Scene, before: Body, options: Options, shapes: int) -> dict[st
 
 
 def _left(step: float, fall: float | None) -> float:
-    """What a step between nested meshes leaves, by the fall before it, which is not always known."""
+    """Share of a frequency that a step between nested meshes leaves, by the fall before it if known."""
     if fall is None or fall <= step:
         return MOST_LEFT * step
     return float(np.clip(step / (fall - step), LEAST_LEFT, MOST_LEFT)) * step
