@@ -7,9 +7,9 @@ import pytest
 from universal_files import nodes, response, units, written
 
 from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene.universal_units import UNITS
 from solidgear.studies.measured.data import load_measured, of_responses
 from solidgear.studies.measured.modal_fit import fit_modes
-from solidgear.scene.universal_units import UNITS
 from solidgear.studies.measured.universal import Responses, read_universal
 
 #: frequencies, Hz, and damping ratios; two are 0.5 % apart, one stands at the end of the axis
