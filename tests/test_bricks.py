@@ -103,8 +103,9 @@ def test_two_meshes_with_cells_of_one_length_tell_no_bar(tmp_path):
     scene = sg.load(path)
     settled = settle(scene, 0.05, "modes")
     assert not settled.bars and not settled.reached
-    told = command("modes", path).stdout.replace("\n", " ")
-    assert "the longest sides of their cells are as long, 48 mm and 48 mm" in told
+    for model in ("auto", "solid"):
+        told = command("modes", path, "-f", model).stdout.replace("\n", " ")
+        assert "the longest sides of their cells are as long, 48 mm and 48 mm" in told
 
 
 def test_a_bar_from_two_meshes_holds_the_beam(tmp_path):

@@ -126,6 +126,11 @@ class Loop(ABC):
         return self.model.title
 
     @property
+    def of_files(self) -> bool:
+        """True where the meshes are those of files."""
+        return self.scene.body is not None and self.scene.body.one_mesh
+
+    @property
     def body(self) -> Body | None:
         """The last body that was solved."""
         return None if self.last is None else self.last.body
@@ -195,8 +200,7 @@ class Loop(ABC):
     def _stopped(self) -> str:
         """Reason for no further mesh."""
         if not self.model.bounded:
-            files = self.scene.body is not None and self.scene.body.one_mesh
-            if not files or not self.sizes:
+            if not self.of_files or not self.sizes:
                 return NO_FINER
             if len(self.plan.levels) == 1:
                 return ONE_MESH

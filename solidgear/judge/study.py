@@ -134,6 +134,8 @@ class Tied(Loop):
             if why := self.steps[-1].why * (self.most is None and not self.plan.fixed):
                 self.failed["narrower bars"] = why
             self._finish(self.solution)
+        elif self.of_files and len(self.sizes) > 1 and not self.error_bars:
+            self.failed["error bar"] = self._stopped()
         return self.solution
 
     def _solve(self, level: Mapping[str, Any]) -> Solved:
