@@ -42,3 +42,5 @@ ELEMENTS = {
     "tet10": Element(2, 7, "ElementTetP2", "tetra10", "vtkQuadraticTetra"),
     "tet4": Element(1, 2, "ElementTetP1", "tetra", "vtkTetra"),
 }
+#: elements of first order that a mesh file may have, by those that they are solved with
+SOLVED_AS = {"tet4": "tet10", "hex8": "hex20"}

@@ -93,7 +93,7 @@ def test_cells_around_and_the_solver_are_added():
 
 
 # --------------------------------------------------------------------------- lists of meshes
-SIZES = (1.96, 1.4, 1.0)
+SIZES = ((1.96,), (1.4,), (1.0,))
 SECTOR = LADDER["sector"]
 PLAN = SECTOR.meshes({})
 
@@ -120,7 +120,7 @@ def test_solids_on_a_list_have_a_bar_from_two_meshes_on():
     """
     order = 2 * 0.5445
     for sizes, factor in ((SIZES[1:], REFINEMENT.steps[0]), (SIZES, REFINEMENT.steps[1])):
-        errors = [1e-3 * h**order for h in sizes]
+        errors = [1e-3 * h**order for (h,) in sizes]
         values = [{q: v * (1 - e) for q, v in FINEST.items()} for e in errors]
         bars = sequence_bars(stepped(), PLAN, SECTOR, values, {}, sizes)
         # the change before the last one is larger, and counts
@@ -132,7 +132,13 @@ def test_solids_on_a_list_have_a_bar_from_two_meshes_on():
 
 def test_one_mesh_and_meshes_that_are_not_ever_finer_say_nothing():
     values = levels(1e-3, 1e-4)
-    for kept, sizes in ((values[-1:], (1.0,)), (values, (1.4, 1.0, 1.0)), (values[1:], (1.0, 1.4))):
+    for kept, sizes in (
+        (values[-1:], SIZES[-1:]),
+        (values, (*SIZES[1:], SIZES[-1])),
+        (values[1:], SIZES[:0:-1]),
+        # nor cells that are as long as before, however thin
+        (values[1:], ((50.0, 20.0, 4.0), (50.0, 10.0, 2.0))),
+    ):
         assert sequence_bars(stepped(), PLAN, SECTOR, kept, {}, sizes) == {}
     # nor layered hexahedra beside a fillet, to which no layers lead
     filleted = rod(blends=[Fillet(name="f", y=0.0, edge="rim", radius=0.004)])

@@ -139,10 +139,12 @@ seat = {{ diameter = "60 mm", from = "{seat}", to = "90 mm" }}
 def test_what_is_missing_from_a_seat_is_said(tmp_path: Path, curved):
     """Elements over a fifth of a turn are taken away; a whole seat says nothing."""
     points, cells = 1e3 * curved.p.T, curved.t.T
-    assert not scene_of(tmp_path, points, cells).body.doubts
+    assert not scene_of(tmp_path, points, cells).body.remarks
     x, y, z = points[cells].mean(axis=1).T
     kept = (z < 22) | (abs(x) > 16) | (y < 20) | (y > 100)
-    (told, *_) = (s for s in scene_of(tmp_path, points, cells[kept]).body.doubts if "2 pi r b" in s)
+    (told, *_) = (
+        s for s in scene_of(tmp_path, points, cells[kept]).body.remarks if "2 pi r b" in s
+    )
     assert "the seat of 'gear' has" in told
     found = float(told.split("has ")[1].split(" %")[0])
     assert 75 < found < 90

@@ -24,7 +24,7 @@ from solidgear.cli.shared import (
     options,
 )
 from solidgear.errors import SolidgearError, show
-from solidgear.judge.coarser_mesh import coarser_bars
+from solidgear.judge.coarser_mesh import coarser_bars, no_bar
 from solidgear.judge.completeness import completeness, cut_short
 from solidgear.judge.settle import bars_of_modes
 from solidgear.report.terminal import modes_table
@@ -144,11 +144,11 @@ def modes(
         say(completeness(e, body.fidelity), soft_wrap=False)
     lines = bar_lines(settled)
     if settled is None:
-        lines.append(
-            "Bars: from a second, coarser mesh."
-            if bars
-            else "No bars: the model was given, and its mesh with it; -f auto has them."
-        )
+        why = "the model was given, and its mesh with it; -f auto has them"
+        files = loaded.body is not None and loaded.body.one_mesh
+        if not bars and second and files and body.fidelity in SECOND:
+            why = no_bar(loaded, body, options(model.pairs))
+        lines.append("Bars: from a second, coarser mesh." if bars else f"No bars: {why}.")
     if bars:
         lines += unjudged(without_bar(found, bars), body.fidelity, second=settled is None)
     lines += beyond(bars, settled)

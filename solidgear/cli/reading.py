@@ -12,6 +12,6 @@ from solidgear.studies.loading import load as read
 def load(path: Path) -> Scene:
     """A scene, and to the terminal what is doubtful about the file of its part."""
     scene = read(path)
-    for sentence in scene.body.doubts if scene.body is not None else ():
+    for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)
     return scene

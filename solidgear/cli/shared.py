@@ -139,8 +139,9 @@ class Chosen(Group):
         """``--set`` options."""
         return self.settings or []
 
-    def automatic(self) -> bool:
-        """Tell whether the mesh is to be chosen; refuse what does not go together.
+    def automatic(self, scene: Scene | None = None) -> bool:
+        """Tell whether the mesh is to be chosen; refuse what does not go together, with a model that
+        holds the scene and has the options that are set.
 
         Raises
         ------
@@ -154,9 +155,14 @@ class Chosen(Group):
                     f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.name} is set by --set"
                 )
             return False
-        if options(self.pairs):  # which says so where one is no key=value
+        given = options(self.pairs)  # which says so where one is no key=value
+        if given:
+            held = (MODEL, *LADDER.holding(scene)) if scene is not None else (MODEL,)
+            fit = [m for m in held if scene is None or not LADDER[m].unfit(scene)]
+            able = [m for m in fit if given.keys() <= LADDER[m].options.keys()]
             raise SolidgearError(
-                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f {MODEL}"
+                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f "
+                f"{(able or fit or [MODEL])[0]}"
             )
         return True
 
@@ -189,7 +195,7 @@ class Solved(Chosen):
         points : sequence of str
             As for :func:`solidgear.judge.settle.settle`.
         """
-        if not self.automatic():
+        if not self.automatic(scene):
             return build_body(scene, self.name, self.pairs), None
         from solidgear.judge.settle import settle  # start-up: for ``auto`` alone
 

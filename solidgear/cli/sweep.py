@@ -119,7 +119,7 @@ def _sweep_shaft(
     loaded = load(variants.path)
     # before a file of rows is begun
     settled = bars = None
-    if model.automatic():
+    if model.automatic(loaded):
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(variants, model.tol, progress=steps)
             steps("bars of natural frequencies")

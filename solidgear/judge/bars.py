@@ -15,8 +15,9 @@ A harmonic solid needs none of this: :mod:`solidgear.judge.bounded`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from solidgear.body.mode_names import ModeName
 from solidgear.bounds.safety import Safety
@@ -25,6 +26,10 @@ from solidgear.quantity import Quantity
 
 #: rounding: smaller differences mean nothing
 LEAST = 1e-10
+#: relative difference of sizes below which cells are equally large
+SAME_SIZE = 0.02
+#: sides of a cell in a sentence, in the order of their sizes
+SIDES = ("longest", "middle", "shortest")
 
 
 @dataclass(frozen=True)
@@ -138,11 +143,43 @@ def step_bars(
     return out
 
 
-def left_over(coarser: float, finer: float, exponent: float) -> float:
-    """Share of a change between two sizes of cells that it leaves, by the exponent of displacement at
-    the sharpest corner.
+def sizes_of(facts: Mapping[str, Any]) -> tuple[float, ...]:
+    """Sizes of the cells of a mesh by its facts, m: one of a mesh made here, which is refined in all
+    directions, and three of a mesh file, of which nothing promises it; none of what has no cells.
     """
-    return 1 / ((coarser / finer) ** (2 * exponent) - 1)
+    usual = facts.get("representative_size")
+    return facts.get("cell_sizes") or ((usual,) if usual else ())
+
+
+def shrinkage(coarser: Sequence[float], finer: Sequence[float]) -> float:
+    """Factor by which cells shrink from one mesh to the next, in the direction in which they shrink
+    least; 1 where there is one in which they do not.
+
+    Examples
+    --------
+    >>> shrinkage((50.0, 20.0, 4.0), (25.0, 10.0, 4.0))  # layers through a wall stay
+    1.0
+    """
+    least = min((a / b for a, b in zip(coarser, finer)), default=1.0)
+    return least if least > 1 + SAME_SIZE else 1.0
+
+
+def same_size(coarser: Sequence[float], finer: Sequence[float]) -> str:
+    """Reason for no bar from two meshes of files whose cells do not shrink in some direction."""
+    ratio, place = min((a / b, k) for k, (a, b) in enumerate(zip(coarser, finer)))
+    sides = f"{1e3 * coarser[place]:.3g} mm and {1e3 * finer[place]:.3g} mm"
+    return (
+        f"the last two meshes tell no error bar, since the {SIDES[place]} sides of their cells are "
+        f"{'as long' if ratio < 1 + SAME_SIZE else 'hardly shorter'}, {sides}: list a mesh with half "
+        "of that in every direction"
+    )
+
+
+def left_over(shrunk: float, exponent: float) -> float:
+    """Share of a change between two meshes that it leaves, by the factor by which cells shrink and
+    the exponent of displacement at the sharpest corner.
+    """
+    return 1 / (shrunk ** (2 * exponent) - 1)
 
 
 def moves_freely(name: Quantity) -> bool:

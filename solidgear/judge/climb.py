@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.body import Body, as_supports
+from solidgear.judge.bars import sizes_of
 from solidgear.judge.bounded import bounded
 from solidgear.judge.question import (
     Question,
@@ -66,7 +67,8 @@ class Climb(Loop):
     def _solve(self, level: Mapping[str, Any]) -> Solved:
         values: dict[Quantity, float] = {}
         solver: dict[Quantity, float] = {}
-        unknowns, cells, body, score = 0, None, None, None
+        unknowns, body, score = 0, None, None
+        cells: tuple[float, ...] = ()
         for families, names in self._questions():
             body = self._body(level, families)
             if not self.levels and self.groups is None:
@@ -76,7 +78,7 @@ class Climb(Loop):
             solver |= found.solver
             if share is not None:
                 score = share if score is None else np.maximum(score, share)
-            unknowns, cells = unknowns + body.size, body.mesh.get("representative_size")
+            unknowns, cells = unknowns + body.size, sizes_of(body.mesh)
         assert body is not None  # there is something to ask for
         return Solved(body, Numbers(values, solver), unknowns, cells, score)
 

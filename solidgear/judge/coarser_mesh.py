@@ -2,7 +2,8 @@
 whose mesh was set, and of a body without an axis.
 
 Of a free block the coarser mesh has half as many cells along every edge: the finer one holds all
-motions of the coarser, and both integrate exactly, so that frequencies come from above on both. All
+motions of the coarser, and both integrate exactly, so that frequencies come from above on both; a
+third one, of a quarter as many, tells how fast they fall. All
 else is of any shape, and faces that are held end in singular edges: what a step leaves rests on the
 size of cells and on how sharp edges are, with the safety of other meshes in a sequence.
 """
@@ -12,8 +13,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from solidgear.bounds.safety import REFINEMENT
-from solidgear.judge.bars import left_over, step_bars
+from solidgear.judge.bars import left_over, same_size, shrinkage, sizes_of, step_bars
+from solidgear.judge.refinement import ONE_MESH
 from solidgear.judge.sequence_bars import RIGID_EDGE, sharpest
 from solidgear.judge.solving import Statics, numbers
 from solidgear.ladder import build
@@ -35,10 +39,11 @@ Options = Mapping[str, Any]
 SHRINK = {"hex": 0.67, "tet": 0.45}
 #: the same of a block
 HALF = 0.5
-#: share of the step from a mesh with half the cells along an edge that is taken for what is left:
-#: errors of smooth modes fall to a sixteenth, which leaves a fifteenth of it; this is what errors
-#: that fall to an eighth leave, twice as much
-LEFT = 1 / 7
+#: least and largest share of the step from a mesh with half the cells along every edge that is taken
+#: for what is left: errors of smooth modes fall to a sixteenth, which leaves a fifteenth of it; the
+#: least is what errors that fall to an eighth leave, twice as much. Between them the step before it
+#: decides: where two modes change places, or cells are few to a wave, steps fall by less
+LEAST_LEFT, MOST_LEFT = 1 / 7, 1.0
 #: the exponent of a body without an axis that has no concave edge
 CONVEX = 1.5
 #: shapes of the coarser mesh beyond those that are looked for: its order may be another
@@ -62,7 +67,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
     shapes = sum(mode.multiplicity for mode in found.modes if mode.frequency_hz > 0)
     coarse = modes(before, scene, shapes + MORE)
     nested = scene.body is not None and scene.body.kind == "block" and not scene.bearings
-    factor = LEFT if nested else REFINEMENT.steps[0] * _left_over(scene, before, body)
+    falls = _falls(scene, before, options, shapes + MORE) if nested else {}
     unseen = body.mesh["element"].startswith("hex") and not _fewer_around(options)
     bars = {}
     for mode in found.modes:
@@ -71,9 +76,36 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
             continue
         if mode.frequency_hz > 0 and named is not None:
             step = named.frequency_hz / mode.frequency_hz - 1
-            step = max(step, 0.0) if nested else abs(step)
-            bars[str(mode.name)] = factor * step + mode.error
+            if nested:
+                left = _left(max(step, 0.0), falls.get(str(mode.name)))
+            else:
+                left = REFINEMENT.steps[0] * _left_over(scene, before, body) * abs(step)
+            bars[str(mode.name)] = left + mode.error
     return bars
+
+
+def _falls(scene: Scene, before: Body, options: Options, shapes: int) -> dict[str, float]:
+    """Relative falls of frequencies of a block from a mesh of a quarter as many cells along every edge
+    to one of half as many, which `before` is, by the names of their modes.
+    """
+    half = {**options, "refinement": HALF * options.get("refinement", 1.0)}
+    coarsest = _before(scene, before, half)
+    if coarsest is None:
+        return {}
+    quarter = modes(coarsest, scene, shapes)
+    pairs = ((mode, quarter.named(mode.name)) for mode in modes(before, scene, shapes).modes)
+    return {
+        str(mode.name): named.frequency_hz / mode.frequency_hz - 1
+        for mode, named in pairs
+        if mode.frequency_hz > 0 and named is not None
+    }
+
+
+def _left(step: float, fall: float | None) -> float:
+    """Share of a frequency that a step between nested meshes leaves, by the fall before it if known."""
+    if fall is None or fall <= step:
+        return MOST_LEFT * step
+    return float(np.clip(step / (fall - step), LEAST_LEFT, MOST_LEFT)) * step
 
 
 def static_bars(
@@ -91,7 +123,19 @@ def static_bars(
     return {name: bar.width for name, bar in bars.items()}
 
 
+def no_bar(scene: Scene, body: Body, options: Options) -> str:
+    """Reason for no bar of a body from mesh files."""
+    before = _coarser(scene, body, options)
+    return ONE_MESH if before is None else same_size(sizes_of(before.mesh), sizes_of(body.mesh))
+
+
 def _before(scene: Scene, body: Body, options: Options) -> Body | None:
+    """The body on a mesh whose cells are larger in every direction; None where there is none."""
+    before = _coarser(scene, body, options)
+    return before if before is not None and _shrunk(before, body) > 1 else None
+
+
+def _coarser(scene: Scene, body: Body, options: Options) -> Body | None:
     """The body on the next coarser mesh; None where there is none, or none that can be made."""
     if scene.body is not None and scene.body.one_mesh:
         coarser = {"coarser": options.get("coarser", 0) + 1}
@@ -101,29 +145,29 @@ def _before(scene: Scene, body: Body, options: Options) -> Body | None:
         shrink = HALF if without_axis(scene) else SHRINK[body.mesh["element"][:3]]
         coarser = {"refinement": shrink * options.get("refinement", 1.0)}
     try:
-        before = build(scene, body.fidelity, **{**options, **coarser})
+        return build(scene, body.fidelity, **{**options, **coarser})
     except MeshError:  # too coarse to be made
         return None
-    return before if _size(before) > _size(body) else None
 
 
-def _size(body: Body) -> float:
-    return body.mesh["representative_size"]
+def _shrunk(before: Body, body: Body) -> float:
+    return shrinkage(sizes_of(before.mesh), sizes_of(body.mesh))
 
 
 def _left_over(scene: Scene, before: Body, body: Body) -> float:
     """Share of a step between two meshes that it leaves, by the sharpest edge: without an axis concave
     ones, the ends of rigid patches, and of those in the mean, where pressure jumps.
     """
+    shrunk = _shrunk(before, body)
     if not without_axis(scene):
-        return left_over(_size(before), _size(body), sharpest(scene))
+        return left_over(shrunk, sharpest(scene))
     patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
     exponent = min(
         SHOULDER if is_notched(body.geometry.mesh) else CONVEX,  # type: ignore[union-attr]
         RIGID_EDGE if any(s.attachment == "rigid" for s in patches) else CONVEX,
         1.0 if patches else CONVEX,
     )
-    return left_over(_size(before), _size(body), exponent)
+    return left_over(shrunk, exponent)
 
 
 def _fewer_around(options: Options) -> bool:

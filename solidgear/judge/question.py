@@ -52,8 +52,8 @@ class Solved:
         The last one that was built on it.
     unknowns : int
         Of all bodies.
-    cell : float or None
-        Representative size of its cells, m.
+    cells : tuple of float
+        Sizes of its cells, m.
     score : (ne,) ndarray or None
         Where on a meridian the bars come from that are not within the tolerance.
     """
@@ -61,7 +61,7 @@ class Solved:
     body: Body
     numbers: Numbers
     unknowns: int
-    cell: float | None
+    cells: tuple[float, ...]
     score: np.ndarray | None = None
 
 

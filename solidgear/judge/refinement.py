@@ -21,7 +21,7 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.bounds.refining import MOST_MESHES, Meshed, refined
 from solidgear.errors import SolidgearError
-from solidgear.judge.bars import ErrorBar, moves_freely
+from solidgear.judge.bars import ErrorBar, moves_freely, same_size
 from solidgear.judge.bounded import Bounded
 from solidgear.judge.effort import HEAVY, cost_text
 from solidgear.judge.quantities import Values, size
@@ -39,6 +39,9 @@ if TYPE_CHECKING:
 Progress = Callable[[str], None]
 #: reason for no bar
 ONE_MESH = "the mesh is that of the file, and nothing finer tells how good it is"
+#: reasons for no narrower one
+NO_FINER = "no finer mesh is calibrated"
+FINER_FILE = "list a finer mesh beside those of the file"
 
 #: a frequency that rises with a finer mesh of a list, by more than the eigensolver leaves, is
 #: rounding: the bar is this many times the rise
@@ -97,7 +100,7 @@ class Loop(ABC):
         #: of a harmonic solid, the one it begins with, and later the last one
         self.mesh = Meshed(given=self.plan.levels[0])
         self.levels: list[Numbers] = []
-        self.sizes: list[float | None] = []
+        self.sizes: list[tuple[float, ...]] = []
         self.steps: list[Step] = []
         self.error_bars: dict[Quantity, ErrorBar] = {}
         self.missing: set[Quantity] = set()
@@ -123,6 +126,11 @@ class Loop(ABC):
         return self.model.title
 
     @property
+    def of_files(self) -> bool:
+        """True where the meshes are those of files."""
+        return self.scene.body is not None and self.scene.body.one_mesh
+
+    @property
     def body(self) -> Body | None:
         """The last body that was solved."""
         return None if self.last is None else self.last.body
@@ -144,7 +152,7 @@ class Loop(ABC):
                     raise
                 continue
             self.levels.append(self.last.numbers)
-            self.sizes.append(self.last.cell)
+            self.sizes.append(self.last.cells)
             self.options = dict(level)
             self.missing = (self.missing | asked) - set(self.levels[-1].quantities)
             bar = self.judge()
@@ -192,8 +200,11 @@ class Loop(ABC):
     def _stopped(self) -> str:
         """Reason for no further mesh."""
         if not self.model.bounded:
-            only_one = self.plan.fixed and len(self.plan.levels) == 1
-            return ONE_MESH if only_one else "no finer mesh is calibrated"
+            if not self.of_files or not self.sizes:
+                return NO_FINER
+            if len(self.plan.levels) == 1:
+                return ONE_MESH
+            return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
         count = len(self.levels)
         tried = "one mesh" if count == 1 else f"{count} meshes"
         return f"{tried} did not do; most of the bar comes from {self.stops_at()}"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence as Listed
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from solidgear.body.mode_names import BENDING, ModeName
 from solidgear.bounds.safety import LAYERS, REFINEMENT
-from solidgear.judge.bars import ErrorBar, left_over, step_bars
+from solidgear.judge.bars import ErrorBar, left_over, shrinkage, step_bars
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.solving import solve
 from solidgear.ladder.meshes import HARMONIC
@@ -36,7 +37,7 @@ def sequence_bars(
     model: Model,
     levels: Listed[Values],
     solver: Values,
-    sizes: Listed[float | None],
+    sizes: Listed[Listed[float]],
     around: Values | None = None,
 ) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
@@ -47,8 +48,8 @@ def sequence_bars(
         Tied as the levels are.
     plan : Sequence
         That the meshes are of.
-    sizes : sequence of float
-        Representative size of the cells of every level, m.
+    sizes : sequence of sequence of float
+        Of the cells of every level, m, as :func:`~solidgear.judge.bars.sizes_of` gives them.
 
     Returns
     -------
@@ -62,10 +63,10 @@ def sequence_bars(
     if plan.layered:
         effect = feature_effect(scene, safety, levels[-1])
         return step_bars(levels, solver, safety, around=around, effect=effect)
-    last = [size or 0.0 for size in sizes[-3:]]
-    if not all(a > b > 0 for a, b in zip(last, last[1:])):
+    shrunk = [shrinkage(a, b) for a, b in pairwise(sizes[-3:])]
+    if 1.0 in shrunk:
         return {}
-    share = left_over(last[-2], last[-1], sharpest(scene))
+    share = left_over(shrunk[-1], sharpest(scene))
     return step_bars(levels, solver, safety, left_over=share)
 
 

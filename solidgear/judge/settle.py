@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -27,14 +27,15 @@ from solidgear.errors import SolidgearError
 from solidgear.judge.answer import climbed, usable
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.climb import Climb
-from solidgear.judge.coarser_mesh import coarser_bars, static_bars
+from solidgear.judge.coarser_mesh import coarser_bars, no_bar, static_bars
 from solidgear.judge.quantities import at_points, between, in_order
 from solidgear.judge.question import Question, mesh_words
-from solidgear.judge.refinement import ONE_MESH, Progress
+from solidgear.judge.refinement import FINER_FILE, NO_FINER, Progress
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import Step
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
+from solidgear.machine.memory import NoRoom
 from solidgear.machine.threads import pinned
 from solidgear.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
 from solidgear.scene.shaft import without_axis
@@ -209,7 +210,7 @@ def bars_of_modes(
 #: the only model that holds a body without an axis
 MODEL = "solid"
 #: refinements of the nested meshes of a block, each of which tells the next one's bar
-NESTED = (1.0, 2.0, 4.0)
+NESTED = (0.5, 1.0, 2.0, 4.0)
 
 
 def _settled_body(
@@ -225,22 +226,23 @@ def _settled_body(
     meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
     for mesh in meshes:
         start = time.perf_counter()
-        options = {**LADDER[MODEL].given(scene, {}), **mesh}
-        progress(f"{LADDER[MODEL].title}: {mesh_words(options)}")
-        body = build(scene, MODEL, **options)
-        bars = static_bars(scene, body, points, options) if ask != "modes" else {}
-        if ask != "stiffness":
-            found = modes(body, scene, scene.ask.modes)
-            told = coarser_bars(scene, body, found, options)
-            bars |= {Quantity(name): bar for name, bar in told.items()}
+        level = {**LADDER[MODEL].given(scene, {}), **mesh}
+        progress(f"{LADDER[MODEL].title}: {mesh_words(level)}")
+        try:
+            body, bars = _judged_body(scene, ask, points, level)
+        except (NoRoom, MemoryError) as error:
+            if not steps:
+                raise
+            why = f"the next mesh could not be solved: {error or 'not enough memory'}"
+            steps[-1] = replace(steps[-1], why=why, chosen=True)
+            break
+        options = level
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
         done = reached or mesh is meshes[-1]
-        finer = (
-            "no finer mesh is calibrated" if block else "list a finer mesh beside those of the file"
-        )
-        why = finer if bars else ONE_MESH
-        why *= done and not reached
+        why = ""
+        if done and not reached:
+            why = NO_FINER if block else FINER_FILE if bars else no_bar(scene, body, options)
         spent = time.perf_counter() - start
         steps.append(
             Step(
@@ -261,6 +263,19 @@ def _settled_body(
     return Settled(
         scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
     )
+
+
+def _judged_body(
+    scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
+) -> tuple[Body, dict[Quantity, float]]:
+    """The body on one mesh, and the bars of what is asked."""
+    body = build(scene, MODEL, **options)
+    bars = static_bars(scene, body, points, options) if ask != "modes" else {}
+    if ask != "stiffness":
+        found = modes(body, scene, scene.ask.modes)
+        told = coarser_bars(scene, body, found, options)
+        bars |= {Quantity(name): bar for name, bar in told.items()}
+    return body, bars
 
 
 class Whole(Climb):

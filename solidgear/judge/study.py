@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
-from solidgear.judge.bars import ErrorBar
+from solidgear.judge.bars import ErrorBar, sizes_of
 from solidgear.judge.bounded import Bounded, bounded
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
@@ -134,6 +134,8 @@ class Tied(Loop):
             if why := self.steps[-1].why * (self.most is None and not self.plan.fixed):
                 self.failed["narrower bars"] = why
             self._finish(self.solution)
+        elif self.of_files and len(self.sizes) > 1 and not self.error_bars:
+            self.failed["error bar"] = self._stopped()
         return self.solution
 
     def _solve(self, level: Mapping[str, Any]) -> Solved:
@@ -162,7 +164,7 @@ class Tied(Loop):
                 self._turn()
                 solution.error_bars = self._error_bars()
         self.keep(solution)
-        return Solved(found.body, found.numbers, found.body.size, self.meshes[-1].h, score)
+        return Solved(found.body, found.numbers, found.body.size, sizes_of(found.body.mesh), score)
 
     def _counted_from(self, k: int) -> float:
         """Unknowns from which on modes of a mesh of a list are counted."""
@@ -216,7 +218,7 @@ class Tied(Loop):
             if len(known) < 2 or tie not in self.solved[-1]:
                 continue
             values, solver = [s[tie].quantities for s in known], known[-1][tie].solver
-            sizes = [level.mesh.get("representative_size") for level in self.meshes]
+            sizes = [sizes_of(level.mesh) for level in self.meshes]
             tied = self.scene if tie == SCENE else self.scene.with_attachment("section")
             around = self.around.get(tie)
             found = sequence_bars(tied, self.plan, self.model, values, solver, sizes, around)

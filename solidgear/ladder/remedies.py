@@ -4,6 +4,7 @@ scene, each with the memory it would take.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.factoring import Factoring
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.memory import NoRoom, anew
+from solidgear.machine.memory import NoRoom, anew, available_mb
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -97,7 +98,10 @@ class _Remedies:
     @property
     def room(self) -> float:
         """MB for matrices and factors."""
-        return self.error.free_mb + self._held
+        free, here = self.error.free_mb, available_mb()
+        if not math.isfinite(free) and here is not None:
+            free = here
+        return free + self._held
 
     def all(self) -> Iterator[Remedy]:
         """Yield every one, fitting or not."""
@@ -146,7 +150,9 @@ class _Remedies:
         refinement = float(self.options.get("refinement", 1.0))
         mb = self.error.need_mb + self._held
         for _ in range(TRIED):
-            share = (AIM * self.room / mb) ** (1 / BY_REFINEMENT)
+            known = math.isfinite(self.room) and math.isfinite(mb)
+            # of what cannot even be numbered, half the refinement is tried, and so on
+            share = (AIM * self.room / mb) ** (1 / BY_REFINEMENT) if known else 0.5
             refinement = round(STEP * int(min(refinement * share, refinement - STEP / 2) / STEP), 2)
             if refinement < COARSEST:
                 return

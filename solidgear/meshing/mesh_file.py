@@ -17,6 +17,7 @@ from solidgear.meshing.decks import Deck, read
 from solidgear.meshing.decks.deck import KINDS, Group
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError, check_mesh, element_volumes, outward
+from solidgear.scene.file_materials import FileMaterial
 
 #: groups that a sentence names
 TOLD = 12
@@ -56,6 +57,8 @@ class FileMesh:
         What is odd about the file.
     patches : dict of str to (n,) ndarray
         Facets of the mesh in named groups of surfaces.
+    materials : tuple of FileMaterial
+        That the file says itself, of its groups.
     """
 
     mesh: Mesh
@@ -66,6 +69,7 @@ class FileMesh:
     told: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
     patches: Mapping[str, np.ndarray] = field(default_factory=dict)
+    materials: tuple[FileMaterial, ...] = ()
 
     def faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Its surface and what lies between groups: (3, n) points, (3, t) triangles, into which
@@ -126,6 +130,7 @@ def mesh_from(path: str, place: Placing, named: tuple[str, ...] = ()) -> FileMes
         material_groups(deck),
         deck.remarks,
         _patches(mesh, deck),
+        deck.materials,
     )
     _no_holes(found)
     return replace(found, remarks=(*found.remarks, *_pitted(found, deck)))

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SceneError
+from solidgear.meshing.decks import universal
+from solidgear.meshing.decks.deck import reader_of
 from solidgear.meshing.part_file import Found, coarser_meshes, content_of, read, skin
 from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
@@ -45,7 +47,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     shaft = table.axis != NONE
     try:
         content = content_of(path)
-        unit = _unit(table, content)
+        unit, doubt = _unit(table, path, content)
         foot = _foot(table)
         place = Placing(unit, TURNS[table.axis if shaft else "y"], foot)
         found_in = read(table, path, place, content)
@@ -86,7 +88,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         groups=found_in.groups,
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
-        remarks=found_in.remarks,
+        remarks=(*doubt, *found_in.remarks),
         edges=None if shaft else tuple(float(v) for v in np.ptp(points, axis=1)),
         coarser=coarser,
         patches=()
@@ -156,10 +158,35 @@ _LENGTHS = re.compile(rb"\(([^;]*?LENGTH_UNIT\s*\(\s*\)[^;]*?)\)\s*;", re.S)
 _PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
 
 
-def _unit(table: BodyTable, content: bytes) -> float:
-    """Metres for each unit of the file; what a STEP file says of itself is held against the table."""
-    if table.step is None:
-        return UNITS[str(table.unit)]
+def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[str, ...]]:
+    """Metres for each unit of the file, and a remark where a universal file says another than the table."""
+    if table.step is not None:
+        return _unit_of_step(table, content), ()
+    told = None
+    if reader_of(str(path)) == "universal":
+        told = universal.unit_of(content.decode("utf-8", "replace"))
+    if table.unit is None:
+        if told is None:
+            raise SceneError(
+                f"this key is missing: {path.name} does not say it; one of {', '.join(UNITS)}",
+                path=("unit",),
+            )
+        return told, ()
+    unit = UNITS[table.unit]
+    if told is None or math.isclose(unit, told, rel_tol=1e-6):
+        return unit, ()
+    named = {value: name for name, value in UNITS.items()}
+    own = next((n for value, n in named.items() if math.isclose(value, told, rel_tol=1e-6)), "")
+    remark = (
+        f"its dataset 164 says that lengths are in {own or f'units of {told:g} m'}, and unit = "
+        f'"{table.unit}" of the [body] is taken: one of both is wrong by a factor of '
+        f"{max(unit / told, told / unit):.4g}"
+    )
+    return unit, (remark,)
+
+
+def _unit_of_step(table: BodyTable, content: bytes) -> float:
+    """Metres for each unit of a STEP file, which is held against the table."""
     head = content[:200].lstrip()
     if not head.startswith(b"ISO-10303-21"):
         raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')

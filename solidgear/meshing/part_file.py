@@ -80,7 +80,7 @@ def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> Found:
     mesh = found.mesh
     counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
     groups = _groups(table, found.volumes(len(named) + 1), found.rest)
-    own_mesh = {"element": found.element, "counts": counts}
+    own_mesh = {"element": found.element, "counts": counts, "file_materials": found.materials}
     points, triangles, sides = found.faces()
     more = (found.told, found.remarks, own_mesh, tuple(_patches(found)))
     return Found(points, triangles, sides, found.volume, groups, *more)

@@ -6,13 +6,14 @@ the file was read.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, listed
+from solidgear.scene.file_materials import FileMaterial
 from solidgear.scene.materials import by_name
 from solidgear.scene.parts import Material
 from solidgear.scene.patches import Patch, Triple, refuse_elsewhere
@@ -89,11 +90,6 @@ class BodyTable(Model):
             raise SceneError(
                 "length and diameter are of a shaft; check a body by its mass_check",
                 path=("size_check",),
-            )
-        if self.mesh is not None and self.unit is None:
-            raise SceneError(
-                f"this key is missing: a mesh file does not say it; one of {', '.join(UNITS)}",
-                path=("unit",),
             )
         return self
 
@@ -199,6 +195,8 @@ class BodyFile(Model):
         Meshes of the same part, coarse to fine, of which it is the finest.
     patches : tuple of Patch
         Named faces of a body without an axis.
+    file_materials : tuple of FileMaterial
+        That a mesh file says itself, of its groups.
 
     Examples
     --------
@@ -229,6 +227,7 @@ class BodyFile(Model):
     edges: Triple | None = None
     coarser: tuple[CoarseMesh, ...] = ()
     patches: tuple[Patch, ...] = ()
+    file_materials: tuple[FileMaterial, ...] = ()
 
     @property
     def sort(self) -> str:
@@ -250,16 +249,35 @@ class BodyFile(Model):
         off = abs(self.round_volume - 1)
         return self.round_share >= ALL_ROUND and off <= SAME_VOLUME + self.facets
 
-    @property
-    def doubts(self) -> tuple[str, ...]:
-        """Sentences on what its file may not mean."""
-        out = [f"{self.name}: {remark}" for remark in self.remarks]
+    def doubts(self, usual: Material) -> tuple[str, ...]:
+        """Sentences on what its file may not mean, or says otherwise than a scene of a material."""
+        out = [
+            f"{self.name}: {remark}" for remark in (*self.remarks, *self._other_materials(usual))
+        ]
         if self.told:
             out.append(
                 f"{self.name} has groups {listed(self.told, 12)}, and all of it is taken to be of "
                 "[material]; where they are of others, name them under materials of the [body]"
             )
         return tuple(out)
+
+    def _other_materials(self, usual: Material) -> Iterator[str]:
+        """One sentence on materials that the file says to be others than those of the scene."""
+        own = {group.name: group.material for group in self.groups if group.material is not None}
+        pairs = [(told, own.get(told.group, usual)) for told in self.file_materials]
+        # several groups may be of one material
+        other = {told.name: (told, m) for told, m in pairs if not told.is_like(m)}
+        if not other:
+            return
+        said = [
+            f"{told.name} with {told.numbers} in the units of the file, where the scene has E "
+            f"{m.E / 1e9:.6g} GPa, nu {m.nu:.6g}, density {m.density:.6g} kg/m^3"
+            for told, m in other.values()
+        ]
+        yield (
+            f"materials of the file are not read: {listed(said, 4)}; write them as [material], or under "
+            "materials of the [body]"
+        )
 
     def materials(self, usual: Material) -> tuple[Material, ...]:
         """Of its groups in their order, in a scene of a material."""

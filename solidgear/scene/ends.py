@@ -8,14 +8,17 @@ and the mass stays where it was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from solidgear.errors import SceneError
 
 from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
+    from solidgear.scene.places import Along
 
 #: what is a hair, m, or over the length of the shaft if that is more: lines of 1e-7 m are none to
 #: the CAD kernel, and the least seat is a millionth of the length
@@ -54,6 +57,17 @@ def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
     y, (x, along, z) = (lo + hi) / 2, mass.offset
     moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
     return mass.model_copy(update=moved)
+
+
+def on_face(words: Along, table: Mapping[str, Any]) -> None:
+    """Refuse a bearing on a face with a position as well, or without a width."""
+    words.refuse("give either face, or position with from, not both", "position", "from_")
+    if "seat_width" not in table:
+        raise SceneError(
+            'this key is missing; face stands for the position alone: write seat_width = "10 mm" or so '
+            "as well, the rim beside the face that no other seat may lie on",
+            path=("seat_width",),
+        )
 
 
 def _snapped(station: Station, marks: Sequence[float]) -> Station:

@@ -12,6 +12,7 @@ from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.bearing_stiffness import Matrix, one_stiffness
 from solidgear.scene.catalogue import Catalogue
+from solidgear.scene.ends import on_face
 from solidgear.scene.housing import Elastic, elastic
 from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
 from solidgear.scene.places import Along, Placed, Places
@@ -151,7 +152,7 @@ class Bearing(Placed):
         if face is None:
             words.needs("position", 'write position = "28 mm" with from, or face = "start"')
             return {"y": words.y(places)}
-        words.refuse("give either face, or position with from, not both", "position", "from_")
+        on_face(words, table)
         return {"y": places.at.get(face) if face in ("start", "end") else None}
 
     @classmethod

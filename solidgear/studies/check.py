@@ -64,6 +64,8 @@ OF_A_MESH = (
     "nearly_incompressible",
     "uniform_at_shoulder",
 )
+#: what is heard of a body without an axis as well
+OF_ANY_BODY = ("linear_elements", "nearly_incompressible")
 
 
 @pinned
@@ -272,8 +274,8 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 
 def _guards(scene: Scene) -> tuple[str, ...]:
-    """Names of the guards to be heard: they speak of the plain part of a shaft."""
-    return () if without_axis(scene) else tuple(GUARDS)
+    """Names of the guards to be heard: most speak of the plain part of a shaft."""
+    return OF_ANY_BODY if without_axis(scene) else tuple(GUARDS)
 
 
 def _of_a_body(scene: Scene) -> Iterator[Notice]:

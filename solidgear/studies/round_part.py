@@ -62,7 +62,7 @@ def of_files(scene: Scene) -> Iterator[Notice]:
     body = scene.body
     assert body is not None  # asked of parts
     yield from _of_materials(scene)
-    for sentence in body.doubts:
+    for sentence in body.doubts(scene.material):
         yield Notice("caution", (), sentence)
     if body.one_mesh and not body.coarser:
         finer = "" if body.edges else "; a STEP file would be meshed coarse to fine"

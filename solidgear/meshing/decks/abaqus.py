@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from solidgear.meshing.decks.deck import Deck, Lines, coordinates, integer, text_of, told_short
+from solidgear.meshing.decks.left_out import KEYWORDS, OTHER, TYPES, LeftOut, sort_of
 from solidgear.meshing.quality import MeshError
+from solidgear.scene.file_materials import FileMaterial
 
 #: kinds of cells by the nodes of a continuum element, in meshio's words
 CONTINUUM = {
@@ -53,16 +55,14 @@ def read(path: str) -> Deck:
     """
     text = text_of(path)
     blocks = list(_blocks(text))
+    _in_one_file(blocks)
     if not any(b.keyword == "NODE" for b in blocks):
         raise MeshError("cannot be read as Abaqus: it holds no *NODE")
     scope, meshes = "", {"": Lines()}
     instances: dict[str, int] = {}
     late: list[tuple[str, _Block]] = []
+    beside: list[tuple[Lines, _Block]] = []
     for block in blocks:
-        if block.keyword == "INCLUDE":
-            raise MeshError(
-                f"line {block.line}: *INCLUDE names another file: put its lines in its place"
-            )
         if block.keyword == "PART":
             scope = block.given.get("NAME", f"part in line {block.line}")
             meshes.setdefault(scope, Lines())
@@ -75,6 +75,7 @@ def read(path: str) -> Deck:
             _nodes(meshes[scope], block)
         elif block.keyword == "ELEMENT":
             _elements(meshes[scope], block)
+            beside += [(meshes[scope], block)] * (not _is_solid(block))
         else:
             late.append((scope, block))
     name, lines = _the_part(meshes)
@@ -85,6 +86,8 @@ def read(path: str) -> Deck:
     own = [b for where, b in late if where in ("", name)]
     _sets(lines, own)
     _whole(text, lines)
+    _left_out(lines.left_out, beside, [block for _, block in late])
+    _materials(lines, [block for _, block in late])
     deck = lines.deck()
     return replace(deck, patches=dict(_surfaces(lines, own, deck)))
 
@@ -110,6 +113,20 @@ def _blocks(text: str) -> Iterator[_Block]:
             block.data.append((number, line))
     if block is not None:
         yield block
+
+
+def _in_one_file(blocks: list[_Block]) -> None:
+    """Refuse what stands in another file."""
+    for block in blocks:
+        if (
+            block.keyword == "INCLUDE"
+            or block.keyword in ("NODE", "ELEMENT")
+            and "INPUT" in block.given
+        ):
+            raise MeshError(
+                f"line {block.line}: *{block.keyword} names another file "
+                f"({block.given.get('INPUT', '')}): put its lines in its place"
+            )
 
 
 def _parameters(text: str) -> dict[str, str]:
@@ -169,6 +186,89 @@ def _elements(lines: Lines, block: _Block) -> None:
         raise told_short(row[0], start, name, len(row) - 1, str(wanted))
 
 
+def _is_solid(block: _Block) -> bool:
+    return block.given.get("TYPE", "").upper().startswith("C3D")
+
+
+def _left_out(tally: LeftOut, beside: list[tuple[Lines, _Block]], blocks: list[_Block]) -> None:
+    """Count elements that are no solids and carry something, and what ties or holds nodes."""
+    sets: dict[str, set[int]] = {}
+    for _, block in beside:
+        own = {
+            integer(text.split(",")[0], line, "an element")
+            for line, text in block.data
+            if text[0].isdigit()
+        }
+        sets.setdefault(block.given.get("ELSET", "").upper(), set()).update(own)
+    for block in blocks:
+        if block.keyword == "ELSET":
+            sets.setdefault(block.given.get("ELSET", "").upper(), set()).update(_members(block, {}))
+    named = [b.given.get("ELSET", "").upper() for b in blocks if b.keyword.endswith("SECTION")]
+    sectioned = set().union(*(sets.get(name, set()) for name in named))
+    for _, block in beside:
+        name = block.given.get("TYPE", "").upper()
+        own = {int(text.split(",")[0]) for _, text in block.data if text[0].isdigit()}
+        sort = sort_of(name, TYPES)
+        tally.add(sort or OTHER, name, len(own if sort else own & sectioned))
+    for block in blocks:
+        sort = sort_of(block.keyword, KEYWORDS)
+        if sort is not None:
+            tally.add(sort, f"*{block.keyword}")
+        if block.keyword == "MASS":
+            tally.weigh(_masses(block, sets), _first(block, beside))
+
+
+def _masses(block: _Block, sets: Mapping[str, set[int]]) -> list[float]:
+    """Masses that a *MASS gives to each element of its set."""
+    numbers = [text.split(",")[0] for _, text in block.data]
+    count = len(sets.get(block.given.get("ELSET", "").upper(), ())) or 1
+    try:
+        return [float(re.sub("[dD]", "e", numbers[0]))] * count if numbers else []
+    except ValueError:
+        return []
+
+
+def _first(mass: _Block, beside: list[tuple[Lines, _Block]]) -> tuple[float, ...] | None:
+    """Place of the first element of the set of a *MASS."""
+    wanted = mass.given.get("ELSET", "").upper()
+    for lines, block in beside:
+        if block.given.get("ELSET", "").upper() == wanted and block.data:
+            node = block.data[0][1].split(",")[1:2]
+            return lines.place(int(node[0])) if node and node[0].strip().isdigit() else None
+    return None
+
+
+def _materials(lines: Lines, blocks: list[_Block]) -> None:
+    """Isotropic materials of sections, by the groups that are of them."""
+    told: dict[str, FileMaterial] = {}
+    name = ""
+    for block in blocks:
+        if block.keyword == "MATERIAL":
+            name = block.given.get("NAME", "")
+            told[name.upper()] = FileMaterial(name=name, group="")
+        entries = block.data[0][1].split(",") if block.data else []
+        numbers = [_plain(entry) for entry in entries]
+        if not name or not numbers:
+            continue
+        if block.keyword == "ELASTIC" and block.given.get("TYPE", "ISO").upper().startswith("ISO"):
+            nu = numbers[1] if len(numbers) > 1 else 0.0
+            told[name.upper()] = told[name.upper()].with_changes(E=numbers[0], nu=nu)
+        elif block.keyword == "DENSITY":
+            told[name.upper()] = told[name.upper()].with_changes(density=numbers[0])
+    for group, material in lines.of_material.items():
+        found = told.get(material.upper())
+        if found is not None and found.E is not None:
+            lines.materials.append(found.with_changes(group=group))
+
+
+def _plain(text: str) -> float | None:
+    """A number, None for a field that is none."""
+    try:
+        return float(re.sub("[dD]", "e", text))
+    except ValueError:
+        return None
+
+
 def _the_part(meshes: dict[str, Lines]) -> tuple[str, Lines]:
     """The one part with elements of a volume."""
     full = {name: lines for name, lines in meshes.items() if lines.elements}
@@ -212,11 +312,14 @@ def _sets(lines: Lines, blocks: list[_Block]) -> None:
         members = [n for name in names for n in by_name.get(name.upper(), ())]
         same = by_name.get(material.upper())
         if same is not None and set(same) == set(members):
-            lines.telling.add(next(n for n in lines.sets if n.upper() == material.upper()))
+            own_name = next(n for n in lines.sets if n.upper() == material.upper())
+            lines.telling.add(own_name)
+            lines.of_material[own_name] = material
             continue
         name = material if same is None else f"material:{material}"
         lines.sets[name] = members
         lines.telling.add(name)
+        lines.of_material[name] = material
 
 
 def _surfaces(lines: Lines, blocks: list[_Block], deck: Deck) -> Iterator[tuple[str, np.ndarray]]:

@@ -11,7 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solidgear.meshing.decks.left_out import LeftOut
 from solidgear.meshing.quality import MeshError
+from solidgear.scene.file_materials import FileMaterial
 
 #: how a file ends, and the module of this room that reads it
 FORMATS = {
@@ -21,6 +23,12 @@ FORMATS = {
     ".nas": "nastran",
     ".vtu": "foreign",
     ".unv": "universal",
+}
+#: lines by which files that end otherwise, such as .dat, are known, and the modules that read them
+CONTENTS = {
+    "nastran": r"^\s*BEGIN\s+BULK|^GRID\b[*,\s]",
+    "abaqus": r"^\*(?:NODE|HEADING|PART|INCLUDE)\b",
+    "universal": r"\A\s*-1\s*\n\s*(?:151|164|2411|2420|781)\s*\n",
 }
 #: kinds of cells that are assembled, in meshio's words, and what they are called here
 KINDS = {
@@ -72,6 +80,8 @@ class Deck:
         What is odd about the file, but no fault.
     patches : dict of str to ndarray
         Corners (3 or 4, n) of the faces of named groups of surfaces.
+    materials : tuple of FileMaterial
+        That the file says itself, of its groups.
     """
 
     points: np.ndarray
@@ -82,6 +92,7 @@ class Deck:
     lines: np.ndarray | None = None
     remarks: tuple[str, ...] = ()
     patches: Mapping[str, np.ndarray] = field(default_factory=dict)
+    materials: tuple[FileMaterial, ...] = ()
 
     def named(self, place: int) -> str:
         """An element in a sentence, by its place in :attr:`cells`."""
@@ -103,15 +114,24 @@ def read(path: str) -> Deck:
     """The mesh in a file; MeshError where it cannot be read or has no elements of one kind that is
     assembled here.
     """
-    ending = Path(path).suffix.lower()
-    if ending not in FORMATS:
-        raise MeshError(
-            f"a mesh file that ends in {ending or 'nothing'} is unknown; known are "
-            f"{', '.join(FORMATS)}"
-        )
-    module = importlib.import_module(f"solidgear.meshing.decks.{FORMATS[ending]}")
+    module = importlib.import_module(f"solidgear.meshing.decks.{reader_of(path)}")
     reader: Callable[[str], Deck] = module.read
     return reader(path)
+
+
+def reader_of(path: str) -> str:
+    """The module of this room that reads a file: by how its name ends, else by what is in it."""
+    ending = Path(path).suffix.lower()
+    if ending in FORMATS:
+        return FORMATS[ending]
+    text = text_of(path)
+    for module, begins in CONTENTS.items():
+        if re.search(begins, text, re.I | re.M):
+            return module
+    raise MeshError(
+        f"a mesh file that ends in {ending or 'nothing'} is unknown, and what is in it is neither "
+        f"Nastran, Abaqus nor a universal file; known are {', '.join(FORMATS)}"
+    )
 
 
 def text_of(path: str) -> str:
@@ -160,6 +180,12 @@ class Lines:
         Groups that are made to tell materials.
     listed : list of (str, int, int)
         Name of a group, number of an element that it lists one by one, and the line.
+    left_out : LeftOut
+        What the file carries beside its elements of volumes.
+    materials : list of FileMaterial
+        Of groups.
+    of_material : dict of str to str
+        Name of a material by that of a group that is of it.
     """
 
     def __init__(self) -> None:
@@ -171,6 +197,9 @@ class Lines:
         self.sets: dict[str, list[int]] = {}
         self.telling: set[str] = set()
         self.listed: list[tuple[str, int, int]] = []
+        self.left_out = LeftOut()
+        self.materials: list[FileMaterial] = []
+        self.of_material: dict[str, str] = {}
         self._others: set[int] = set()
         self._lines: dict[int, int] = {}
 
@@ -242,6 +271,7 @@ class Lines:
             inside = sorted({place[n] for n in members if n in place})
             if inside:
                 groups.append(Group(name, np.array(inside), name in self.telling))
+        remarks = (*_gaps(numbers, [e.line for e in self.elements]), self.left_out.remark())
         return Deck(
             np.array(self.places, float).T,
             kind,
@@ -249,8 +279,13 @@ class Lines:
             tuple(groups),
             numbers,
             np.array([e.line for e in self.elements]),
-            tuple(_gaps(numbers, [e.line for e in self.elements])),
+            tuple(filter(None, remarks)),
+            materials=tuple(self.materials),
         )
+
+    def place(self, node: int) -> tuple[float, ...] | None:
+        """Coordinates of a node, where it is there."""
+        return self.places[self.nodes[node][0]] if node in self.nodes else None
 
     def _all_needed(self, cells: np.ndarray) -> None:
         """Refuse nodes that nothing needs: elements are missing, then."""

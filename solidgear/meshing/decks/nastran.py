@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.decks.left_out import CARDS, LINK, sort_of
 from solidgear.meshing.quality import MeshError
+from solidgear.scene.file_materials import FileMaterial
 
 #: kinds of cells of a card by their number of nodes, in meshio's words
 SOLIDS = {
@@ -24,11 +26,12 @@ NEEDY = ("C", "RBE", "RBAR", "RROD", "RSPLINE", "MPC", "SPOINT")
 
 
 class Card(NamedTuple):
-    """A card: its name, its fields after that, and the line it begins in."""
+    """A card: its name, its fields after that, the line it begins in, and that line."""
 
     name: str
     fields: list[str]
     line: int
+    text: str = ""
 
 
 def read(path: str) -> Deck:
@@ -36,18 +39,38 @@ def read(path: str) -> Deck:
     or a number twice, and nodes in a system of coordinates of their own.
     """
     lines = Lines()
+    solids: dict[str, str] = {}
+    materials: dict[str, Card] = {}
+    masses: list[tuple[float, int]] = []
     for card in cards(text_of(path)):
+        sort = sort_of(card.name, CARDS)
+        if sort is not None:
+            lines.left_out.add(sort, card.name)
+            masses += _mass(card)
         if card.name == "GRID":
             _node(lines, card)
         elif card.name in SOLIDS:
             _solid(lines, card)
         elif card.name == "INCLUDE":
             raise MeshError(
-                f"line {card.line}: INCLUDE names another file: put its lines in its place"
+                f"line {card.line}: INCLUDE names another file{_quoted(card)}: put its lines in its "
+                "place"
             )
+        elif card.name == "PSOLID":
+            solids[card.fields[0]] = card.fields[1]
+        elif card.name == "MAT1":
+            materials[card.fields[0]] = card
         elif card.name.startswith(NEEDY) and not card.name.startswith("CORD"):
             named = [int(f) for f in card.fields if f.isdigit()]
             lines.other(card.name, named[0] if named else 0, named[1:])
+    lines.left_out.weigh(
+        (mass for mass, _ in masses), lines.place(masses[0][1]) if masses else None
+    )
+    lines.materials = [
+        _material(materials[number], group)
+        for group, number in solids.items()
+        if number in materials and group in lines.sets
+    ]
     return lines.deck()
 
 
@@ -75,7 +98,7 @@ def cards(text: str) -> Iterator[Card]:
         if card is not None:
             yield card
         # meshio writes an underscore after the names of elements of second order
-        card = Card(first.rstrip("*").upper().rstrip("_"), fields, number)
+        card = Card(first.rstrip("*").upper().rstrip("_"), fields, number, line)
     if not ended:
         raise MeshError(f"is cut off after line {number}: it does not end with ENDDATA")
     if card is not None:
@@ -118,7 +141,44 @@ def _node(lines: Lines, card: Card) -> None:
         raise MeshError(
             f"line {card.line}: GRID {number} has a coordinate that is missing or no number"
         ) from None
+    if card.fields[6].strip("0"):
+        lines.left_out.add(LINK, "GRID with held motions")
     lines.node(number, card.line, at)
+
+
+def _plain(text: str) -> float | None:
+    """A number, None for a field that is blank or none."""
+    try:
+        return _number(text) if text else None
+    except ValueError:
+        return None
+
+
+def _mass(card: Card) -> list[tuple[float, int]]:
+    """Mass and node of a card that puts one on a node."""
+    places = {"CONM2": (3, 1), "CMASS2": (1, 2), "CMASS4": (1, 2)}.get(card.name)
+    if places is None:
+        return []
+    mass, node = (card.fields[place] for place in places)
+    return [(_plain(mass) or 0.0, int(node) if node.isdigit() else 0)]
+
+
+def _material(card: Card, group: str) -> FileMaterial:
+    """A MAT1, whose Poisson's ratio may follow from the shear modulus."""
+    young, shear, nu, density = map(_plain, card.fields[1:5])
+    if nu is None and young and shear:
+        nu = young / 2 / shear - 1
+    if young is None and shear and nu is not None:
+        young = 2 * shear * (1 + nu)
+    return FileMaterial(
+        name=f"MAT1 {card.fields[0]}", group=group, E=young, nu=nu, density=density or None
+    )
+
+
+def _quoted(card: Card) -> str:
+    """The file that an INCLUDE names, where it stands in one line."""
+    named = re.search(r"['\"]([^'\"]+)", card.text)
+    return f" ({named[1].strip()})" if named else ""
 
 
 def _solid(lines: Lines, card: Card) -> None:

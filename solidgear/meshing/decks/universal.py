@@ -7,10 +7,13 @@ Cincinnati, "Universal file formats for modal analysis testing and finite elemen
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from solidgear.meshing.decks.deck import Deck, Lines, coordinates, integer, text_of, told_short
+from solidgear.meshing.decks.left_out import DATASETS, DESCRIPTORS, LINK, OTHER, SORTS, sort_of
 from solidgear.meshing.quality import MeshError
+from solidgear.scene.universal_units import units_of
 
 #: by the descriptor of a finite element: kind of cell in meshio's words, and its nodes in VTK's
 #: order; those of second order go around each edge
@@ -39,17 +42,39 @@ def read(path: str) -> Deck:
     another number of nodes than their kind has, or a number twice.
     """
     lines, found = Lines(), set()
+    thin: list[tuple[int, list[int]]] = []
     for kind, data in _datasets(text_of(path)):
         found.add(kind)
         if kind in NODES:
             _nodes(lines, data)
         elif kind in ELEMENTS:
-            _elements(lines, data)
+            thin += _elements(lines, data)
         elif kind in GROUPS:
             _groups(lines, data, GROUPS[kind])
+        elif re.fullmatch(DATASETS, kind):
+            lines.left_out.add(LINK, f"dataset {kind} of restraints")
     if not found & set(NODES):
         raise MeshError("cannot be read as a universal file: it holds no dataset 2411 of nodes")
+    solid = {node for element in lines.elements for node in element.nodes}
+    for descriptor, nodes in thin:
+        # faces and edges of solids are how meshers write groups of surfaces and lines
+        if not solid.issuperset(nodes):
+            lines.left_out.add(OTHER, f"beams or shells of kind {descriptor}")
     return lines.deck()
+
+
+def unit_of(text: str) -> float | None:
+    """Metres in its unit of length, as dataset 164 says it; None without one."""
+    for kind, data in _datasets(text):
+        if kind == "164" and data:
+            entries = [entry for _, line in data[1:] for entry in line.split()]
+            code = integer(data[0][1][:10], data[0][0], "the code of its units")
+            try:
+                length, force = (float(re.sub("[dD]", "e", entry)) for entry in entries[:2])
+            except ValueError:
+                length = force = 0.0
+            return units_of(code, length, force)[0]
+    return None
 
 
 Data = list[tuple[int, str]]
@@ -92,8 +117,10 @@ def _by(data: Data, count: int) -> Iterator[tuple[tuple[int, str], ...]]:
         yield tuple(data[k : k + count])
 
 
-def _elements(lines: Lines, data: Data) -> None:
+def _elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
+    """Take the elements of a dataset; kind and nodes of those along lines and on faces."""
     k = 0
+    thin: list[tuple[int, list[int]]] = []
     while k < len(data):
         line, head = data[k]
         row = [integer(entry, line, "an entry of an element") for entry in head.split()]
@@ -111,6 +138,11 @@ def _elements(lines: Lines, data: Data) -> None:
             k += 1
         if descriptor not in SOLIDS:
             lines.other(f"kind {descriptor}", number, nodes)
+            sort = sort_of(str(descriptor), DESCRIPTORS)
+            if sort is not None:
+                lines.left_out.add(sort, f"{SORTS[sort][0]} of kind {descriptor}")
+            else:
+                thin.append((descriptor, nodes))
             continue
         kind, order = SOLIDS[descriptor]
         if len(nodes) != len(order) or wanted != len(order):
@@ -119,6 +151,7 @@ def _elements(lines: Lines, data: Data) -> None:
         lines.sets.setdefault(str(material), []).append(number)
         lines.telling.add(str(material))
         lines.sets.setdefault(f"property:{prop}", []).append(number)
+    return thin
 
 
 def _groups(lines: Lines, data: Data, step: int) -> None:

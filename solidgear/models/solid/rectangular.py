@@ -12,10 +12,13 @@ from skfem import Mesh, MeshHex
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.kernel.room import assemblable
+from solidgear.meshing.quality import cell_sizes
 from solidgear.models.solid.own_mesh import solid_body
 from solidgear.scene.patches import FACES
 
-#: cells along the shortest edge at refinement 1; an even number has a section in the middle
+#: cells along the shortest edge at refinement 1; of longer edges they grow with the root of the edge,
+#: since waves along an edge are longer than those across: every edge is divided by a multiple of this,
+#: and meshes of refinements 1/4, 1/2, 1 and so on are nested
 CELLS = 4
 
 
@@ -26,7 +29,7 @@ def block_body(
     :func:`solidgear.models.solid.body.solid`.
     """
     mesh = block_mesh(scene, wanted, element, size, refinement)
-    facts = {"refinement": refinement, "axis": False}
+    facts = {"refinement": refinement, "axis": False, "cell_sizes": cell_sizes(mesh)}
     middle = mesh.p[:, mesh.facets].mean(axis=1)
     low, high = mesh.p.min(axis=1), mesh.p.max(axis=1)
     near = 1e-9 * (high - low).max()
@@ -42,7 +45,8 @@ def block_body(
 def block_mesh(
     scene: Any, wanted: Sequence, element: str, size: float | None, refinement: float
 ) -> Mesh:
-    """Boxes with a line at every section.
+    """Boxes with a line at every section, as many along every edge as it is long beside the shortest,
+    or of one size.
 
     Meshes whose refinements are one twice the other are nested, so that frequencies fall from one
     to the next. SolidgearError for tetrahedra.
@@ -52,10 +56,11 @@ def block_mesh(
             f"solid: element = {element} is not for a block; use hex8, hex20 or hex27"
         )
     x, y, z = scene.body.edges
-    usual = size or min(x, y, z) / CELLS
-    across = (-x / 2, 0.0, x / 2), (-z / 2, 0.0, z / 2)
-    along = sorted({0.0, y / 2, y, *(s.y for s, _ in wanted if s.patch is None)})
-    lines = [_divided(places, usual, refinement) for places in (across[0], along, across[1])]
+    least = min(x, y, z)
+    sizes = [size or edge / CELLS / max(1, round((edge / least) ** 0.5)) for edge in (x, y, z)]
+    along = sorted({0.0, y, *(s.y for s, _ in wanted if s.patch is None)})
+    places = (-x / 2, x / 2), along, (-z / 2, z / 2)
+    lines = [_divided(own, cell, refinement) for own, cell in zip(places, sizes)]
     assemblable(prod(len(own) - 1 for own in lines), 27)
     boxes = MeshHex.init_tensor(*lines)
     # scikit-fem's are left-handed, and x mirrors

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.elements import SOLVED_AS
 from solidgear.kernel.room import assemblable
 from solidgear.meshing.featured import without
 from solidgear.meshing.hexahedra import straight_hexahedra
@@ -15,7 +16,6 @@ from solidgear.models.size import Size, coupled, of_mesh
 from solidgear.models.solid.body import _tets
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.mesh import basis_of
-from solidgear.models.solid.part import SOLVED_AS
 from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.models.solid.rectangular import block_mesh
 from solidgear.scene.attached import attached_stations

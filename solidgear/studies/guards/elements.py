@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.elements import SOLVED_AS
 from solidgear.errors import SolidgearError, listed
 from solidgear.judge.quantities import change, in_words
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.memory import available_mb
 from solidgear.meshing.corners import sharpest_corner
 from solidgear.quantity import C_ZZ, FIRST_BENDING, Quantity
+from solidgear.scene.shaft import without_axis
 from solidgear.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.solve.backends.memory_law import law
 from solidgear.solve.choice import FASTEST, SMALL
 from solidgear.studies.guards.notice import Notice, Notices, beyond, everything, solids
 from solidgear.studies.guards.probe import Probe
+
+if TYPE_CHECKING:
+    from solidgear.scene import Material
 
 # odd_geometry.py's shaft, softer than a seat of half the diameter: 5 % in C_zz at a bearing, 1.2 %
 # in C_thx at the lumped point; then 1 to 2 % more at each halving, without limit (ties.py)
@@ -83,7 +90,14 @@ LINEAR = {"tet4": ("tet10", 116), "hex8": ("hex20", 138)}
 
 def linear_elements(probe: Probe) -> Notices:
     """Elements that answer curvature with shear."""
-    element = probe.body.mesh.get("element")
+    element, file = probe.body.mesh.get("element"), probe.whole.body
+    if file is not None and file.element in SOLVED_AS:
+        yield Notice(
+            "fact",
+            ("solid",),
+            f"the cells of {file.name} are {file.element}, which lock in bending: they are solved as "
+            f"{SOLVED_AS[file.element]}, with flat sides",
+        )
     if element in LINEAR:
         better, factor = LINEAR[element]
         yield Notice(
@@ -128,25 +142,58 @@ LOCKED, SOFT = 0.01, 0.45
 
 def nearly_incompressible(probe: Probe) -> Notices:
     """Elements that lock as nu goes to 1/2; the harmonic solid from order 2 on does not."""
-    usual = {"solid": "hex20", "harmonic": "Q5"} | (
+    usual = {"solid": _element_of_solid(probe), "harmonic": "Q5"} | (
         {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in solids() else {}
     )
-    for s in {s.material: s for s in reversed(probe.scene.segments)}.values():
-        nu = s.material.nu
+    if without_axis(probe.whole):
+        del usual["harmonic"]
+    for material, where in _soft_materials(probe):
         for model, element in usual.items():
-            if nu < SOFT or element not in LOCKING:
-                continue
-            error = float(
-                np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element])))
-            )
+            error = locking(element, material.nu)
             if error > LOCKED:
                 yield Notice(
                     beyond(error, probe.scene.ask.tolerance),
                     (model,),
-                    f"nu = {nu:g} of segment {s.name!r}: element {element} locks and is about "
-                    f"{100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use the "
-                    "harmonic solid of order 3 or more",
+                    f"nu = {material.nu:g} of {where}: element {element} locks and is about "
+                    f"{100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use "
+                    f"{_locks_less(probe, material.nu)}",
                 )
+
+
+def _element_of_solid(probe: Probe) -> str:
+    """Element of the 3D solid of a scene: that of its mesh file, or the one that it asks for."""
+    file = probe.whole.body
+    if file is not None and file.element:
+        return SOLVED_AS.get(file.element, file.element)
+    return str(LADDER["solid"].given(probe.whole, {}).get("element", "hex20"))
+
+
+def locking(element: str, nu: float) -> float:
+    """Share of the bending compliance that an element lacks; 0 of those that were not measured."""
+    if element not in LOCKING:
+        return 0.0
+    return float(np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element]))))
+
+
+def _soft_materials(probe: Probe) -> Iterator[tuple[Material, str]]:
+    """Materials that are nearly incompressible, and what is of them."""
+    body = probe.whole.body
+    if body is not None and without_axis(probe.whole):
+        groups = [g.said for g in body.groups] or [body.name]
+        named = list(zip(body.materials(probe.whole.material), groups))
+    else:
+        named = [(s.material, f"segment {s.name!r}") for s in probe.scene.segments]
+    first = {material: where for material, where in reversed(named)}
+    yield from ((material, where) for material, where in first.items() if material.nu >= SOFT)
+
+
+def _locks_less(probe: Probe, nu: float) -> str:
+    """Advice in place of an element that locks."""
+    if not without_axis(probe.whole):
+        return "the harmonic solid of order 3 or more"
+    body = probe.whole.body
+    better = "hex27" if body is not None and body.kind == "block" else "tet10"
+    return f"{better}, which lacks {100 * locking(better, nu):.2g} %"
 
 
 def uniform_at_shoulder(probe: Probe) -> Notices:

@@ -12,21 +12,11 @@ from typing import Any
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
+from solidgear.scene.universal_units import units_of
 from solidgear.studies.loading import explained
 
 #: endings of their names
 ENDINGS = (".unv", ".uff")
-#: dataset 164's code -> m and N of its units; 9 gives factors of its own
-UNITS = {
-    1: (1.0, 1.0),
-    2: (0.3048, 4.4482216152605),
-    3: (1.0, 9.80665),
-    4: (0.3048, 0.138254954376),
-    5: (1e-3, 1e-3),
-    6: (1e-2, 1e-2),
-    7: (0.0254, 4.4482216152605),
-    8: (1e-3, 9.80665),
-}
 #: dataset 58's kinds of data that carry a length (displacement, velocity, acceleration) or a force
 LENGTHS, FORCES = (8, 11, 12), (9, 13)
 #: its function that is a frequency response
@@ -194,11 +184,7 @@ def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
     if not found:
         raise SceneError("does not tell its units (dataset 164)")
     one = found[0]
-    if one["units_code"] == 9 and one["length"] > 0 and one["force"] > 0:
-        return 1 / one["length"], 1 / one["force"]
-    if one["units_code"] not in UNITS:
-        raise SceneError(f"has units of code {one['units_code']}; dataset 164 knows 1 to 9")
-    return UNITS[one["units_code"]]
+    return units_of(one["units_code"], one["length"], one["force"])
 
 
 def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, float]]:

@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import solidgear as sg
+from solidgear.judge.bars import sizes_of
 from solidgear.judge.quantities import JUDGED, size
 from solidgear.judge.sequence_bars import sequence_bars
 from solidgear.judge.solution import Solution
@@ -195,7 +196,7 @@ def judged(
         known,
         [{Quantity(q): v for q, v in one.quantities.items()} for one in meshes],
         last.solver,
-        [one.mesh.get("representative_size") for one in meshes],
+        [sizes_of(one.mesh) for one in meshes],
     )
     own, tags = last.numbers, {"model": label, "part": body}
     errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}

@@ -1,0 +1,61 @@
+"""Materials that a mesh file says itself, in a system of units that it does not say."""
+
+from __future__ import annotations
+
+from solidgear.scene.parts import Material
+from solidgear.scene.typed import Model
+
+#: Pa and kg/m^3 for each unit of stress and of density in systems of units of decks: SI; N, mm, t;
+#: mN, mm, kg; kN, mm, kg (with ms); N and cm; kgf and mm; lbf and inch with lbf s^2/in, with lb
+SYSTEMS = (
+    (1.0, 1.0),
+    (1e6, 1e12),
+    (1e3, 1e9),
+    (1e9, 1e9),
+    (1e6, 1e9),
+    (1e4, 1e6),
+    (9.80665e6, 9.80665e12),
+    (6894.757, 1.068692e7),
+    (6894.757, 27679.9),
+)
+#: relative difference of E and density, and difference of nu, up to which they are the same number
+SAME, SAME_NU = 5e-3, 5e-3
+
+
+class FileMaterial(Model):
+    """An isotropic material of a mesh file.
+
+    Attributes
+    ----------
+    name : str
+        As the file calls it.
+    group : str
+        Of elements that are of it.
+    E, nu, density : float or None
+        In the units of the file; None where it does not say it.
+    """
+
+    name: str
+    group: str
+    E: float | None = None
+    nu: float | None = None
+    density: float | None = None
+
+    def is_like(self, material: Material) -> bool:
+        """Tell whether it is a material of a scene in some system of units."""
+        if self.nu is not None and abs(self.nu - material.nu) > SAME_NU:
+            return False
+        return any(
+            _same(self.E, stress, material.E) and _same(self.density, dense, material.density)
+            for stress, dense in SYSTEMS
+        )
+
+    @property
+    def numbers(self) -> str:
+        """Numbers that the file gives it, in a sentence."""
+        known = (("E", self.E), ("nu", self.nu), ("density", self.density))
+        return ", ".join(f"{key} {value:.6g}" for key, value in known if value is not None)
+
+
+def _same(told: float | None, unit: float, value: float) -> bool:
+    return told is None or abs(told * unit / value - 1) <= SAME
