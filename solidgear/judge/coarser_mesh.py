@@ -72,7 +72,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
         if mode.frequency_hz > 0 and named is not None:
             step = named.frequency_hz / mode.frequency_hz - 1
             step = max(step, 0.0) if nested else abs(step)
-            bars[str(mode.name)] = factor * step + mode.error
+            bars[str(mode.name)] = factor * step + mode.error + _shape(body)
     return bars
 
 
@@ -87,7 +87,8 @@ def static_bars(
         return {}
     levels = [numbers(Statics.at(one, scene, points), None) for one in (before, body)]
     values, solver = [one.quantities for one in levels], levels[-1].solver
-    bars = step_bars(values, solver, REFINEMENT, left_over=_left_over(scene, before, body))
+    share = _left_over(scene, before, body)
+    bars = step_bars(values, solver, REFINEMENT, left_over=share, shape=_shape(body))
     return {name: bar.width for name, bar in bars.items()}
 
 
@@ -109,6 +110,11 @@ def _before(scene: Scene, body: Body, options: Options) -> Body | None:
 
 def _size(body: Body) -> float:
     return body.mesh["representative_size"]
+
+
+def _shape(body: Body) -> float:
+    """Share that second moments of a mesh are off by, which no coarser mesh shows."""
+    return body.mesh.get("straightened", 0.0)
 
 
 def _left_over(scene: Scene, before: Body, body: Body) -> float:

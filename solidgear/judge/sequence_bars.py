@@ -38,6 +38,7 @@ def sequence_bars(
     solver: Values,
     sizes: Listed[float | None],
     around: Values | None = None,
+    shape: float = 0.0,
 ) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
 
@@ -66,7 +67,7 @@ def sequence_bars(
     if not all(a > b > 0 for a, b in zip(last, last[1:])):
         return {}
     share = left_over(last[-2], last[-1], sharpest(scene))
-    return step_bars(levels, solver, safety, left_over=share)
+    return step_bars(levels, solver, safety, left_over=share, shape=shape)
 
 
 def sharpest(scene: Scene) -> float:

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.meshing.curving import relaxed
+from solidgear.meshing.bisecting import bisected
+from solidgear.meshing.curving import Filling, relaxed
 from solidgear.meshing.element_size import set_size
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.placing import Placing
@@ -164,7 +165,9 @@ def _triangles(gmsh, faces: list[int], owner: list[int], pieces: list[list[int]]
     return places.reshape(-1, 3).T[:, used], triangles.reshape(3, -1), np.concatenate(sides).T
 
 
-def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...] = ()):
+def mesh(
+    path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...] = ()
+) -> tuple[Filling, np.ndarray]:
     """Curved tetrahedra in the part of a STEP file.
 
     Parameters
@@ -178,7 +181,7 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
 
     Returns
     -------
-    mesh : skfem.MeshTet2
+    filling : Filling
         Solids share the nodes of the faces between them.
     owner : (ne,) ndarray of int
         Place of the solid of each element among those that were named, one more for the rest.
@@ -201,8 +204,7 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
         try:
             for dimension in (1, 2, 3):
                 gmsh.model.mesh.generate(dimension)
-            made = relaxed(to_skfem(gmsh))
-            return made, _owned(gmsh, owner, pieces)
+            filling = relaxed(bisected(to_skfem(gmsh)))
         except MeshError:
             raise
         except Exception as error:
@@ -210,16 +212,8 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
                 f"cannot be filled with tetrahedra ({error}): change refinement a little, or look "
                 "for faces that intersect or all but touch"
             ) from error
-
-
-def _owned(gmsh, owner: list[int], pieces: list[list[int]]) -> np.ndarray:
-    """Owner of each element, in gmsh's order."""
-    every = gmsh.model.mesh.getElements(3)[1][0]
-    out = np.zeros(len(every), int)
-    for own, tags in zip(owner, pieces):
-        for tag in tags:
-            out[np.isin(every, gmsh.model.mesh.getElements(3, tag)[1][0])] = own
-    return out
+    of = {tag: own for own, tags in zip(owner, pieces) for tag in tags}
+    return filling, np.array([of[tag] for tag in filling.volume])
 
 
 def _cut(gmsh, solids: list[int], plan) -> list[list[int]]:
