@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import re
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from solidgear.meshing.placing import TURNS, Placing, Triple
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
+from solidgear.meshing.step_unit import unit_said
 from solidgear.scene.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Frustum, Outline
@@ -152,10 +152,6 @@ def _rounded(value: float) -> float:
     return round(float(value), 13) + 0.0
 
 
-_LENGTHS = re.compile(rb"\(([^;]*?LENGTH_UNIT\s*\(\s*\)[^;]*?)\)\s*;", re.S)
-_PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
-
-
 def _unit(table: BodyTable, content: bytes) -> float:
     """Metres for each unit of the file; what a STEP file says of itself is held against the table."""
     if table.step is None:
@@ -165,27 +161,10 @@ def _unit(table: BodyTable, content: bytes) -> float:
         raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')
     if b"END-ISO-10303-21" not in content[-2000:]:
         raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
-    said = {unit for unit in map(_unit_of, _LENGTHS.findall(content)) if unit}
-    if "inch" in said:  # which is told in another unit, and that one is there too
-        said = {"inch"}
-    if len(said) != 1:
-        what = (
-            f"several units of length ({', '.join(sorted(said))})" if said else "no unit of length"
-        )
-        raise MeshError(f"names {what} that is known here; known are mm, cm, m and inch")
-    (own,) = said
+    own = unit_said(content)
     if table.unit is not None and UNITS[table.unit] != UNITS[own]:
         raise SceneError(f"the file itself says {own}", path=("unit",))
     return UNITS[own]
-
-
-def _unit_of(text: bytes) -> str | None:
-    converted = re.search(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", text)
-    if converted:
-        name = converted[1].strip().upper()
-        return "inch" if name in (b"INCH", b"IN") else None
-    plain = re.search(rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.\s*\)", text)
-    return _PREFIX.get(plain[1] or b"") if plain else None
 
 
 def _foot(table: BodyTable) -> Triple:
