@@ -17,6 +17,7 @@ import numpy as np
 from solidgear.meshing.bisecting import bisected
 from solidgear.meshing.curving import Filling, relaxed
 from solidgear.meshing.element_size import set_size
+from solidgear.meshing.enclosed import volumes_of
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
@@ -77,10 +78,7 @@ def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
         solids = read_solids(gmsh, path, place, several=bool(named))
         owner, rest = solid_owners(gmsh, solids, named)
         pieces = fragmented(gmsh, solids, [])
-        volumes = np.zeros(len(named) + 1)
-        for own, tags in zip(owner, pieces):
-            volumes[own] += sum(gmsh.model.occ.getMass(3, tag) for tag in tags)
-        volume = float(volumes.sum())
+        drawn = sum(gmsh.model.occ.getMass(3, tag) for tags in pieces for tag in tags)
         extent = _extent(gmsh)
         faces = [tag for _, tag in gmsh.model.getEntities(2)]
         _no_slivers(gmsh, faces, extent, place)
@@ -94,17 +92,23 @@ def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
             bad = _unmeshed(gmsh, faces, place)
             raise MeshError(f"{bad} cannot be covered with triangles ({error})") from error
         points, triangles, sides = _triangles(gmsh, faces, owner, pieces)
+        _closed(points, triangles[:, (sides < 0).any(axis=0)], drawn)
+        owners = np.repeat(owner, [len(tags) for tags in pieces])
+        volumes = np.bincount(owners, volumes_of(gmsh, sum(pieces, [])), len(named) + 1)
+    return Seen(points, triangles, sides, volumes, rest, len(faces))
+
+
+def _closed(points: np.ndarray, triangles: np.ndarray, drawn: float) -> None:
+    """Refuse faces that do not enclose what the kernel says that they do, m^3."""
     if not len(points[0]) or not np.isfinite(points).all():
         raise MeshError("its faces have no area")
-    outside = (sides < 0).any(axis=0)
-    a, b, c = (points[:, corner[outside]] for corner in triangles)
+    a, b, c = (points[:, corner] for corner in triangles)
     inside = abs(np.einsum("it,it->", a, np.cross(b.T, c.T).T)) / 6
-    if not abs(inside - volume) <= OPEN * volume:
+    if not abs(inside - drawn) <= OPEN * drawn:
         raise MeshError(
-            f"its faces enclose {1e6 * inside:.4g} cm^3 where the solid is told to have "
-            f"{1e6 * volume:.4g} cm^3: faces are missing, turned inside out or intersect"
+            f"its faces enclose {1e6 * inside:.4g} cm^3 where the solid is said to have "
+            f"{1e6 * drawn:.4g} cm^3: faces are missing, turned inside out or intersect"
         )
-    return Seen(points, triangles, sides, volumes, rest, len(faces))
 
 
 def _extent(gmsh) -> float:
