@@ -12,10 +12,11 @@ import numpy as np
 
 from solidgear.errors import SceneError
 from solidgear.meshing.part_file import Found, coarser_meshes, content_of, read, skin
-from solidgear.meshing.placing import TURNS, Placing, Triple
+from solidgear.meshing.placing import TURNS, Placing, Triple, turn_of
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
+from solidgear.meshing.shared_axis import shared_axis
 from solidgear.meshing.step_unit import unit_said
 from solidgear.scene.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.scene.closed_form import volume_of
@@ -29,6 +30,11 @@ LEAST_ROUND = 0.2
 LEAST_LENGTH, MOST_LENGTH = 1e-3, 20.0
 #: relative difference of a size from what it is checked against
 SIZE_CHECK = 1e-3
+#: distance of an axis from the one that was written, over the largest radius: below, both are the same,
+#: and above, it is another
+SAME_AXIS, BESIDE = ON_LINE / 10, 1e-3
+#: difference of directions that are one
+AXIS = 1e-9
 #: factors between units that are taken for one another
 SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
 SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
@@ -47,8 +53,10 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         content = content_of(path)
         unit = _unit(table, content)
         foot = _foot(table)
-        place = Placing(unit, TURNS[table.axis if shaft else "y"], foot)
+        place = Placing(unit, turn_of(table.axis if shaft else "y"), foot)
         found_in = read(table, path, place, content)
+        if shaft:
+            place, found_in = _centred(table, place, found_in)
         points, triangles = skin(found_in)
         _sizes(table, points)
         coarser = coarser_meshes(table, coarse, place, found_in)
@@ -61,7 +69,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         raise error.located(None, prefix=("body",)) from None
     # the lower end comes to y = 0; the origin that was asked for is a place like any other
     start = float(points[1].min())
-    lower = np.array(foot) + np.array(place.turn).T @ (0.0, start, 0.0)
+    lower = np.array(place.foot) + np.array(place.turn).T @ (0.0, start, 0.0)
     x, y, z = (float(v) for v in lower)
     points = points - [[0.0], [start], [0.0]]
     shares, kinds = _shared_out(found_in, found.walls)
@@ -174,9 +182,36 @@ def _foot(table: BodyTable) -> Triple:
     if isinstance(table.origin, tuple):
         return table.origin
     # along the axis of the file, whichever way the shaft runs
-    along = "y" if table.axis == NONE else table.axis[-1]
-    x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
+    if isinstance(table.axis, str):
+        along = "y" if table.axis == NONE else table.axis[-1]
+        x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
+    else:
+        x, y, z = (table.origin * v for v in table.axis)
     return (x, y, z)
+
+
+def _centred(table: BodyTable, place: Placing, found: Found) -> tuple[Placing, Found]:
+    """A part whose own axis lies a little beside the one that was written, about its own."""
+    points, triangles = skin(found)
+    foot, along = shared_axis(points, triangles)
+    along = along * np.sign(along[1])
+    if not along[1] > 0.5:
+        return place, found
+    foot = foot - foot[1] / along[1] * along
+    heights = np.array([points[1].min(), points[1].max()])
+    off = np.hypot(*(foot[:, None] + along[:, None] / along[1] * heights)[[0, 2]]).max()
+    largest = float(np.hypot(points[0], points[2]).max())
+    if not SAME_AXIS * largest < off <= BESIDE * largest:
+        return place, found
+    turn = np.array(turn_of(tuple(along)))
+    moved = found._replace(points=turn @ (found.points - foot[:, None]))
+    if not round_part(*skin(moved)).share > round_part(points, triangles).share:
+        return place, found
+    x, y, z = (float(v) for v in place.back(foot[:, None])[:, 0])
+    rows = (tuple(float(v) for v in row) for row in turn @ np.array(place.turn))
+    told = f"its axis lies {1e6 * off:.2g} um beside {table.about} of the file, and is taken"
+    moved = moved._replace(remarks=(*found.remarks, told))
+    return Placing(place.unit, tuple(rows), (x, y, z)), moved  # type: ignore[arg-type]
 
 
 def _shared_out(found: Found, walls) -> tuple[list[Share], list[int]]:
@@ -207,10 +242,10 @@ def _sizes(table: BodyTable, points) -> None:
         ratio = own / table.size_check[k]
         if not abs(ratio - 1) <= SIZE_CHECK:
             raise SceneError(
-                f"the {what} of the part about {table.axis} is {1e3 * own:.6g} mm{_slip(ratio)}",
+                f"the {what} of the part about {table.about} is {1e3 * own:.6g} mm{_slip(ratio)}",
                 path=("size_check", k),
             )
-    about = f" about {table.axis}"
+    about = f" about {table.about}"
     if table.axis == NONE:
         length, about = float(np.ptp(points, axis=1).max()), ""
     if not LEAST_LENGTH <= length <= MOST_LENGTH:
@@ -230,37 +265,14 @@ def _slip(ratio: float) -> str:
 
 def _not_round(table: BodyTable, place: Placing, points, triangles, found: RoundPart) -> str:
     """Reason why a part is no shaft about its axis, and the axis about which it would be."""
-    shares = {table.axis: found.share}
+    words = f"{100 * found.share:.0f} % of the surface is round about this axis"
+    foot, along = shared_axis(points, triangles)
+    turned = np.array(turn_of(tuple(along))) @ (points - foot[:, None])
+    share = round_part(turned, triangles).share
+    if share >= LEAST_ROUND:
+        return words + _other_axis(table, place, points, foot, along, share)
     # m from here on
     raw = place.back(points)
-    for axis in ("x", "y", "z"):
-        if axis != table.axis.lstrip("-"):
-            turned = Placing(1.0, TURNS[axis], place.foot).of(raw)
-            shares[axis] = round_part(turned, triangles).share
-    best = max(shares, key=shares.__getitem__)
-    words = f"{100 * found.share:.0f} % of the surface is round about this axis"
-    if shares[best] >= LEAST_ROUND:
-        return f'{words}, and {100 * shares[best]:.0f} % about "{best}"'
-    # of an axis beside that point: where it leaves the lower end, so that places count from there as
-    # they do without an origin
-    for axis in sorted(shares, key=lambda one: one != table.axis):
-        lying = Placing(1.0, TURNS[axis], place.foot)
-        there = lying.of(raw)
-        low, high = there.min(axis=1), there.max(axis=1)
-        foot = (low + high) / 2
-        foot[1] = low[1] if table.origin is None else 0.0
-        # points on a circle miss its outermost places by a little, and axes lie at round numbers
-        for digits in (4, 5, 8):
-            x, y, z = (round(float(v), digits) + 0.0 for v in lying.back(foot[:, None])[:, 0])
-            off = round_part(Placing(1.0, TURNS[axis], (x, y, z)).of(raw), triangles).share
-            if off >= LEAST_ROUND:
-                given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
-                about = "one" if axis == table.axis else f'"{axis}"'
-                return (
-                    f"{words}, which goes through ({given}) mm of the file, and {100 * off:.0f} % "
-                    f"about {about} through ({', '.join(f'{1e3 * v:.8g}' for v in (x, y, z))}) mm: "
-                    f"write that point as origin{', and that axis' * (axis != table.axis)}"
-                )
     words = f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
     if table.mesh:
         words += f'; write axis = "{NONE}" for a body that is none'
@@ -276,6 +288,31 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
                 )
             break
     return words
+
+
+def _other_axis(table: BodyTable, place: Placing, points, foot, along, share: float) -> str:
+    """What to write for an axis in the scene, a point (3,) and a direction (3,), about which so much of
+    the surface is round.
+    """
+    direction = np.array(place.turn).T @ along
+    sign = np.sign(direction[np.abs(direction).argmax()])
+    direction, along = sign * direction, sign * along
+    heights = along @ (points - foot[:, None])
+    # where it leaves the lower end, so that places count from there as they do without an origin
+    lowest = float(heights.min()) if table.origin is None else float(-along @ foot)
+    x, y, z = (round(float(v), 9) + 0.0 for v in place.back((foot + lowest * along)[:, None])[:, 0])
+    beside = float(np.linalg.norm(foot - (along @ foot) * along))
+    close = [name for name in TURNS if np.abs(np.array(turn_of(name))[1] - direction).max() < AXIS]
+    said = f'"{close[0]}"' if close else f"[{', '.join(f'{v:.10g}' for v in direction)}]"
+    if beside <= ON_LINE * float(np.ptp(heights)):
+        return f", and {100 * share:.0f} % about {said}"
+    given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
+    same = bool(close) and close[0] == table.axis
+    return (
+        f", which goes through ({given}) mm of the file, and {100 * share:.0f} % about "
+        f"{'one' if same else said} through ({', '.join(f'{1e3 * v:.10g}' for v in (x, y, z))}) mm: "
+        f"write that point as origin{', and that axis' * (not same)}"
+    )
 
 
 def seat_share(
