@@ -91,6 +91,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else found.facets / found_in.volume,
         beside_arcs=found.beside_arcs,
+        tori=tuple(t._replace(y0=t.y0 - start, y1=t.y1 - start, y=t.y - start) for t in found.tori),
         groups=found_in.groups,
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, listed
 from solidgear.scene.materials import by_name
+from solidgear.scene.outline import Torus
 from solidgear.scene.parts import Material
 from solidgear.scene.patches import Patch, Triple, refuse_elsewhere
 from solidgear.scene.typed import Model
@@ -241,6 +242,7 @@ class BodyFile(Model):
     round_volume: float
     facets: float = 0.0
     beside_arcs: float = 0.0
+    tori: tuple[Torus, ...] = Field((), exclude=True, repr=False)
     element: str = ""
     counts: tuple[int, int, int, int] | None = None
     groups: tuple[PartGroup, ...] = ()
