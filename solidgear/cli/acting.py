@@ -15,11 +15,10 @@ from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.report.deflection_tables import DOFS, LOAD_OF
 from solidgear.report.units import Units
 from solidgear.scene import Scene
-from solidgear.scene.file import load
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.toml_file import is_train
 from solidgear.scene.train import Train
-from solidgear.studies.loading import load_train
+from solidgear.studies.loading import as_written, load_train
 from solidgear.studies.train.operation import named_point
 
 AtRestFile = Annotated[
@@ -67,7 +66,7 @@ class Acting(Group):
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         given = {option: value is not None for option, value in of_train.items()}
         refuse(given, f"a train, and {file} is none: a shaft takes --load, or has [load]")
-        scene = load(file)
+        scene = as_written(file)
         return scene if self.load is None else loaded_by(scene, self.load)
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:

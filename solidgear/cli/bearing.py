@@ -22,11 +22,10 @@ from solidgear.report.terminal import matrix_table
 from solidgear.report.words import engineering
 from solidgear.scene import Scene
 from solidgear.scene.designation import boundary
-from solidgear.scene.file import load as read
 from solidgear.scene.toml_file import describes_train, parse
 from solidgear.studies.bearing_life import bearing_lives
 from solidgear.studies.bearing_study import BearingFacts, bearing_facts, over_load, with_load
-from solidgear.studies.loading import explained, shaft
+from solidgear.studies.loading import as_written, explained, shaft
 
 
 @command
@@ -65,7 +64,7 @@ def bearing(
     if out is not None:
         check_ending(out)
     turns = speed_of(speed)
-    loaded = read(scene)
+    loaded = as_written(scene)
     if load is not None:
         loaded = loaded_by(loaded, load, name)
     with explained(scene):

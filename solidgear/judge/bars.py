@@ -83,6 +83,7 @@ def step_bars(
     left_over: float | None = None,
     around: Values | None = None,
     effect: Values | None = None,
+    shape: float = 0.0,
 ) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of two or more meshes.
 
@@ -100,6 +101,8 @@ def step_bars(
         Relative error that the cells around leave in each quantity.
     effect : mapping, optional
         What features change of each quantity, relative.
+    shape : float
+        Share that second moments of the finest mesh are off by, whatever the others are.
 
     Examples
     --------
@@ -132,6 +135,7 @@ def step_bars(
                 max(factor * rests_on, least)
                 + safety.steps[0] * _left_around(around, name)
                 + left
+                + shape
                 + LEAST
             ),
             change=float(known[-1]),

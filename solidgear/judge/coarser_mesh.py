@@ -80,7 +80,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
                 left = _left(max(step, 0.0), falls.get(str(mode.name)))
             else:
                 left = REFINEMENT.steps[0] * _left_over(scene, before, body) * abs(step)
-            bars[str(mode.name)] = left + mode.error
+            bars[str(mode.name)] = left + mode.error + _shape(body)
     return bars
 
 
@@ -119,7 +119,8 @@ def static_bars(
         return {}
     levels = [numbers(Statics.at(one, scene, points), None) for one in (before, body)]
     values, solver = [one.quantities for one in levels], levels[-1].solver
-    bars = step_bars(values, solver, REFINEMENT, left_over=_left_over(scene, before, body))
+    share = _left_over(scene, before, body)
+    bars = step_bars(values, solver, REFINEMENT, left_over=share, shape=_shape(body))
     return {name: bar.width for name, bar in bars.items()}
 
 
@@ -152,6 +153,11 @@ def _coarser(scene: Scene, body: Body, options: Options) -> Body | None:
 
 def _shrunk(before: Body, body: Body) -> float:
     return shrinkage(sizes_of(before.mesh), sizes_of(body.mesh))
+
+
+def _shape(body: Body) -> float:
+    """Share that second moments of a mesh are off by, which no coarser mesh shows."""
+    return body.mesh.get("straightened", 0.0)
 
 
 def _left_over(scene: Scene, before: Body, body: Body) -> float:

@@ -39,6 +39,7 @@ def sequence_bars(
     solver: Values,
     sizes: Listed[Listed[float]],
     around: Values | None = None,
+    shape: float = 0.0,
 ) -> dict[Quantity, ErrorBar]:
     """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
 
@@ -67,7 +68,7 @@ def sequence_bars(
     if 1.0 in shrunk:
         return {}
     share = left_over(shrunk[-1], sharpest(scene))
-    return step_bars(levels, solver, safety, left_over=share)
+    return step_bars(levels, solver, safety, left_over=share, shape=shape)
 
 
 def sharpest(scene: Scene) -> float:

@@ -221,7 +221,8 @@ class Tied(Loop):
             sizes = [sizes_of(level.mesh) for level in self.meshes]
             tied = self.scene if tie == SCENE else self.scene.with_attachment("section")
             around = self.around.get(tie)
-            found = sequence_bars(tied, self.plan, self.model, values, solver, sizes, around)
+            shape = self.meshes[-1].mesh.get("straightened", 0.0)
+            found = sequence_bars(tied, self.plan, self.model, values, solver, sizes, around, shape)
             if found:
                 out[tie] = found
         return out

@@ -1,10 +1,11 @@
-"""Middle nodes of curved tetrahedra: drawn in where elements fold, and moved out so that sides enclose
-the volume of what they stand for.
+"""Middle nodes of curved tetrahedra: moved out so that sides enclose the volume of what they stand for,
+and drawn in where elements fold.
 """
 
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -36,11 +37,12 @@ def with_nodes(mesh: M, doflocs: np.ndarray) -> M:
 
 
 def with_middles(mesh: M, edges: np.ndarray, middles: np.ndarray) -> M:
-    """A second-order mesh with its middle nodes at some places (3, k), m, each on the edge between two
-    vertices (2, k).
+    """A second-order mesh with middle nodes at some places (3, k), m, each on the edge between two
+    vertices (2, k); others stay.
     """
+    at = edge_places(edges, mesh.edges)
     doflocs = mesh.doflocs.copy()
-    doflocs[:, mesh.dofs.edge_dofs[0]] = middles[:, edge_places(edges, mesh.edges)]
+    doflocs[:, mesh.dofs.edge_dofs[0, at >= 0]] = middles[:, at[at >= 0]]
     return with_nodes(mesh, doflocs)
 
 
@@ -62,17 +64,40 @@ def ten_nodes(
     return with_middles(MeshTet2.from_mesh(straight), known[:, among], middles[:, among])
 
 
-def relaxed(mesh: MeshTet2) -> MeshTet2:
-    """The mesh with the mid nodes of folded elements drawn towards the middle of their edges, as
-    far as needed.
+@dataclass(frozen=True)
+class Filling:
+    """Curved tetrahedra in what is drawn.
 
-    Only the tip of a cone, wedges of few degrees and slivers at a bore fold elements of a sensible
-    size. What chords take from the volume there, the other curved sides give back, each by the
+    Attributes
+    ----------
+    mesh : skfem.MeshTet2
+    volume : (ne,) ndarray of int
+        Number of the drawn volume that each element is in.
+    inside : (k,) ndarray of bool
+        Edges that lie on no drawn surface, but for their ends.
+    straightened : dict of int to float
+        Share that the second moments of a drawn volume are off by, as edges of elements that would
+        fold are straight.
+    """
+
+    mesh: MeshTet2
+    volume: np.ndarray
+    inside: np.ndarray
+    straightened: dict[int, float] = field(default_factory=dict)
+
+
+def relaxed(filling: Filling) -> Filling:
+    """The elements with the middle nodes of those that fold drawn towards the middle of their edges,
+    as far as needed.
+
+    Elements that fold between two faces of one surface have been cut in two before
+    (:mod:`solidgear.meshing.bisecting`); the tip of a cone, wedges of few degrees and slivers are
+    left. What chords take from a drawn volume there, its other curved sides give back, each by the
     share that it has in what all of them can give: some 1e-3 of their sagittas.
     """
+    mesh = filling.mesh
     straight = mesh.p[:, mesh.edges].mean(axis=1)
     middles = mesh.dofs.edge_dofs[0]
-    whole = mesh
     keep = np.ones(mesh.edges.shape[1])
     curve = mesh.doflocs[:, middles] - straight
     # a straight edge may fold the element beside it, which then is straightened in its turn
@@ -85,27 +110,44 @@ def relaxed(mesh: MeshTet2) -> MeshTet2:
         doflocs = mesh.doflocs.copy()
         doflocs[:, middles] = straight + keep * curve
         mesh = with_nodes(mesh, doflocs)
-    return _given_back(mesh, whole, curve, keep)
-
-
-def _given_back(mesh: MeshTet2, whole: MeshTet2, curve: np.ndarray, keep: np.ndarray) -> MeshTet2:
-    """A mesh with the volume of the one whose edges were not straightened, which is what its sides
-    enclose, as folded elements count with their sign; as it is where an edge would have to move by
-    too much or an element would fold.
-    """
     if (keep == 1.0).all():
-        return mesh
-    lost = float(element_volumes(whole).sum() - element_volumes(mesh).sum())
-    gain = np.where(keep == 1.0, _gain(whole, curve), 0.0)
-    able = (gain**2).sum()
-    if not able > 0 or abs(lost) * np.abs(gain).max() > MOST_GIVEN * able:
-        return mesh
+        return filling
+    return _given_back(filling, mesh, curve, keep)
+
+
+def _given_back(filling: Filling, mesh: MeshTet2, curve: np.ndarray, keep: np.ndarray) -> Filling:
+    """Every drawn volume of a mesh with straightened edges as large as its sides enclosed before, where
+    folded elements count with their sign; as far as that moves no edge by too much, and not where
+    an element would fold.
+    """
+    drawn, part = np.unique(filling.volume, return_inverse=True)
+    lowest = np.full(len(keep), part.max())
+    highest = np.zeros(len(keep), int)
+    np.minimum.at(lowest, mesh.t2e.ravel(), np.tile(part, len(mesh.t2e)))
+    np.maximum.at(highest, mesh.t2e.ravel(), np.tile(part, len(mesh.t2e)))
+    gives = (keep == 1.0) & (lowest == highest)
+    gain = np.where(gives, _gain(filling.mesh, curve), 0.0)
+    size = np.bincount(part, element_volumes(filling.mesh))
+    lost = size - np.bincount(part, element_volumes(mesh))
+    able = np.bincount(lowest, gain**2, minlength=len(size))
+    most = np.zeros(len(size))
+    np.maximum.at(most, lowest, np.abs(gain))
+    scale = np.divide(lost, able, out=np.zeros_like(lost), where=able > 0)
+    limit = np.divide(MOST_GIVEN, most, out=np.zeros_like(most), where=most > 0)
+    scale = np.clip(scale, -limit, limit)
     middles = mesh.dofs.edge_dofs[0]
-    share = lost * gain / able
-    doflocs = mesh.doflocs.copy()
-    doflocs[:, middles] += share * curve
-    given = with_nodes(mesh, doflocs)
-    return mesh if (element_ratios(given) < FOLD).any() else given
+    while True:
+        doflocs = mesh.doflocs.copy()
+        doflocs[:, middles] += scale[lowest] * gain * curve
+        given = with_nodes(mesh, doflocs)
+        folded = np.unique(part[element_ratios(given) < FOLD])
+        if not scale[folded].any():
+            break
+        scale[folded] = 0.0
+    # what is missing at the surface counts twice in the second moments of a full section, of a hollow
+    # one less
+    left = 2 * np.abs(1 - np.bincount(part, element_volumes(given)) / size)
+    return replace(filling, mesh=given, straightened=dict(zip(drawn.tolist(), left.tolist())))
 
 
 def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:

@@ -8,20 +8,25 @@ Where all features share a mirror plane, only one half is drawn.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
 import numpy as np
 from skfem import MeshTet2
 
-from solidgear.meshing.curving import ten_nodes
+from solidgear.meshing.curving import Filling, ten_nodes
 from solidgear.meshing.cuts import edge_size, feature_size, mirror_plane, tool
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import draw_revolved, graded_corners
-from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
+from solidgear.meshing.tetrahedra import (
+    check_filling,
+    filled,
+    lost_by_arcs,
+    segment_of_elements,
+)
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.features.cut import Cut
 from solidgear.scene.outline import Outline
@@ -107,7 +112,7 @@ def featured_mesh(
         more = sector.sizes_around(outline.segments, around_axis, refinement)
     arcs = lost_by_arcs(around)
 
-    def made(finer: float, at_steps: float) -> tuple[MeshTet2, np.ndarray, float]:
+    def made(finer: float, at_steps: float) -> tuple[Filling, np.ndarray, float]:
         """The mesh, its elements in features, and their volume as OCC says."""
         graded = graded_size and graded_size / at_steps
         with Session(gmsh):
@@ -123,20 +128,20 @@ def featured_mesh(
             formulas += [found[0] for found in sharp]
             set_size(gmsh, formulas, size)
             removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
-            mesh = filled(
+            filling = filled(
                 gmsh,
                 "gmsh could not mesh the shaft with its features ({}): "
                 "change refinement a little, or look for features that all but touch",
             )
-            every = gmsh.model.mesh.getElements(3)[1][0]
-            own = [gmsh.model.mesh.getElements(3, piece)[1][0] for piece in pieces]
-        return mesh, np.isin(every, np.concatenate(own)), removed
+        left = {tag: off for tag, off in filling.straightened.items() if tag not in pieces}
+        return replace(filling, straightened=left), np.isin(filling.volume, pieces), removed
 
     finer = at_steps = 0
     while True:
-        mesh, cut, removed = made(FINER[finer], AT_STEPS[at_steps])
+        filling, cut, removed = made(FINER[finer], AT_STEPS[at_steps])
+        mesh = filling.mesh
         lacking = _off(without(mesh, cut), removed)
-        if lacking > OF_CUT and FINER[finer] < FINER[-1]:
+        if lacking > arcs and FINER[finer] < FINER[-1]:
             finer += 1
         elif _off(mesh, whole) > arcs and graded_size and AT_STEPS[at_steps] < AT_STEPS[-1]:
             at_steps += 1
@@ -148,7 +153,7 @@ def featured_mesh(
             f"the elements of {names} miss {100 * lacking:.2g} % of the {1e9 * removed:.6g} mm^3 that "
             f"the solid cut out of the mesh has, more than {OF_CUT:.0%}: raise refinement"
         )
-    quality = check_mesh(mesh, volume=whole, rtol=arcs)
+    quality = check_filling(filling, volume=whole, rtol=arcs)
     segment = segment_of_elements(mesh, outline.segments)
     return FeaturedMesh(mesh, segment, cut, plane, quality, removed / share)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import math
-import re
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,10 +14,12 @@ from solidgear.errors import SceneError
 from solidgear.meshing.decks import universal
 from solidgear.meshing.decks.deck import reader_of
 from solidgear.meshing.part_file import Found, coarser_meshes, content_of, read, skin
-from solidgear.meshing.placing import TURNS, Placing, Triple
+from solidgear.meshing.placing import TURNS, Placing, Triple, turn_of
 from solidgear.meshing.quality import MeshError
 from solidgear.meshing.round_part import ON_LINE, RoundPart, round_part
 from solidgear.meshing.section_materials import Share, shared_out
+from solidgear.meshing.shared_axis import shared_axis
+from solidgear.meshing.step_unit import unit_said
 from solidgear.scene.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.outline import Frustum, Outline
@@ -31,6 +32,11 @@ LEAST_ROUND = 0.2
 LEAST_LENGTH, MOST_LENGTH = 1e-3, 20.0
 #: relative difference of a size from what it is checked against
 SIZE_CHECK = 1e-3
+#: distance of an axis from the one that was written, over the largest radius: below, both are the same,
+#: and above, it is another
+SAME_AXIS, BESIDE = ON_LINE / 10, 1e-3
+#: difference of directions that are one
+AXIS = 1e-9
 #: factors between units that are taken for one another
 SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
 SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
@@ -49,8 +55,10 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         content = content_of(path)
         unit, doubt = _unit(table, path, content)
         foot = _foot(table)
-        place = Placing(unit, TURNS[table.axis if shaft else "y"], foot)
+        place = Placing(unit, turn_of(table.axis if shaft else "y"), foot)
         found_in = read(table, path, place, content)
+        if shaft:
+            place, found_in = _centred(table, place, found_in)
         points, triangles = skin(found_in)
         _sizes(table, points)
         coarser = coarser_meshes(table, coarse, place, found_in)
@@ -63,7 +71,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         raise error.located(None, prefix=("body",)) from None
     # the lower end comes to y = 0; the origin that was asked for is a place like any other
     start = float(points[1].min())
-    lower = np.array(foot) + np.array(place.turn).T @ (0.0, start, 0.0)
+    lower = np.array(place.foot) + np.array(place.turn).T @ (0.0, start, 0.0)
     x, y, z = (float(v) for v in lower)
     points = points - [[0.0], [start], [0.0]]
     shares, kinds = _shared_out(found_in, found.walls)
@@ -85,6 +93,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else found.facets / found_in.volume,
         beside_arcs=found.beside_arcs,
+        tori=tuple(t._replace(y0=t.y0 - start, y1=t.y1 - start, y=t.y - start) for t in found.tori),
         groups=found_in.groups,
         told=() if table.materials else found_in.told,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
@@ -154,10 +163,6 @@ def _rounded(value: float) -> float:
     return round(float(value), 13) + 0.0
 
 
-_LENGTHS = re.compile(rb"\(([^;]*?LENGTH_UNIT\s*\(\s*\)[^;]*?)\)\s*;", re.S)
-_PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
-
-
 def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[str, ...]]:
     """Metres for each unit of the file, and a remark where a universal file says another than the table."""
     if table.step is not None:
@@ -192,27 +197,10 @@ def _unit_of_step(table: BodyTable, content: bytes) -> float:
         raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')
     if b"END-ISO-10303-21" not in content[-2000:]:
         raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
-    said = {unit for unit in map(_unit_of, _LENGTHS.findall(content)) if unit}
-    if "inch" in said:  # which is told in another unit, and that one is there too
-        said = {"inch"}
-    if len(said) != 1:
-        what = (
-            f"several units of length ({', '.join(sorted(said))})" if said else "no unit of length"
-        )
-        raise MeshError(f"names {what} that is known here; known are mm, cm, m and inch")
-    (own,) = said
+    own = unit_said(content)
     if table.unit is not None and UNITS[table.unit] != UNITS[own]:
         raise SceneError(f"the file itself says {own}", path=("unit",))
     return UNITS[own]
-
-
-def _unit_of(text: bytes) -> str | None:
-    converted = re.search(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", text)
-    if converted:
-        name = converted[1].strip().upper()
-        return "inch" if name in (b"INCH", b"IN") else None
-    plain = re.search(rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.\s*\)", text)
-    return _PREFIX.get(plain[1] or b"") if plain else None
 
 
 def _foot(table: BodyTable) -> Triple:
@@ -222,9 +210,36 @@ def _foot(table: BodyTable) -> Triple:
     if isinstance(table.origin, tuple):
         return table.origin
     # along the axis of the file, whichever way the shaft runs
-    along = "y" if table.axis == NONE else table.axis[-1]
-    x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
+    if isinstance(table.axis, str):
+        along = "y" if table.axis == NONE else table.axis[-1]
+        x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
+    else:
+        x, y, z = (table.origin * v for v in table.axis)
     return (x, y, z)
+
+
+def _centred(table: BodyTable, place: Placing, found: Found) -> tuple[Placing, Found]:
+    """A part whose own axis lies a little beside the one that was written, about its own."""
+    points, triangles = skin(found)
+    foot, along = shared_axis(points, triangles)
+    along = along * np.sign(along[1])
+    if not along[1] > 0.5:
+        return place, found
+    foot = foot - foot[1] / along[1] * along
+    heights = np.array([points[1].min(), points[1].max()])
+    off = np.hypot(*(foot[:, None] + along[:, None] / along[1] * heights)[[0, 2]]).max()
+    largest = float(np.hypot(points[0], points[2]).max())
+    if not SAME_AXIS * largest < off <= BESIDE * largest:
+        return place, found
+    turn = np.array(turn_of(tuple(along)))
+    moved = found._replace(points=turn @ (found.points - foot[:, None]))
+    if not round_part(*skin(moved)).share > round_part(points, triangles).share:
+        return place, found
+    x, y, z = (float(v) for v in place.back(foot[:, None])[:, 0])
+    rows = (tuple(float(v) for v in row) for row in turn @ np.array(place.turn))
+    told = f"its axis lies {1e6 * off:.2g} um beside {table.about} of the file, and is taken"
+    moved = moved._replace(remarks=(*found.remarks, told))
+    return Placing(place.unit, tuple(rows), (x, y, z)), moved  # type: ignore[arg-type]
 
 
 def _shared_out(found: Found, walls) -> tuple[list[Share], list[int]]:
@@ -255,10 +270,10 @@ def _sizes(table: BodyTable, points) -> None:
         ratio = own / table.size_check[k]
         if not abs(ratio - 1) <= SIZE_CHECK:
             raise SceneError(
-                f"the {what} of the part about {table.axis} is {1e3 * own:.6g} mm{_slip(ratio)}",
+                f"the {what} of the part about {table.about} is {1e3 * own:.6g} mm{_slip(ratio)}",
                 path=("size_check", k),
             )
-    about = f" about {table.axis}"
+    about = f" about {table.about}"
     if table.axis == NONE:
         length, about = float(np.ptp(points, axis=1).max()), ""
     if not LEAST_LENGTH <= length <= MOST_LENGTH:
@@ -278,37 +293,14 @@ def _slip(ratio: float) -> str:
 
 def _not_round(table: BodyTable, place: Placing, points, triangles, found: RoundPart) -> str:
     """Reason why a part is no shaft about its axis, and the axis about which it would be."""
-    shares = {table.axis: found.share}
+    words = f"{100 * found.share:.0f} % of the surface is round about this axis"
+    foot, along = shared_axis(points, triangles)
+    turned = np.array(turn_of(tuple(along))) @ (points - foot[:, None])
+    share = round_part(turned, triangles).share
+    if share >= LEAST_ROUND:
+        return words + _other_axis(table, place, points, foot, along, share)
     # m from here on
     raw = place.back(points)
-    for axis in ("x", "y", "z"):
-        if axis != table.axis.lstrip("-"):
-            turned = Placing(1.0, TURNS[axis], place.foot).of(raw)
-            shares[axis] = round_part(turned, triangles).share
-    best = max(shares, key=shares.__getitem__)
-    words = f"{100 * found.share:.0f} % of the surface is round about this axis"
-    if shares[best] >= LEAST_ROUND:
-        return f'{words}, and {100 * shares[best]:.0f} % about "{best}"'
-    # of an axis beside that point: where it leaves the lower end, so that places count from there as
-    # they do without an origin
-    for axis in sorted(shares, key=lambda one: one != table.axis):
-        lying = Placing(1.0, TURNS[axis], place.foot)
-        there = lying.of(raw)
-        low, high = there.min(axis=1), there.max(axis=1)
-        foot = (low + high) / 2
-        foot[1] = low[1] if table.origin is None else 0.0
-        # points on a circle miss its outermost places by a little, and axes lie at round numbers
-        for digits in (4, 5, 8):
-            x, y, z = (round(float(v), digits) + 0.0 for v in lying.back(foot[:, None])[:, 0])
-            off = round_part(Placing(1.0, TURNS[axis], (x, y, z)).of(raw), triangles).share
-            if off >= LEAST_ROUND:
-                given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
-                about = "one" if axis == table.axis else f'"{axis}"'
-                return (
-                    f"{words}, which goes through ({given}) mm of the file, and {100 * off:.0f} % "
-                    f"about {about} through ({', '.join(f'{1e3 * v:.8g}' for v in (x, y, z))}) mm: "
-                    f"write that point as origin{', and that axis' * (axis != table.axis)}"
-                )
     words = f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
     if table.mesh:
         words += f'; write axis = "{NONE}" for a body that is none'
@@ -324,6 +316,31 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
                 )
             break
     return words
+
+
+def _other_axis(table: BodyTable, place: Placing, points, foot, along, share: float) -> str:
+    """What to write for an axis in the scene, a point (3,) and a direction (3,), about which so much of
+    the surface is round.
+    """
+    direction = np.array(place.turn).T @ along
+    sign = np.sign(direction[np.abs(direction).argmax()])
+    direction, along = sign * direction, sign * along
+    heights = along @ (points - foot[:, None])
+    # where it leaves the lower end, so that places count from there as they do without an origin
+    lowest = float(heights.min()) if table.origin is None else float(-along @ foot)
+    x, y, z = (round(float(v), 9) + 0.0 for v in place.back((foot + lowest * along)[:, None])[:, 0])
+    beside = float(np.linalg.norm(foot - (along @ foot) * along))
+    close = [name for name in TURNS if np.abs(np.array(turn_of(name))[1] - direction).max() < AXIS]
+    said = f'"{close[0]}"' if close else f"[{', '.join(f'{v:.10g}' for v in direction)}]"
+    if beside <= ON_LINE * float(np.ptp(heights)):
+        return f", and {100 * share:.0f} % about {said}"
+    given = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
+    same = bool(close) and close[0] == table.axis
+    return (
+        f", which goes through ({given}) mm of the file, and {100 * share:.0f} % about "
+        f"{'one' if same else said} through ({', '.join(f'{1e3 * v:.10g}' for v in (x, y, z))}) mm: "
+        f"write that point as origin{', and that axis' * (not same)}"
+    )
 
 
 def seat_share(

@@ -45,3 +45,25 @@ TURNS: dict[str, tuple[Triple, Triple, Triple]] = {
     "z": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)),
     "-z": ((1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
 }
+
+
+def turn_of(axis: str | Triple) -> tuple[Triple, Triple, Triple]:
+    """The rotation that turns an axis of the file to +y, that of a direction of length one by the
+    least angle.
+
+    Examples
+    --------
+    >>> turn = np.array(turn_of((0.6, 0.8, 0.0)))
+    >>> (turn @ [0.6, 0.8, 0.0]).round(12).tolist(), (turn @ [0, 0, 1]).round(12).tolist()
+    ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0])
+    """
+    if isinstance(axis, str):
+        return TURNS[axis]
+    x, y, z = axis
+    if y < -1 + 1e-12:
+        return TURNS["-y"]
+    # I + V + V^2 / (1 + y) of the skew matrix V of axis x (0, 1, 0)
+    skew = np.array([[0.0, -x, 0.0], [x, 0.0, z], [0.0, -z, 0.0]])
+    turn = np.eye(3) + skew + skew @ skew / (1 + y)
+    first, second, third = (tuple(float(v) for v in row) for row in turn)
+    return first, second, third  # type: ignore[return-value]

@@ -54,6 +54,9 @@ class MeshQuality:
     min_volume_ratio : float
         Smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
         sliver wrongly.
+    straightened : float
+        Largest share that the second moments of a part of it are off by, as edges of elements that
+        would fold are straight: it falls by no order.
     """
 
     n_elements: int
@@ -63,6 +66,7 @@ class MeshQuality:
     max_det_j: float
     min_ratio: float
     min_volume_ratio: float
+    straightened: float = 0.0
 
 
 def check_mesh(

@@ -16,11 +16,16 @@ LEAST_POINTS = 12
 
 
 class Arc(NamedTuple):
-    """Cones along an arc: ends (n,), m, and how far they lie beside it, m."""
+    """Cones along an arc: ends (n,), m, and how far they lie beside it, m; the middle (y, r) and the
+    radius of the arc, m, and 1 where it lies beyond its middle, seen from the axis, -1 below.
+    """
 
     y: np.ndarray
     r: np.ndarray
     off: float
+    centre: tuple[float, float]
+    radius: float
+    side: float
 
 
 def arcs(y, r, triangles, near) -> Iterator[tuple[np.ndarray, Arc]]:
@@ -76,7 +81,8 @@ def _cones(y, r, near) -> Arc | None:
     if not (np.diff(along) > 0).all():
         return None
     chords = np.hypot((along[1:] + along[:-1]) / 2 - yc, (across[1:] + across[:-1]) / 2 - rc)
-    return Arc(along, across, float(np.abs(chords - radius).max()))
+    off = float(np.abs(chords - radius).max())
+    return Arc(along, across, off, (float(yc), float(rc)), radius, side)
 
 
 def _under(angle, rc, radius, side) -> float:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solidgear.meshing.round_arcs import arcs, cone_volume
-from solidgear.scene.outline import Frustum
+from solidgear.scene.outline import Frustum, Torus
 
 #: distance from a line of the meridian, over the largest radius, at which a point is on it: mesh
 #: files carry six digits and more
@@ -73,6 +73,8 @@ class RoundPart:
         be many-sided, and no facet but a curved one speaks for something round.
     beside_arcs : float
         Largest distance of walls from the arc of a torus, m.
+    tori : tuple of Torus
+        That walls follow as cones.
     """
 
     walls: tuple[Frustum, ...]
@@ -80,6 +82,7 @@ class RoundPart:
     share: float
     facets: float = 0.0
     beside_arcs: float = 0.0
+    tori: tuple[Torus, ...] = ()
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
@@ -127,8 +130,9 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
                 facets += _between(points, triangles[:, own], [found])
     rest = np.flatnonzero(~on & ~flat)
     beside_arcs = 0.0
-    for members, (along, across, off) in arcs(y, r, triangles[:, rest], ON_LINE * largest):
-        own = rest[members]
+    tori: list[Torus] = []
+    for members, arc in arcs(y, r, triangles[:, rest], ON_LINE * largest):
+        own, (along, across, off) = rest[members], arc[:3]
         sides = np.pi * (across[1:] + across[:-1]) * np.hypot(np.diff(along), np.diff(across))
         turn = float(area[own].sum() / sides.sum())
         if turn > MOST_OF_A_TURN:
@@ -142,6 +146,8 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
             on[own] = True
             facets += _between(points, triangles[:, own], cones)
             beside_arcs = max(beside_arcs, off)
+            ends = float(along[0]), float(along[-1])
+            tori.append(Torus(*ends, *arc.centre, arc.radius, arc.side < 0))
     if not surfaces:
         return RoundPart((), (), 0.0)
     walls, by_rays = _walls(points, triangles, surfaces, y.min(), y.max())
@@ -150,7 +156,7 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
         facets = 0.0
     elif not _fine_around(points, triangles[:, on], ON_LINE * largest):
         facets *= CURVED
-    return RoundPart(tuple(walls), tuple(surfaces), share, facets, beside_arcs)
+    return RoundPart(tuple(walls), tuple(surfaces), share, facets, beside_arcs, tuple(tori))
 
 
 def _between(points, triangles, surfaces: list[Lathe]) -> float:

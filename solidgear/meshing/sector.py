@@ -11,7 +11,7 @@ each other's image and volumes what they were.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, gcd, pi, sin
 from typing import Any
 
@@ -28,7 +28,12 @@ from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.meshing.revolved import graded_corners
 from solidgear.meshing.sector_drawing import draw_sector, drill, pair_faces
 from solidgear.meshing.teeth import section_area, tooth_size, turn_at
-from solidgear.meshing.tetrahedra import filled, lost_by_arcs, segment_of_elements
+from solidgear.meshing.tetrahedra import (
+    check_filling,
+    filled,
+    lost_by_arcs,
+    segment_of_elements,
+)
 from solidgear.scene.closed_form import integrals_along, volume_of
 from solidgear.scene.features.around import middle, mirror_angle, no_common_sector
 from solidgear.scene.outline import Outline
@@ -141,15 +146,17 @@ def sector_mesh(
             within = pi / count + 2 * pi / f.count
             formulas.append(hole_size(hole, hole_places(f, here, twists, first, within)))
         set_size(gmsh, formulas, size)
-        mesh = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
+        filling = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
+    mesh = filling.mesh
     exact = volume_of_sector(outline, features, count) / (2 if half else 1)
-    quality = check_mesh(mesh, volume=exact, rtol=lost_by_arcs(around))
+    quality = check_filling(filling, volume=exact, rtol=lost_by_arcs(around))
     segment = segment_of_elements(mesh, segments)
     if half:
         return SectorMesh(mesh, segment, count, mesh.p, quality, drawn, first, True)
     # turned to where the features look
     whole = _turned(mesh, lambda y: first + turn_at(y, twists))
-    return SectorMesh(whole, segment, count, mesh.p, check_mesh(whole), drawn, first)
+    quality = check_filling(replace(filling, mesh=whole))
+    return SectorMesh(whole, segment, count, mesh.p, quality, drawn, first)
 
 
 def tooth_sizes(
@@ -265,7 +272,7 @@ def mirrored(made: SectorMesh) -> SectorMesh:
     whole = joined(mesh, [np.eye(3), np.diag([-1.0, 1.0, 1.0])], number, len(used) + len(off))
     turned = _turned(whole, lambda y: made.turn)
     segment = np.tile(made.segment, 2)
-    quality = check_mesh(turned)
+    quality = replace(check_mesh(turned), straightened=made.quality.straightened)
     return SectorMesh(turned, segment, made.count, whole.p, quality, 2 * made.drawn, made.turn)
 
 

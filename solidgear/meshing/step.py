@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.meshing.curving import relaxed
+from solidgear.meshing.bisecting import bisected
+from solidgear.meshing.curving import Filling, relaxed
 from solidgear.meshing.element_size import set_size
+from solidgear.meshing.enclosed import volumes_of
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
@@ -76,10 +78,7 @@ def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
         solids = read_solids(gmsh, path, place, several=bool(named))
         owner, rest = solid_owners(gmsh, solids, named)
         pieces = fragmented(gmsh, solids, [])
-        volumes = np.zeros(len(named) + 1)
-        for own, tags in zip(owner, pieces):
-            volumes[own] += sum(gmsh.model.occ.getMass(3, tag) for tag in tags)
-        volume = float(volumes.sum())
+        drawn = sum(gmsh.model.occ.getMass(3, tag) for tags in pieces for tag in tags)
         extent = _extent(gmsh)
         faces = [tag for _, tag in gmsh.model.getEntities(2)]
         _no_slivers(gmsh, faces, extent, place)
@@ -93,17 +92,23 @@ def look(path: str, place: Placing, named: tuple[str, ...] = ()) -> Seen:
             bad = _unmeshed(gmsh, faces, place)
             raise MeshError(f"{bad} cannot be covered with triangles ({error})") from error
         points, triangles, sides = _triangles(gmsh, faces, owner, pieces)
+        _closed(points, triangles[:, (sides < 0).any(axis=0)], drawn)
+        owners = np.repeat(owner, [len(tags) for tags in pieces])
+        volumes = np.bincount(owners, volumes_of(gmsh, sum(pieces, [])), len(named) + 1)
+    return Seen(points, triangles, sides, volumes, rest, len(faces))
+
+
+def _closed(points: np.ndarray, triangles: np.ndarray, drawn: float) -> None:
+    """Refuse faces that do not enclose what the kernel says that they do, m^3."""
     if not len(points[0]) or not np.isfinite(points).all():
         raise MeshError("its faces have no area")
-    outside = (sides < 0).any(axis=0)
-    a, b, c = (points[:, corner[outside]] for corner in triangles)
+    a, b, c = (points[:, corner] for corner in triangles)
     inside = abs(np.einsum("it,it->", a, np.cross(b.T, c.T).T)) / 6
-    if not abs(inside - volume) <= OPEN * volume:
+    if not abs(inside - drawn) <= OPEN * drawn:
         raise MeshError(
-            f"its faces enclose {1e6 * inside:.4g} cm^3 where the solid is told to have "
-            f"{1e6 * volume:.4g} cm^3: faces are missing, turned inside out or intersect"
+            f"its faces enclose {1e6 * inside:.4g} cm^3 where the solid is said to have "
+            f"{1e6 * drawn:.4g} cm^3: faces are missing, turned inside out or intersect"
         )
-    return Seen(points, triangles, sides, volumes, rest, len(faces))
 
 
 def _extent(gmsh) -> float:
@@ -164,7 +169,9 @@ def _triangles(gmsh, faces: list[int], owner: list[int], pieces: list[list[int]]
     return places.reshape(-1, 3).T[:, used], triangles.reshape(3, -1), np.concatenate(sides).T
 
 
-def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...] = ()):
+def mesh(
+    path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...] = ()
+) -> tuple[Filling, np.ndarray]:
     """Curved tetrahedra in the part of a STEP file.
 
     Parameters
@@ -178,7 +185,7 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
 
     Returns
     -------
-    mesh : skfem.MeshTet2
+    filling : Filling
         Solids share the nodes of the faces between them.
     owner : (ne,) ndarray of int
         Place of the solid of each element among those that were named, one more for the rest.
@@ -201,8 +208,7 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
         try:
             for dimension in (1, 2, 3):
                 gmsh.model.mesh.generate(dimension)
-            made = relaxed(to_skfem(gmsh))
-            return made, _owned(gmsh, owner, pieces)
+            filling = relaxed(bisected(to_skfem(gmsh)))
         except MeshError:
             raise
         except Exception as error:
@@ -210,16 +216,8 @@ def mesh(path: str, place: Placing, plan: dict[str, Any], named: tuple[str, ...]
                 f"cannot be filled with tetrahedra ({error}): change refinement a little, or look "
                 "for faces that intersect or all but touch"
             ) from error
-
-
-def _owned(gmsh, owner: list[int], pieces: list[list[int]]) -> np.ndarray:
-    """Owner of each element, in gmsh's order."""
-    every = gmsh.model.mesh.getElements(3)[1][0]
-    out = np.zeros(len(every), int)
-    for own, tags in zip(owner, pieces):
-        for tag in tags:
-            out[np.isin(every, gmsh.model.mesh.getElements(3, tag)[1][0])] = own
-    return out
+    of = {tag: own for own, tags in zip(owner, pieces) for tag in tags}
+    return filling, np.array([of[tag] for tag in filling.volume])
 
 
 def _cut(gmsh, solids: list[int], plan) -> list[list[int]]:

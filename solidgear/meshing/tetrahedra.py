@@ -6,14 +6,16 @@ So they are moved beyond it (:mod:`solidgear.meshing.curving`), and some 2e-6 is
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
 from skfem import MeshTet2
 
 from solidgear.machine.interruptible import call
-from solidgear.meshing.curving import relaxed, ten_nodes, volume_preserved
+from solidgear.meshing.bisecting import bisected
+from solidgear.meshing.curving import Filling, relaxed, ten_nodes, volume_preserved
+from solidgear.meshing.edge_places import edge_places
 from solidgear.meshing.element_size import set_size, size_formulas
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.quality import MeshError, MeshQuality, check_mesh
@@ -98,7 +100,7 @@ def tetrahedra(
         corners = graded_corners(outline, planes, circles)
         formulas = size_formulas(outline, corners, size, graded_size, reach, around)
         set_size(gmsh, formulas, size)
-        mesh = filled(
+        filling = filled(
             gmsh,
             "gmsh could not mesh the shaft ({}): change size or graded_size a little, "
             "or look for segments much thinner than size",
@@ -106,9 +108,17 @@ def tetrahedra(
         )
 
     report(0.9, "checking the mesh")
-    quality = check_mesh(mesh, volume=volume_of(outline), rtol=lost_by_arcs(around))
+    quality = check_filling(filling, volume=volume_of(outline), rtol=lost_by_arcs(around))
     report(1.0, f"{quality.n_elements} elements")
-    return TetMesh(mesh, segment_of_elements(mesh, segments), quality)
+    return TetMesh(filling.mesh, segment_of_elements(filling.mesh, segments), quality)
+
+
+def check_filling(filling: Filling, **limits: float) -> MeshQuality:
+    """Quality of a mesh as :func:`~solidgear.meshing.quality.check_mesh` says, with what its
+    straightened edges took.
+    """
+    worst = max(filling.straightened.values(), default=0.0)
+    return replace(check_mesh(filling.mesh, **limits), straightened=worst)
 
 
 def lost_by_arcs(around: int) -> float:
@@ -126,7 +136,7 @@ def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray
     return np.searchsorted([s.y1 for s in segments[:-1]], y)
 
 
-def filled(gmsh, refusal: str, report=lambda fraction, message: None):
+def filled(gmsh, refusal: str, report=lambda fraction, message: None) -> Filling:
     """Curved tetrahedra in everything that is drawn in a model with its sizes; `refusal` is the
     MeshError where it cannot be done, in which the mesher's own words take the place of ``{}``.
     """
@@ -135,7 +145,8 @@ def filled(gmsh, refusal: str, report=lambda fraction, message: None):
             report(fraction, f"meshing dimension {dimension}")
             call(gmsh.model.mesh.generate, dimension)
         _onto_cones(gmsh)
-        return relaxed(volume_preserved(to_skfem(gmsh)))
+        filling = to_skfem(gmsh)
+        return relaxed(bisected(replace(filling, mesh=volume_preserved(filling.mesh))))
     except MeshError:
         raise
     except Exception as error:
@@ -205,12 +216,17 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
         raise MeshError(f"around is {around}: at least 6 elements are needed around a circle")
 
 
-def to_skfem(gmsh):
+def to_skfem(gmsh) -> Filling:
     """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie
     between.
     """
-    types, _, nodes = gmsh.model.mesh.getElements(3)
-    if list(types) != [_TET10]:
+    types, volume, cells = [], [], []
+    for _, tag in gmsh.model.getEntities(3):
+        kinds, _, nodes = gmsh.model.mesh.getElements(3, tag)
+        types += list(kinds)
+        cells += [own.reshape(-1, 10).astype(np.int64) for own in nodes if list(kinds) == [_TET10]]
+        volume += [np.full(len(own) // 10, tag) for own in nodes if list(kinds) == [_TET10]]
+    if set(types) != {_TET10}:
         raise MeshError(
             "gmsh made no second-order tetrahedra: look for a gap in the meridian, "
             "or finalize gmsh if an earlier mesh failed in the same session"
@@ -218,9 +234,15 @@ def to_skfem(gmsh):
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     position = np.empty((int(tags.max()) + 1, 3))
     position[tags] = coordinates.reshape(-1, 3)
-    cells = nodes[0].reshape(-1, 10).astype(np.int64)
-    ends = cells[:, _mid_node_corners(gmsh)].reshape(-1, 2).T
-    return ten_nodes(position.T, cells[:, :4].T, ends, position[cells[:, 4:].reshape(-1)].T)
+    nodes = np.concatenate(cells)
+    corners, middles = nodes[:, :4].T, nodes[:, 4:].reshape(-1)
+    ends = nodes[:, _mid_node_corners(gmsh)].reshape(-1, 2).T
+    mesh = ten_nodes(position.T, corners, ends, position[middles].T)
+    within = np.zeros(len(position), bool)
+    within[gmsh.model.mesh.getNodes(3)[0]] = True
+    inside = np.zeros(mesh.edges.shape[1], bool)
+    inside[edge_places(mesh.edges, np.searchsorted(np.unique(corners), ends))] = within[middles]
+    return Filling(mesh, np.concatenate(volume), inside)
 
 
 def _mid_node_corners(gmsh):

@@ -7,7 +7,8 @@ the file was read.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Annotated, Any, Literal
+from math import hypot, inf
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -15,6 +16,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from solidgear.errors import SceneError, listed
 from solidgear.scene.file_materials import FileMaterial
 from solidgear.scene.materials import by_name
+from solidgear.scene.outline import Torus
 from solidgear.scene.parts import Material
 from solidgear.scene.patches import Patch, Triple, refuse_elsewhere
 from solidgear.scene.typed import Model
@@ -24,7 +26,7 @@ from solidgear.scene.units import Mass, PositiveLength, quantity
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}
 Unit = Literal["mm", "cm", "m", "inch", "in"]
 #: axes of a shaft, and that of a body that is none
-Axis = Literal["x", "y", "z", "-x", "-y", "-z", "none"]
+AxisWord = Literal["x", "y", "z", "-x", "-y", "-z", "none"]
 NONE = "none"
 #: meshes of one body, coarse to fine
 MOST_MESHES = 5
@@ -43,11 +45,26 @@ def _place(value: Any) -> Any:
     return quantity(value, "length")
 
 
+def _direction(value: Any) -> Any:
+    """A word, or three numbers, brought to a length of one."""
+    if isinstance(value, str) and value in get_args(AxisWord):
+        return value
+    numbers = value if isinstance(value, (list, tuple)) and len(value) == 3 else ()
+    length = hypot(*numbers) if all(type(v) in (int, float) for v in numbers) else 0.0
+    if not 0 < length < inf:
+        raise SceneError(
+            "must be x, y, z, -x, -y, -z or none, or three numbers: the direction of the "
+            "axis in the file"
+        )
+    return tuple(v / length for v in numbers)
+
+
 def _several(value: Any) -> Any:
     """One file is a list of one."""
     return [value] if isinstance(value, str) else value
 
 
+Axis = Annotated[AxisWord | Triple, BeforeValidator(_direction)]
 Origin = Annotated[float | tuple[float, float, float] | None, BeforeValidator(_place)]
 
 
@@ -92,6 +109,11 @@ class BodyTable(Model):
                 path=("size_check",),
             )
         return self
+
+    @property
+    def about(self) -> str:
+        """The axis in a sentence."""
+        return self.axis if isinstance(self.axis, str) else "its axis"
 
     @property
     def key(self) -> str:
@@ -218,6 +240,7 @@ class BodyFile(Model):
     round_volume: float
     facets: float = 0.0
     beside_arcs: float = 0.0
+    tori: tuple[Torus, ...] = Field((), exclude=True, repr=False)
     element: str = ""
     counts: tuple[int, int, int, int] | None = None
     groups: tuple[PartGroup, ...] = ()

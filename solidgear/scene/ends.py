@@ -13,7 +13,6 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from solidgear.errors import SceneError
-
 from solidgear.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:

@@ -39,6 +39,19 @@ class Frustum(NamedTuple):
         return cls(*(float(getattr(segment, name)) for name in cls._fields))
 
 
+class Torus(NamedTuple):
+    """Arc of the meridian of a part: from y0 to y1, its middle (y, r) and its radius, m, and whether it
+    lies between its middle and the axis.
+    """
+
+    y0: float
+    y1: float
+    y: float
+    r: float
+    radius: float
+    hollow: bool
+
+
 Shape: TypeAlias = "Segment | Frustum"
 S = TypeVar("S", bound=Shape)
 

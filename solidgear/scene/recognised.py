@@ -144,7 +144,7 @@ class Recognised(NamedTuple):
                 f"{1e3 * d:.6g} mm" for d in sorted({round(c[0], 7) for c in self.cylinders})
             )
             raise SceneError(
-                f"the part has no cylinder of this diameter; there are {there or 'none'}",
+                f"the part has no cylinder of this diameter about its axis; there are {there or 'none'}",
                 path=("diameter",),
             )
         share = self.seat_share(near[0][0] / 2, lo, hi)

@@ -60,6 +60,13 @@ def load(path: str | os.PathLike) -> Scene:
     return scene_of(parse(os.fspath(path)), path)
 
 
+def as_written(path: str | os.PathLike) -> Scene:
+    """A scene file as it is written: catalogue bearings without their stiffness, the part of a [body]
+    read; errors as of :func:`load`.
+    """
+    return file.load(path, part_of)
+
+
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
     """Scene that tables of a file describe, what they name relative to its path; errors as of
     :func:`load`. Catalogue bearings settle at the load of the scene where it is `alone`, and not
@@ -106,7 +113,7 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
 
     def shaft(side: str, of: Path, alone: bool) -> Scene:
         """Scene of a shaft: settled by itself, or to be settled with its train."""
-        return load(of) if alone and point is None else file.load(of, part_of)
+        return load(of) if alone and point is None else as_written(of)
 
     train = train_file.load_train(path, shaft)
     if point is None and not train.operation:

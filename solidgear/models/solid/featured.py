@@ -5,6 +5,7 @@ plane.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def featured_body(
     """
     keep = np.ones(len(made.cut), bool) if plain else ~made.cut
     mesh = made.mesh if plain else without(made.mesh, keep)
-    quality = check_mesh(mesh)
+    quality = replace(check_mesh(mesh), straightened=made.quality.straightened)
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
     facets = _facets(solid, scene)
     if made.plane is None:

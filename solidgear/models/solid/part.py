@@ -18,8 +18,9 @@ from solidgear.meshing import step
 from solidgear.meshing.element_size import size_formulas
 from solidgear.meshing.part_file import file_mesh
 from solidgear.meshing.placing import Placing
-from solidgear.meshing.quality import MeshError, cell_sizes, check_mesh
+from solidgear.meshing.quality import MeshError, cell_sizes
 from solidgear.meshing.revolved import graded_corners
+from solidgear.meshing.tetrahedra import check_filling
 from solidgear.models.solid.own_mesh import solid_body
 from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
@@ -84,13 +85,15 @@ def part_body(
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    mesh, owner = _apart(
+    filling, owner = _apart(
         file, isolated, step.mesh, file.path, place, plan, named, seconds=MESH_SECONDS
     )
     # four times what the arcs lose by themselves
-    check_mesh(mesh, volume=file.volume, rtol=max(2e-3, 15.0 / plan["around"] ** 4 * 4))
+    rtol = max(2e-3, 15.0 / plan["around"] ** 4 * 4)
+    quality = check_filling(filling, volume=file.volume, rtol=rtol)
+    facts["straightened"] = quality.straightened
     return solid_body(
-        mesh,
+        filling.mesh,
         scene,
         element="tet10",
         wanted=wanted,

@@ -79,11 +79,23 @@ class Seats:
         if there > 0 and lost > LOST * (lost + there):
             raise SolidgearError(
                 f"port {station.name!r}: {100 * lost / (lost + there):.2g} % of the faces of its seat "
-                "are not on it: their nodes lie off the surface by more than the digits of a mesh "
-                f"file explain ({ON_SURFACE:g} of the radius); write the mesh with more digits, or its "
-                "middle nodes on the surface or on the straight edges"
+                f"are not on it: their nodes lie off the surface by more than {self._why()}"
             )
         return self.mesh.boundary[on]
+
+    def _why(self) -> str:
+        """What nodes off the surface come of, and what helps: in a mesh of one's own, or of a drawn
+        part.
+        """
+        if self.clipped:
+            return (
+                f"the digits of a mesh file explain ({ON_SURFACE:g} of the radius); write the mesh "
+                "with more digits, or its middle nodes on the surface or on the straight edges"
+            )
+        return (
+            f"{ON_SURFACE:g} of the radius, so this cylinder or cone has an axis beside that of the "
+            "part; draw both about one axis"
+        )
 
     def area(self, chosen: np.ndarray, station) -> float:
         """Area of some facets of the boundary between the ends of a seat, m^2."""

@@ -2,7 +2,8 @@
 
 A shaft of a train is free but for what acts on its ports: teeth, springs, bearings, the weight of a
 wheel on it. A shaft of a scene has its load at the port and the reactions of its bearings. Both are
-settled as plain bodies of revolution: what is cut into them moves reactions by next to nothing.
+settled as plain bodies of revolution: what is cut into them moves reactions by next to nothing. Models
+that are made for what is cut settle with it.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from solidgear.display import plain
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
 from solidgear.scene import Scene
+from solidgear.scene.body_file import BodyFile
+from solidgear.scene.filleted import filleted
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.bearing_life import left_open
@@ -159,6 +162,7 @@ def stress_of_scene(
     the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
     stiffness yet.
     """
+    file, scene = scene.body, filleted(scene)
     load, port, drive = load_of(scene), scene.port.name, drive or {}
     if port in drive:
         raise SolidgearError(
@@ -166,7 +170,7 @@ def stress_of_scene(
             "point where a coupling or spline brings it"
         )
     progress(model)
-    at_rest = ShaftAtRest(scene.plain, model)
+    at_rest = ShaftAtRest(_settling(scene, model), model)
 
     def acting(choice: Choice) -> dict[str, Acting]:
         own = Acting({port: load})
@@ -179,8 +183,25 @@ def stress_of_scene(
 
     under = {"port": port, "load": load, "drive": drive}
     shafts, told = _shafts({scene.name: scene}, acting, asked, progress)
-    cautions = tuple(_not_acting(scene, drive))
+    cautions = (*_of_a_file(file, scene), *_not_acting(scene, drive))
     return StressAtRest(scene.title or scene.name, model, under, asked, shafts, told, cautions)
+
+
+def _of_a_file(file: BodyFile | None, scene: Scene) -> Iterator[str]:
+    """Sentences on what the round part of a file leaves out, whose fillets are those of a scene."""
+    if file is None:
+        return
+    if not file.round:
+        yield (
+            f"{file.name} is not of revolution: stress is that of its round part, without what is cut "
+            "into it or stands out"
+        )
+    if cones := len(file.tori) - len(scene.blends):
+        yield (
+            f"{cones} of {len(file.tori)} arcs of {file.name} are short cones here, and corners between "
+            "them are none of the part: fillets are quarters of a turn at the root of a shoulder, "
+            "outside of seats"
+        )
 
 
 def _not_acting(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
@@ -206,7 +227,10 @@ def stress_of_train(
     no lumped one, which has no places of its own.
     """
     progress(model)
-    shop = Workshop(_plain(train))
+    files = {side: own.scene.body for side, own in train.shafts.items()}
+    shafts = {k: own.with_changes(scene=filleted(own.scene)) for k, own in train.shafts.items()}
+    train = train.with_changes(shafts=shafts)
+    shop = Workshop(_settling_train(train, model))
     usual = Operating(shop, model).at(point)
 
     def acting(choice: Choice) -> dict[str, Acting]:
@@ -217,7 +241,8 @@ def stress_of_train(
     shafts, told = _shafts(
         {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
     )
-    cautions = (*usual.notes, *shop.odd, *_without_torque(train))
+    left_out = [text for k in files for text in _of_a_file(files[k], train.shafts[k].scene)]
+    cautions = (*left_out, *usual.notes, *shop.odd, *_without_torque(train))
     return StressAtRest(train.title or train.name, model, under, asked, shafts, told, cautions)
 
 
@@ -248,9 +273,17 @@ def _without_torque(train: Train) -> Iterator[str]:
             )
 
 
-def _plain(train: Train) -> Train:
-    """A train of shafts without features, whose teeth act at their ports."""
-    shafts = {side: own.with_changes(scene=own.scene.plain) for side, own in train.shafts.items()}
+def _settling(scene: Scene, model: str) -> Scene:
+    """What settles of a shaft on a model: its plain part, or all of it."""
+    return scene if LADDER[model].for_features else scene.plain
+
+
+def _settling_train(train: Train, model: str) -> Train:
+    """What settles of a train on a model, its teeth acting at their ports."""
+    shafts = {
+        side: own.with_changes(scene=_settling(own.scene, model))
+        for side, own in train.shafts.items()
+    }
     meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
     return train.with_changes(meshes=meshes, shafts=shafts)
 

@@ -1,0 +1,61 @@
+"""The round part of a file with its fillets as such, where its segments follow them as short cones."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from solidgear.errors import SceneError
+from solidgear.scene.blends import Fillet
+
+if TYPE_CHECKING:
+    from solidgear.scene.outline import Torus
+    from solidgear.scene.parts import Segment
+
+#: relative to the radius of an arc: where its ends are those of a quarter of a turn
+QUARTER = 1e-3
+
+
+def filleted(scene: Any) -> Any:
+    """The round part of a scene of a file, its segments, with a fillet for every quarter of a turn at the
+    root of an outer shoulder; other arcs stay cones. A scene of segments, or of a part whose fillets
+    reach into a seat, is as it was.
+
+    Segments keep their names, and those of cones go.
+    """
+    body = getattr(scene, "body", None)
+    if body is None or not body.tori:
+        return scene
+    segments, blends = list(scene.segments), []
+    for torus in body.tori:
+        fillet = _fillet(torus, segments)
+        blends += [fillet] if fillet else []
+    try:
+        return scene.with_changes(segments=tuple(segments), blends=tuple(blends), body=None)
+    except SceneError:
+        return scene
+
+
+def _fillet(torus: Torus, segments: list[Segment]) -> Fillet | None:
+    """The fillet of an arc, whose cones give way to the cylinder that it runs into."""
+    near, radius = QUARTER * torus.radius, torus.r - torus.radius
+    at_start = abs(torus.y0 - torus.y) < near and abs(torus.y1 - torus.y - torus.radius) < near
+    at_end = abs(torus.y1 - torus.y) < near and abs(torus.y - torus.y0 - torus.radius) < near
+    cones = [k for k, s in enumerate(segments) if s.y0 > torus.y0 - near and s.y1 < torus.y1 + near]
+    if not (torus.hollow and (at_start or at_end) and cones):
+        return None
+    before, after = cones[0] - 1, cones[-1] + 1
+    here, beyond = (before, after) if at_start else (after, before)
+    if not (0 <= here < len(segments) and 0 <= beyond < len(segments)):
+        return None
+    cylinder = segments[here]
+    bores = {
+        bore for s in (cylinder, *(segments[k] for k in cones)) for bore in (s.inner0, s.inner1)
+    }
+    round_there = abs(cylinder.outer0 - radius) < near and abs(cylinder.outer1 - radius) < near
+    if not round_there or len(bores) > 1:
+        return None
+    place = segments[beyond].y0 if at_start else segments[beyond].y1
+    reach = {"y1": place} if at_start else {"y0": place}
+    segments[min(here, *cones) : max(here, *cones) + 1] = [cylinder.with_changes(**reach)]
+    end = "end" if at_start else "start"
+    return Fillet(name=f"{cylinder.name}.{end}", y=place, radius=torus.radius)
