@@ -12,8 +12,7 @@ import numpy as np
 from solidgear.scene import Scene
 from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.train.modes import TrainMode
-from solidgear.studies.train.respond import NO_MODE
-from solidgear.studies.train.response import OrderCurve, TrainResponse
+from solidgear.studies.train.response import OrderCurve, TrainResponse, figures
 from solidgear.studies.train.speeds import fastest
 
 #: relative, of frequencies that are the same
@@ -34,7 +33,7 @@ class Top:
     order : int
         Of the teeth, counted from 1.
     mode : str
-        That makes the peak there; empty where the part ends.
+        That makes the peak there; empty where the part ends, or rises without a peak.
     towards : str
         Where it ends: the mode whose peak follows as the curve rises; empty where none does.
     """
@@ -67,8 +66,8 @@ class Loudest:
         Highest speed of the engine's shaft in the files.
     said_by : str
         Where that speed stands.
-    asked_hz : float
-        Highest frequency of the range.
+    begin_hz, asked_hz : float
+        Lowest and highest frequency of the range.
     orders : int
         Of the teeth.
     parting : tuple of str
@@ -84,6 +83,7 @@ class Loudest:
     bar: float | None
     rpm: float | None
     said_by: str
+    begin_hz: float
     asked_hz: float
     orders: int = 1
     parting: tuple[str, ...] = ()
@@ -141,21 +141,20 @@ class Loudest:
             rpm = 60 * top.frequency_hz / (top.order * self.teeth)
             speed += f", {self.teeth.of} at {rpm:.0f} rpm"
         where = top.mode or self._end(top)
-        return f"{_figures(top.force)} N at {_figures(top.frequency_hz)} Hz{speed}, {where}"
+        return f"{figures(top.force)} N at {figures(top.frequency_hz)} Hz{speed}, {where}"
 
     def _end(self, top: Top) -> str:
-        """Words on the place where a part of a curve ends."""
-        limit = top.order * self.limit_hz
-        at_speed = limit > 0 and abs(top.frequency_hz - limit) <= SAME * limit
-        below = top.frequency_hz < 0.5 * min(self.asked_hz, limit or inf)
-        end = "highest speed" if at_speed else "start of the range" if below else "end of the range"
+        """Words on the place where a part of a curve ends, or rises without a peak."""
+        ends = {
+            "the highest speed": top.order * self.limit_hz,
+            "the end of the range": self.asked_hz,
+            "the start of the range": self.begin_hz,
+        }
         rising = f", where it still rises towards {top.towards}" if top.towards else ""
-        return f"the {end}{rising}"
-
-
-def _figures(value: float) -> str:
-    """Three figures, without a power of ten; as many as there are before the point."""
-    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
+        for end, hz in ends.items():
+            if abs(top.frequency_hz - hz) <= SAME * hz:
+                return f"{end}{rising}"
+        return "a rise that is no peak"
 
 
 def loudest(
@@ -204,6 +203,7 @@ def loudest(
         None if mode is None or mode.mesh is None else mode.mesh + mode.bound,
         None if speed is None else speed.rpm,
         "" if speed is None else speed.said_by,
+        float(hz[0]),
         float(hz[-1]),
         len(response.orders),
         response.parting,
@@ -223,8 +223,6 @@ def _top(curve: OrderCurve, frequency_hz: np.ndarray, within: np.ndarray) -> Ite
     k = int(places[curve.force[places].argmax()])
     hz, force = float(frequency_hz[k]), float(curve.force[k])
     mode = next((p.mode for p in curve.peaks if p.frequency_hz == hz), "")
-    if not mode and places[0] < k < places[-1]:
-        mode = NO_MODE
     rises = not mode and k == places[-1] and k + 1 < len(curve.force)
     next_peak = (p.mode for p in curve.peaks if p.frequency_hz > hz) if rises else iter(())
     yield Top(hz, force, curve.order, mode, next(next_peak, ""))

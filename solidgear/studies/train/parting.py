@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.errors import SolidgearError
 from solidgear.scene.gears import Pair
 from solidgear.scene.planetary import PlanetMesh
 from solidgear.studies.train.operation import mean_forces
+from solidgear.studies.train.response import figures
 
 if TYPE_CHECKING:
     from solidgear.studies.train.respond import Drive
@@ -69,7 +71,11 @@ def parting_lines(
     shop, train = drive.workshop, drive.workshop.train
     if (point := train.point) is None:
         return
-    mean = mean_forces(shop, point)
+    try:
+        mean = mean_forces(shop, point)
+    except SolidgearError as error:
+        yield f"Whether teeth part is not known: {error}."
+        return
     for name, low in _lowest(drive, frequency_hz, columns, mean).items():
         planets = name in {stage.name for stage in train.stages}
         of = "" if name == "mesh" else f" of the {name}"
@@ -86,8 +92,8 @@ def parting_lines(
         ask = "no model here follows planets then" if planets else "ask solidgear nonlinear"
         yield (
             f"The teeth{of} part at the latest from {low:.0f} Hz{rpm}, where the dynamic force passes "
-            f"the mean one, {mean[name]:.0f} N at {point.label}: linear forces do not hold from there "
-            f"on; {ask}."
+            f"the mean one, {figures(mean[name])} N at {point.label}: linear forces do not hold from "
+            f"there on; {ask}."
         )
 
 

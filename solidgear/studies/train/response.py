@@ -91,3 +91,8 @@ class TrainResponse:
     def force(self) -> np.ndarray:
         """(f,) dynamic mesh force, N, complex."""
         return self.columns["mesh force [N]"]
+
+
+def figures(value: float) -> str:
+    """Three figures, without a power of ten; as many as there are before the point."""
+    return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
