@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from solidgear.body import as_supports
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.settled import (
@@ -26,7 +27,9 @@ from solidgear.cli.shared import (
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.hidden import complete_list, less_widest
 from solidgear.judge.settle import bars_of_modes
+from solidgear.ladder.registry import LADDER
 from solidgear.report.terminal import modes_table
 from solidgear.report.words import by_plane
 from solidgear.scene.rules import MOST_MODES
@@ -80,9 +83,15 @@ def modes(
         max_frequency=max_frequency or loaded.ask.max_frequency,
         count=count,
     )
-    bars = bars_of_modes(loaded, body, found, settled)
+    bounded = LADDER[body.fidelity].bounded
+    if settled is not None and bounded:
+        found = complete_list(loaded, body, as_supports(loaded), found)
+    every = found.whole if count and not bounded else found
+    bars = bars_of_modes(loaded, body, every, settled)
     if settled is None and second and body.fidelity in SECOND:
-        bars = coarser_bars(loaded, body, found, options(model.pairs))
+        bars = coarser_bars(loaded, body, every, options(model.pairs))
+    evidence = less_widest(found.evidence, bars.values())
+    bars = {name: bar for name, bar in bars.items() if name in found.names}
     said = cautions(loaded, body)
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
@@ -104,7 +113,7 @@ def modes(
             "fidelity": body.fidelity,
             "dofs": body.size,
             "modes": rows,
-            "evidence": found.evidence,
+            "evidence": evidence,
             "cautions": said,
             "open": open_.model_dump(mode="json"),
         }
@@ -141,7 +150,7 @@ def modes(
             soft_wrap=False,
         )
     if count:
-        say(completeness(e, body.fidelity), soft_wrap=False)
+        say(completeness(evidence, body.fidelity), soft_wrap=False)
     lines = bar_lines(settled)
     if settled is None:
         lines.append(

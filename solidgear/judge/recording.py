@@ -10,6 +10,7 @@ from solidgear.judge.bars import ErrorBar
 from solidgear.judge.completeness import completeness, cut_short
 from solidgear.judge.correlation import correlate
 from solidgear.judge.deviations import Deviation, deviations
+from solidgear.judge.hidden import COMPLETE, less_widest
 from solidgear.judge.lumped import drawn, model_record
 from solidgear.judge.quantities import usual
 from solidgear.judge.record import (
@@ -271,7 +272,11 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
 
 
 def _evidence(solution: Solution) -> EvidenceRecord:
-    statics, found = solution.condensed.evidence, solution.modes.evidence
+    statics = solution.condensed.evidence
+    own = solution.error_bars.get(SCENE, {})
+    found = less_widest(
+        solution.modes.evidence, [bar.width for q, bar in own.items() if q.is_frequency]
+    )
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],
@@ -280,6 +285,7 @@ def _evidence(solution: Solution) -> EvidenceRecord:
         orthogonality=found["orthogonality"],
         eigensolver=found["method"],
         mode_count=found.get("count", []),
+        complete_below_hz=found.get(COMPLETE),
         families=found.get("families", []),
         complete=completeness(found, solution.model) if "count" in found else "",
         rigid_modes=found["rigid_modes"],

@@ -9,7 +9,7 @@ exactly; they are projected out and reported as 0 Hz instead of as noise.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -95,13 +95,14 @@ class ModeSet(Displayed):
         holds all motions in one and ``above`` where a row stands for all of more waves, which begin
         at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far
         apart to be taken for one pair. Where asked for, ``count``, ``count_seconds`` and
-        ``complete_below_hz``, below which no mode of any family listed is missing.
+        ``counted_below_hz``, below which the body as meshed has no further mode of any family
+        listed.
     beyond : tuple of Mode
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
     above : tuple of Mode
-        All others of the body's own blocks that were solved to know that the list is whole, as far
-        as none of their family is missing between: what is near to a mode of the list.
+        All others that were solved to know that the list is whole, as far as none of their family
+        is missing between: what is near to a mode of the list.
     """
 
     shown: ClassVar[str] = "mode_set"
@@ -118,6 +119,12 @@ class ModeSet(Displayed):
     def solved(self) -> tuple[Mode, ...]:
         """The list and all others that were solved."""
         return (*self.modes, *self.beyond, *self.above)
+
+    @property
+    def whole(self) -> ModeSet:
+        """The list with all others that were solved in it."""
+        every = sorted(self.solved, key=lambda mode: mode.frequency_hz)
+        return replace(self, modes=tuple(every), beyond=(), above=())
 
     @property
     def frequency_hz(self) -> np.ndarray:
@@ -255,7 +262,7 @@ def modes(
     if count:
         evidence |= {"count": verdicts, "count_seconds": spent}
         if all(verdict["checked"] for verdict in verdicts):
-            evidence["complete_below_hz"] = min(
+            evidence["counted_below_hz"] = min(
                 [verdict["below_hz"] for verdict in verdicts] + [u.begins_hz for u in left]
             )
     if torn:
@@ -338,7 +345,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             of |= dict.fromkeys(group, mode)
         elif own and own_room > 0 and not over:
             beyond.append(mode)
-        elif own and all(r.value <= whole[b] for r in members for b in r.vectors):
+        elif all(r.value <= whole[b] for r in members for b in r.vectors):
             above.append(mode)
         room -= mode.multiplicity
         own_room -= mode.multiplicity if own else 0
