@@ -26,7 +26,7 @@ from solidgear.cli.shared import (
 )
 from solidgear.errors import SolidgearError, show
 from solidgear.judge.coarser_mesh import coarser_bars
-from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.hidden import complete_list, less_widest
 from solidgear.judge.settle import bars_of_modes
 from solidgear.ladder.registry import LADDER
@@ -136,12 +136,7 @@ def modes(
         f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
         soft_wrap=False,
     )
-    for one, other, gap in e.get("torn_pairs", []):
-        say(
-            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
-            "it, or use hexahedra or the harmonic model.",
-            soft_wrap=False,
-        )
+    say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
     say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
     if e["error"] > 1e-6:
         say(

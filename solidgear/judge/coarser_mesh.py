@@ -72,7 +72,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
         if mode.frequency_hz > 0 and named is not None:
             step = named.frequency_hz / mode.frequency_hz - 1
             step = max(step, 0.0) if nested else abs(step)
-            bars[str(mode.name)] = factor * step + mode.error
+            bars[str(mode.name)] = factor * step + mode.left
     return bars
 
 

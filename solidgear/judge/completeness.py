@@ -53,6 +53,15 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
     ]
 
 
+def split_apart(evidence: dict) -> list[str]:
+    """Sentences on pairs that a mesh has split further than meshes like it do."""
+    return [
+        f"the mesh splits the pair {name} by {split:.1e}, where the body has one frequency: refine "
+        "it, or use hexahedra or the harmonic model."
+        for name, split in evidence.get("split_pairs", ())
+    ]
+
+
 def _reach(evidence: dict) -> str:
     """How far a count reaches: into the body, where the error bars of what lies above the list are
     known.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.frames import DOF_NAMES
 from solidgear.judge.bars import ErrorBar
-from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.correlation import correlate
 from solidgear.judge.deviations import Deviation, deviations
 from solidgear.judge.hidden import COMPLETE, less_widest
@@ -143,11 +143,7 @@ def _warnings(
         for what, why in r.failed.items()
     ]
     for model, solution in solutions.items():
-        for one, other, gap in solution.modes.evidence.get("torn_pairs", ()):
-            out.append(
-                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
-                f"{gap:.1e}: refine it, or use hexahedra"
-            )
+        out += [f"{LADDER[model].title}: {one}" for one in split_apart(solution.modes.evidence)]
         out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(solution.modes)]
     return out
 
