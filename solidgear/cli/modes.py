@@ -11,6 +11,7 @@ from solidgear.body import as_supports
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.reading import load
 from solidgear.cli.settled import (
+    SECOND_MESH,
     bar_lines,
     beyond,
     ended,
@@ -24,12 +25,13 @@ from solidgear.cli.shared import (
     Solved,
     options,
 )
-from solidgear.errors import SolidgearError, show
+from solidgear.errors import SolidgearError, listed, show
 from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.hidden import complete_list, less_widest
 from solidgear.judge.settle import bars_of_modes
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import Quantity
 from solidgear.report.terminal import modes_table
 from solidgear.report.words import by_plane
 from solidgear.scene.rules import MOST_MODES
@@ -38,8 +40,6 @@ from solidgear.solve.modes import modes as solve
 from solidgear.studies.budget import beside
 from solidgear.studies.check import cautions
 
-#: models that have bars from a second mesh where theirs is set
-SECOND = ("solid",)
 #: rows of a list whose beginning has left the terminal
 MANY = 30
 
@@ -59,13 +59,6 @@ def modes(
             "--count", help="Prove by the inertia of a second factor that no mode was missed."
         ),
     ] = False,
-    second: Annotated[
-        bool,
-        typer.Option(
-            "--bars/--no-bars",
-            help="Of -f solid: tell bars by a coarser second mesh, a quarter to two thirds more time.",
-        ),
-    ] = True,
     run: Run,
 ) -> None:
     if max_frequency is not None and not max_frequency > 0:
@@ -88,10 +81,13 @@ def modes(
         found = complete_list(loaded, body, as_supports(loaded), found)
     every = found.whole if count and not bounded else found
     bars = bars_of_modes(loaded, body, every, settled)
-    if settled is None and second and body.fidelity in SECOND:
+    if settled is None and model.on_two_meshes:
         bars = coarser_bars(loaded, body, every, options(model.pairs))
     evidence = less_widest(found.evidence, bars.values())
     bars = {name: bar for name, bar in bars.items() if name in found.names}
+    bare = without_bar(found, bars)
+    why = model.without_bars(bars, settled)
+    why = why or unjudged(bare, body.fidelity, second=settled is None)
     said = cautions(loaded, body)
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
@@ -117,8 +113,8 @@ def modes(
             "cautions": said,
             "open": open_.model_dump(mode="json"),
         }
-        if settled is not None:
-            record |= settled.as_dict() | {"without_bar": without_bar(found, bars)}
+        record |= {} if settled is None else settled.as_dict()
+        record |= {"without_bar": bare, "why_without_bar": why}
         print(json.dumps(record, default=float))
         ended(settled)
         return
@@ -146,15 +142,13 @@ def modes(
         )
     if count:
         say(completeness(evidence, body.fidelity), soft_wrap=False)
-    lines = bar_lines(settled)
-    if settled is None:
-        lines.append(
-            "Bars: from a second, coarser mesh."
-            if bars
-            else "No bars: the model was given, and its mesh with it; -f auto has them."
-        )
-    if bars:
-        lines += unjudged(without_bar(found, bars), body.fidelity, second=settled is None)
+    lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
+    if bars and settled is None:
+        lines.append(SECOND_MESH)
+    if not bars and why:
+        lines.append(f"No bars: {why}.")
+    elif why:
+        lines.append(f"No bar of their own: {listed(bare, most=3)}; {why}.")
     lines += beyond(bars, settled)
     say(*lines)
     say(*map(caution, said), soft_wrap=False)
