@@ -9,6 +9,7 @@ import typer
 
 from solidgear.body import as_supports
 from solidgear.cli.app import caution, command, say
+from solidgear.cli.bearing_life import speed_of
 from solidgear.cli.reading import load
 from solidgear.cli.settled import (
     SECOND_MESH,
@@ -26,6 +27,7 @@ from solidgear.cli.shared import (
     options,
 )
 from solidgear.errors import SolidgearError, listed, show
+from solidgear.judge.at_rest import spin_caution
 from solidgear.judge.coarser_mesh import coarser_bars
 from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.hidden import complete_list, less_widest
@@ -59,8 +61,15 @@ def modes(
             "--count", help="Prove by the inertia of a second factor that no mode was missed."
         ),
     ] = False,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            help='Of the shaft, such as "3000 rpm": says which frequencies spin moves, and how far.'
+        ),
+    ] = None,
     run: Run,
 ) -> None:
+    turns = speed_of(speed)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     if n is not None and not 1 <= n <= MOST_MODES:
@@ -92,6 +101,7 @@ def modes(
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
     said += cut_short(found.modes, *asked, option="-n")
+    said += spin_caution(loaded, body, found.modes, bars, turns)
     rows = [
         {
             "name": m.name,
@@ -100,6 +110,7 @@ def modes(
             "multiplicity": m.multiplicity,
             "error": m.error,
             "bar": bars.get(m.name),
+            "split": m.split,
         }
         for m in found.modes
     ]

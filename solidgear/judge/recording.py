@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.at_rest import spin_caution
 from solidgear.judge.bars import ErrorBar
 from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.correlation import correlate
@@ -97,6 +98,8 @@ def recorded(
         _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
+        own = {q: bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
+        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, own)
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out

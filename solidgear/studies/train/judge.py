@@ -30,6 +30,7 @@ from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
 from solidgear.studies.train.respond import Drive, TrainResponse, respond
 from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung, ladder_place, told_mix
 from solidgear.studies.train.slips import slips
+from solidgear.studies.train.spin import spin_cautions
 
 #: models of one shaft that are mixed, cheapest first
 MIXED = (*LADDER.of(BEAM), JUDGE)
@@ -273,6 +274,7 @@ def judge_train(
             *slips(workshop),
             *workshop.cautions,
             *local_lines(workshop, judge.system),
+            *spin_cautions(workshop, judge.system, workshop.mix(all_solid), highest),
         ),
     )
 

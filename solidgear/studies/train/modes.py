@@ -16,6 +16,7 @@ from solidgear.studies.train.meshes import mesh_bars, mesh_limit
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.spin import spin_cautions
 from solidgear.studies.train.strain import mounts_together
 from solidgear.studies.train.turn import frequencies_over_a_turn
 from solidgear.system.system import System
@@ -260,7 +261,7 @@ def train_modes(workshop: Workshop, *models: str, max_frequency: float | None = 
         free_motions(workshop, system),
         tuple(line for met in workshop.contacts.values() for line in wrench_lines(met)),
         train.unpublished(),
-        workshop.cautions,
+        (*workshop.cautions, *spin_cautions(workshop, system, rungs, limit)),
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
         train.reference,

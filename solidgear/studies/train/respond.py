@@ -23,6 +23,7 @@ from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
 from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.spin import spin_cautions
 from solidgear.studies.train.stages import mesh_row, phases_of
 from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks, stands_out
@@ -337,6 +338,7 @@ def respond(
     forces: Mapping[str, np.ndarray] | None = None,
     frequency_hz: np.ndarray | None = None,
     mesh: str | None = None,
+    turns: float | None = None,
 ) -> TrainResponse:
     """Steady response of a train with its shafts by models.
 
@@ -348,6 +350,9 @@ def respond(
         As :class:`Drive`.
     frequency_hz : (f,) ndarray, optional
         Instead of an adaptive grid.
+    turns : float, optional
+        Of the engine's shaft in a second, for what spin does to modes; by default at the fastest
+        operating point.
 
     Raises
     ------
@@ -378,11 +383,12 @@ def respond(
         found[there] = drive.mesh(order * hz[there], order)[1]
         columns[f"mesh force, order {order} [N]"] = found
     columns |= told
+    rungs = workshop.mix(models)
     cautions = [*workshop.cautions, *local_lines(workshop, drive.system)]
+    cautions += spin_cautions(workshop, drive.system, rungs, highest, turns)
     if damping == "literal":
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
     found_peaks = drive.peaks(hz, force)
     seconds = workshop.seconds(*models)
-    rungs = workshop.mix(models)
     return TrainResponse(rungs, damping, hz, columns, found_peaks, tuple(cautions), seconds)
