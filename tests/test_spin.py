@@ -86,19 +86,36 @@ def test_shipped_shafts_open_as_another_program_found(name, g):
 
 
 def test_every_model_sees_the_same_spin():
-    """Waves around a 3D mesh, and rigid seats, against the harmonic solid."""
-    neck, disc = (0.06, 0.015, 0.015), (0.015, 0.06, 0.06)
-    scene = shaft(neck, disc, neck)
-    exact = opening(scene, "bending 2", "harmonic", **COARSE)
-    assert exact > 0.05
-    # meshes as coarse are 3 % off
-    cells = {"refinement": 0.4}
-    assert opening(scene, "bending 2", "solid", **cells) == pytest.approx(exact, rel=0.05)
-    waves = opening(scene, "ovalising n=2 1", "harmonic", **COARSE)
-    assert opening(scene, "ovalising n=2 1", "solid", **cells) == pytest.approx(waves, rel=0.05)
-    # a rigid seat takes unknowns of the mesh away, and keeps what spin does to them
-    tied = scene.with_attachment("rigid")
-    assert opening(tied, "bending 2", "harmonic", **COARSE) == pytest.approx(exact, rel=0.1)
+    """Waves around a 3D mesh, a beam, and a narrow rigid seat, which takes unknowns of the mesh away,
+    against the harmonic solid.
+    """
+    scene = shaft((0.1, 0.015, 0.015), (0.03, 0.06, 0.06), (0.06, 0.015, 0.015))
+    soft = np.diag([1e5, 1e5, 1e5, 0.0, 0.0, 0.0])
+    held = [
+        scene.with_changes(
+            bearings=(
+                Bearing(name="A", y=0.02, seat_width=0.004, matrix=soft, attachment=attachment),
+            )
+        )
+        for attachment in ("average", "rigid")
+    ]
+    exact, tied = (opening(one, "bending 2", "harmonic", **COARSE) for one in held)
+    assert exact > 0.1 and tied == pytest.approx(exact, rel=0.03)
+    # a beam's disc does not bend, and cells as coarse as these are some per cent off
+    assert opening(held[0], "bending 2", "timoshenko") == pytest.approx(exact, rel=0.1)
+    assert opening(held[0], "bending 2", "solid", refinement=0.4) == pytest.approx(exact, rel=0.1)
+
+
+def test_a_thin_ring_opens_as_bryan_says():
+    """Bryan 1890: in a ring that turns, n waves lag by 2 / (n^2 + 1) of its turn; seen from outside they
+    go round by the rest of it, n (n^2 - 1) / (n^2 + 1) in their n waves, here of a wall of 2 %.
+    """
+    ring = shaft((0.03, 0.051, 0.051, 0.05, 0.05))
+    assert opening(ring, "ovalising n=2 1", "harmonic", order=3) == pytest.approx(6 / 5, rel=0.01)
+    assert opening(ring, "ovalising n=3 1", "harmonic", order=3) == pytest.approx(24 / 10, rel=0.01)
+    # so coarse cells are far too stiff, and have the other mode of two waves below it
+    cells = opening(ring, "ovalising n=2 2", "solid", refinement=0.5)
+    assert cells == pytest.approx(6 / 5, rel=0.01)
 
 
 def test_spin_couples_shapes_of_one_mode_antisymmetrically():
@@ -137,12 +154,18 @@ def test_what_spin_moves_more_than_a_bar_is_told(run):
 def test_a_train_tells_spin_at_its_fastest_operating_point():
     """Its ring gear turns 45/14 times slower than the pinion, whose speed it is."""
     train = sg.load_train(GEOMETRY / "axle_overhung.toml")
-    at_rest = train_modes(Workshop(train), "timoshenko", "timoshenko", max_frequency=900.0)
     point = sg.load_train(GEOMETRY / "gearbox_train.toml").operation[0]
-    fast = train.with_changes(
-        operation=[point.with_changes(of="pinion", speed="8000 rpm", share=None)]
+    point = point.with_changes(of="pinion", share=None)
+    # its bearings part the pair by more than 8,000 rpm do: 1.3 %, within the tolerance of 2 %
+    slow, fast = (
+        train_modes(
+            Workshop(train.with_changes(operation=[point.with_changes(speed=speed)])),
+            "timoshenko",
+            "timoshenko",
+            max_frequency=900.0,
+        ).cautions
+        for speed in ("8000 rpm", "20000 rpm")
     )
-    found = train_modes(Workshop(fast), "timoshenko", "timoshenko", max_frequency=900.0)
-    (said,) = (text for text in found.cautions if "spin" in text)
-    assert not any("spin" in text for text in at_rest.cautions)
-    assert "at 8000 rpm of the pinion spin moves gear bending 1 by" in said
+    assert not any("spin" in text for text in slow)
+    (said,) = (text for text in fast if "spin" in text)
+    assert "at 20000 rpm of the pinion spin moves gear bending 1 by" in said
