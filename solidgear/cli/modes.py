@@ -138,11 +138,6 @@ def modes(
     if planes:
         say(planes.strip())
     e = found.evidence
-    say(
-        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
-        f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
-        soft_wrap=False,
-    )
     say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
     say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
     if e["error"] > 1e-6:
@@ -152,6 +147,11 @@ def modes(
             soft_wrap=False,
         )
     if count:
+        say(
+            f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
+            f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
+            soft_wrap=False,
+        )
         say(completeness(evidence, body.fidelity), soft_wrap=False)
     lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
     if bars and settled is None:
