@@ -85,7 +85,7 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
 
 
 def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
-    """Why modes beside others have no bar, of a second mesh where that told the others; empty where
+    """Reason why modes beside others have no bar, of a second mesh where that told the others; empty where
     there are none.
     """
     if not names:

@@ -190,11 +190,11 @@ class Solved(Chosen):
 
     @property
     def on_two_meshes(self) -> bool:
-        """Whether error bars come from a second mesh."""
+        """True where error bars come from a second mesh."""
         return self.second and self.name in SECOND
 
     def without_bars(self, bars: Mapping[str, float], settled: Settled | None) -> str:
-        """Why numbers have no error bar; empty where they have one."""
+        """Reason why numbers have no error bar; empty where they have one."""
         if bars or settled is not None:
             return ""
         if self.on_two_meshes:

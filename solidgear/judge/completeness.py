@@ -63,7 +63,7 @@ def split_apart(evidence: dict) -> list[str]:
 
 
 def _reach(evidence: dict) -> str:
-    """How far a count reaches: into the body, where the error bars of what lies above the list are
+    """Reach of a count: into the body, where the error bars of what lies above the list are
     known.
     """
     by = "counted by the inertia of a second factor"

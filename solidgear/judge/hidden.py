@@ -1,4 +1,4 @@
-"""What a mesh may hide at the end of a list of modes.
+"""Modes that a mesh may hide at the end of a list.
 
 A mesh has no mode below the exact one of its number, and may have it far above: what it puts just
 above a list may in truth lie within. The k-th eigenvalue of a family lies no lower than the k-th of

@@ -107,7 +107,7 @@ def tie_rigidly(
 
 
 def reduced(swirl: Swirl | None, t: sp.csr_matrix) -> Swirl | None:
-    """What spin makes of fewer unknowns v, where ``u = t v``, from that of u."""
+    """Effect of spin on fewer unknowns v, where ``u = t v``, from that of u."""
     return None if swirl is None else lambda v: t.T @ swirl(t @ v)
 
 

@@ -342,7 +342,7 @@ class Names:
         return groups
 
     def _promises_twins(self, shape: Shape) -> bool:
-        """Whether symmetry gives a shape a twin: around N equal sectors none of N/2 waves has one."""
+        """True where symmetry gives a shape a twin: around N equal sectors none of N/2 waves has one."""
         if self._split or shape.waves < 1:
             return False
         if shape.waves == 1:

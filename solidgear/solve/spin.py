@@ -1,4 +1,4 @@
-r"""How far spin opens natural frequencies, to first order, from modes at rest.
+r"""Opening of natural frequencies by spin, to first order, from modes at rest.
 
 A shape u of a body of revolution that turns at :math:`\Omega`, seen from outside, moves particles
 at :math:`\partial u/\partial t + \Omega\,\partial u/\partial\theta`, components taken along fixed

@@ -1,4 +1,4 @@
-"""How far spin opens natural frequencies of a train at its speeds, from its modes at rest.
+"""Opening of natural frequencies of a train by spin, from its modes at rest.
 
 Every shaft adds its own coupling times its own turns (:mod:`solidgear.solve.spin`); the sense in which
 shafts turn is left out, so that what two of them bring is added up.
