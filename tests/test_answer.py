@@ -423,12 +423,17 @@ def test_a_coupling_that_symmetry_forbids_is_zero_and_others_are_not(scenes):
     assert not odd[0].zero
 
 
-def test_what_an_answer_cost_is_told_in_plain_seconds():
-    """Not as 1.1e+02 s."""
-    step = SimpleNamespace(rung="sector", valid=True, why="", chosen=True, seconds=108.4)
-    found = SimpleNamespace(steps=[step], missing=(), tolerance=1e-3, reached=True, rung="sector")
-    (line,) = sentences(found)
-    assert line == "Within 0.10 %: sector, 108 s for all meshes tried."
+def test_solids_alone_are_told_to_be_passed_over():
+    """Beams are so in every answer; a solid that could not be solved is news."""
+    beam, solid = (
+        SimpleNamespace(rung=rung, valid=False, why="not enough memory", chosen=False)
+        for rung in ("euler", "harmonic")
+    )
+    chosen = SimpleNamespace(rung="sector", valid=True, why="", chosen=True)
+    found = SimpleNamespace(steps=[beam, chosen], missing=(), tolerance=1e-3, reached=True)
+    assert sentences(found) == ["Within the 0.1 % asked."]
+    found.steps.insert(0, solid)
+    assert sentences(found)[0] == "Passed over: harmonic (not enough memory)."
 
 
 def test_f1_is_the_lowest_frequency_of_all_and_a_tolerance_may_be_written_in_per_cent(scenes):

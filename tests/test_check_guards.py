@@ -596,9 +596,7 @@ def test_back_ends_that_are_missing_are_named(monkeypatch):
         lambda name: "" if name == "superlu" else f"{name} is not usable (ImportError)",
     )
     fact = next(elements.memory(Probe(OVERHUNG, sg.build(OVERHUNG, "timoshenko")))).sentence
-    assert (
-        "by superlu" in fact and "pardiso is not usable" in fact and "mumps is not usable" in fact
-    )
+    assert "by superlu" in fact and fact.endswith("; faster: pip install 'solidgear[fast]'")
     assert float(fact.split(" MB")[0].split()[-1]) > 1.3 * 253  # fill of SuperLU
 
 

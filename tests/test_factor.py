@@ -121,7 +121,7 @@ def test_large_matrices_take_the_fastest_there_and_say_what_is_missing(monkeypat
     found = factorise(matrix)
     assert found.backend == "superlu" and str(SMALL) in found.reason
     for extra in ("fast", "cholmod", "mumps"):
-        assert f"install the extra '{extra}'" in found.reason
+        assert f"pip install 'solidgear[{extra}]'" in found.reason
     with pytest.raises(FactorError, match=r"pardiso was asked for but pypardiso is not usable"):
         factorise(sp.identity(3, format="csr"), "pardiso")
     absent.clear()

@@ -283,18 +283,25 @@ def test_near_rigid_shaft_on_stiff_springs(fidelity, options):
     assert found[1:] == pytest.approx(rigid_frequencies(scene, radial, axial), rel=5e-6)
 
 
-def test_a_pair_torn_by_the_mesh_is_told(overhung):
-    """Coarse linear tetrahedra: 'bending 2' is the twin of 'bending 1'. Bearings that differ in x
-    and z split pairs for good reason.
+def test_a_pair_split_by_the_mesh_is_one_pair(overhung):
+    """Symmetry makes a pair, however far coarse linear tetrahedra split it: else the twin of 'bending 1'
+    would be 'bending 2', 30 % too low. Half of the split is an error of the mesh. Bearings that differ
+    in x and z split pairs for good reason.
     """
-    # the pair is split by 0.5 %: on finer meshes it may pass for one
     coarse = sg.build(overhung, "solid", element="tet4", size=0.05)
-    assert sg.modes(coarse, overhung, n=6).evidence["torn_pairs"][0][:2] == (
-        "bending 1",
-        "bending 2",
-    )
+    found = sg.modes(coarse, overhung, n=6)
     beam = sg.build(overhung, "timoshenko")
-    assert "torn_pairs" not in sg.modes(beam, overhung, n=6).evidence
+    right = sg.modes(beam, overhung, n=6)
+    first, second = (found.named(f"bending {k}") for k in (1, 2))
+    # this mesh is up to 4 % stiffer than the beam, whose second mode lies 45 % above the first
+    assert (first.multiplicity, second.multiplicity) == (2, 2)
+    for mode in (first, second):
+        assert mode.frequency_hz == pytest.approx(right.named(mode.name).frequency_hz, rel=0.05)
+    # this mesh splits the pair by 0.5 %, beyond the 0.2 % that is usual, and says so
+    (name, split), *_ = found.evidence["split_pairs"]
+    assert name == "bending 1" and split == first.split > 2e-3
+    assert first.left == pytest.approx(first.error + split / 2)
+    assert "split_pairs" not in right.evidence and right.named("bending 1").split < 1e-9
     weight = np.diag([0.995, 1, 1, 1, 1, 0.995])
     unequal = overhung.with_changes(
         bearings=tuple(
@@ -302,7 +309,7 @@ def test_a_pair_torn_by_the_mesh_is_told(overhung):
         )
     )
     found = sg.modes(beam, unequal, n=6)
-    assert found.modes[2].multiplicity == 1 and "torn_pairs" not in found.evidence
+    assert found.modes[2].multiplicity == 1 and "split_pairs" not in found.evidence
 
 
 # --------------------------------------------------------------------------- springs whose digits are used up

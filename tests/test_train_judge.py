@@ -13,6 +13,7 @@ from solidgear.studies.train import judge as judging
 from solidgear.studies.train.judge import JUDGE, judge_train
 from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.respond import Drive
 from solidgear.studies.train.shaft import LUMPED
 
@@ -91,6 +92,19 @@ def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
     assert (bars < 3 * error).all()
     # the coarser meshes of the verdict are told as such
     assert bars.max() < found.judge_bar < 0.1
+
+
+def test_a_mode_above_the_list_that_may_lie_in_it_is_told(verdict):
+    """Its lower end is what counts: 1/4 of its bar above the limit is within, twice the bar is not."""
+    shop, n = verdict[0], 8
+    system = shop.system(JUDGE, JUDGE)
+    bars = mesh_bars(shop, system, dict.fromkeys(SIDES, JUDGE), n)
+    hz, bar = system.elastic[0][n - 1] / (2 * np.pi), bars[-1]
+    within, without = (
+        train_modes(shop, JUDGE, JUDGE, max_frequency=hz * (1 - share * bar)).hidden
+        for share in (0.25, 2.0)
+    )
+    assert f"the meshes have it at {hz:.2f} Hz" in within and without == ""
 
 
 @pytest.mark.slow

@@ -326,7 +326,7 @@ def test_a_bar_above_the_tolerance_is_never_valid(bar):
 def test_the_3d_solid_judges_where_the_harmonic_one_is_missing():
     verdict, validity = judged({"timoshenko": solution(0.97), "solid": solution(bar=1e-3)}, 0.05)
     assert verdict.trust == "solid" and validity["timoshenko"].valid
-    assert verdict.sentences[0].startswith("Trust the 3D solid: full 3D elasticity")
+    assert verdict.sentences[0].startswith("Trust the 3D solid: own error")
 
 
 def test_a_guard_that_says_avoid_is_heard():

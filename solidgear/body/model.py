@@ -33,6 +33,10 @@ SINE = 2000
 Reflection = tuple[np.ndarray, np.ndarray]
 
 
+#: unknowns (n, k) to what spin makes of them (n, k), kg times them
+Swirl = Callable[[np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Port:
     """A six-component point on the axis through which a body is loaded and held.
@@ -99,6 +103,9 @@ class Block:
     reflections : tuple of (partner, sign)
         In the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
         (:mod:`solidgear.solve.symmetry`).
+    swirl : callable, optional
+        The coupling by spin of unknowns (n, k) with the twin a quarter of a wave further round
+        (:mod:`solidgear.solve.spin`), times them; None where there is none.
     """
 
     name: str
@@ -114,6 +121,7 @@ class Block:
     expand: sp.csr_matrix | None = None
     sections: Sections | None = None
     reflections: tuple[Reflection, ...] = ()
+    swirl: Swirl | None = None
 
     def mirrored(
         self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]

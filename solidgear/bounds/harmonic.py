@@ -219,12 +219,12 @@ def _asked(found: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
         mode = found.named(name)
         if mode is None:
             continue
-        group = [m for m in every if _alike(m, mode)]
+        group = [m for m in every if of_one_problem(m, mode)]
         out += group[: group.index(mode) + 2]
     return list({m.name: m for m in out}.values())
 
 
-def _alike(one: Mode, other: Mode) -> bool:
+def of_one_problem(one: Mode, other: Mode) -> bool:
     """True where two modes belong to one eigenproblem."""
     return set(one.vectors[0]) == set(other.vectors[0]) or (
         one.family == other.family and one.multiplicity == other.multiplicity
@@ -328,9 +328,9 @@ def _lower_ends(
     out: dict[str, float] = {}
     left = sorted(modes, key=lambda m: m.frequency_hz)
     while left:
-        group = [m for m in left if _alike(m, left[0])]
+        group = [m for m in left if of_one_problem(m, left[0])]
         left = [m for m in left if m not in group]
-        highest = max(_eigenvalue(m) for m in every if _alike(m, group[0]))
+        highest = max(_eigenvalue(m) for m in every if of_one_problem(m, group[0]))
         value = np.array([_eigenvalue(m) for m in group])
         ends = lower_ends(value, np.array([energy[m.name] for m in group]), highest)
         out |= {mode.name: float(end) for mode, end in zip(group, ends)}

@@ -21,6 +21,7 @@ from solidgear.judge.record import WhereRecord
 from solidgear.judge.settle import Settled
 from solidgear.judge.steps import ABOVE, BELOW
 from solidgear.judge.where import where
+from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
 from solidgear.models.kinds import PARTS
 from solidgear.quantity import Quantity
@@ -138,21 +139,21 @@ def _solved(found: Answered) -> list[Step]:
 
 
 def sentences(found: Answered | Settled) -> list[str]:
-    """Plain text of the choice: the models passed over and why, the one that answered."""
+    """Plain text of the choice: solids that could not answer and why, and whether the tolerance is kept.
+
+    Beams are passed over always, for they have no error of their own to show.
+    """
     passed: dict[str, list[str]] = {}
     for step in found.steps:
-        if not step.valid:
+        if not step.valid and LADDER[step.rung].family != BEAM:
             passed.setdefault(step.why, []).append(step.rung)
     lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
     if found.missing:
         lines.append(f"Not there: {_absent(found.missing)}.")
-    asked = percent(found.tolerance, signed=False)
-    cost = sum(step.seconds for step in found.steps)
+    asked = f"{100 * found.tolerance:g} %"
     if found.reached:
         there = ", what is there" if found.missing else ""
-        lines.append(
-            f"Within {asked}{there}: {found.rung}, {seconds(cost)} s for all meshes tried."
-        )
+        lines.append(f"Within the {asked} asked{there}.")
         return lines
     why = next((step.why for step in found.steps if step.chosen and step.why), "")
     lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")

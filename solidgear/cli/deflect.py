@@ -121,17 +121,19 @@ def _shaft(
         found = deflection.deflect_scene(scene, models or deflection.MODELS, progress)
     shown, judge = units_named(units), found.shafts[-1]
     lead = f"Under {load_in_words(scene, shown)}; numbers by {judge.model}."
+    note = f"No error bars: {deflection.WITHOUT_BAR}."
+    moved = tables.models(found.shafts, scene.port.name, note, shown)
     lines: list[Any] = [
         found.title,
         lead,
-        tables.models(found.shafts, scene.port.name, shown),
+        moved,
         *tables.bearings([judge], shown),
         tables.displacements([judge], shown),
         *map(caution, judge.notes),
     ]
     if out:
         shafts = {shaft.model: [shaft] for shaft in found.shafts}
-        told_first = [tables.models(found.shafts, scene.port.name, shown)]
+        told_first = [moved]
         title = f"{found.title}: deflection"
         files = write_deflection(
             out, shafts, found.as_dict(), title, lead, told_first, judge.notes, shown

@@ -7,9 +7,12 @@ from typing import Annotated
 
 import typer
 
+from solidgear.body import as_supports
 from solidgear.cli.app import caution, command, say
+from solidgear.cli.bearing_life import speed_of
 from solidgear.cli.reading import load
 from solidgear.cli.settled import (
+    SECOND_MESH,
     bar_lines,
     beyond,
     ended,
@@ -23,10 +26,14 @@ from solidgear.cli.shared import (
     Solved,
     options,
 )
-from solidgear.errors import SolidgearError, show
-from solidgear.judge.coarser_mesh import coarser_bars, no_bar
-from solidgear.judge.completeness import completeness, cut_short
+from solidgear.errors import SolidgearError, listed, show
+from solidgear.judge.at_rest import spin_caution
+from solidgear.judge.coarser_mesh import coarser_bars
+from solidgear.judge.completeness import completeness, cut_short, split_apart
+from solidgear.judge.hidden import complete_list, less_widest
 from solidgear.judge.settle import bars_of_modes
+from solidgear.ladder.registry import LADDER
+from solidgear.quantity import Quantity
 from solidgear.report.terminal import modes_table
 from solidgear.report.words import by_plane
 from solidgear.scene.rules import MOST_MODES
@@ -35,8 +42,6 @@ from solidgear.solve.modes import modes as solve
 from solidgear.studies.budget import beside
 from solidgear.studies.check import cautions
 
-#: models that have bars from a second mesh where theirs is set
-SECOND = ("solid",)
 #: rows of a list whose beginning has left the terminal
 MANY = 30
 
@@ -56,15 +61,15 @@ def modes(
             "--count", help="Prove by the inertia of a second factor that no mode was missed."
         ),
     ] = False,
-    second: Annotated[
-        bool,
+    speed: Annotated[
+        str | None,
         typer.Option(
-            "--bars/--no-bars",
-            help="Of -f solid: tell bars by a coarser second mesh, a quarter to two thirds more time.",
+            help='Of the shaft, such as "3000 rpm": says which frequencies spin moves, and how far.'
         ),
-    ] = True,
+    ] = None,
     run: Run,
 ) -> None:
+    turns = speed_of(speed)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     if n is not None and not 1 <= n <= MOST_MODES:
@@ -80,13 +85,23 @@ def modes(
         max_frequency=max_frequency or loaded.ask.max_frequency,
         count=count,
     )
-    bars = bars_of_modes(loaded, body, found, settled)
-    if settled is None and second and body.fidelity in SECOND:
-        bars = coarser_bars(loaded, body, found, options(model.pairs))
+    bounded = LADDER[body.fidelity].bounded
+    if settled is not None and bounded:
+        found = complete_list(loaded, body, as_supports(loaded), found)
+    every = found.whole if count and not bounded else found
+    bars = bars_of_modes(loaded, body, every, settled)
+    if settled is None and model.on_two_meshes:
+        bars = coarser_bars(loaded, body, every, options(model.pairs))
+    evidence = less_widest(found.evidence, bars.values())
+    bars = {name: bar for name, bar in bars.items() if name in found.names}
+    bare = without_bar(found, bars)
+    why = model.without_bars(bars, settled, loaded, body)
+    why = why or unjudged(bare, body.fidelity, second=settled is None)
     said = cautions(loaded, body)
     open_ = beside(loaded)
     asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
     said += cut_short(found.modes, *asked, option="-n")
+    said += spin_caution(loaded, body, found.modes, bars, turns)
     rows = [
         {
             "name": m.name,
@@ -95,6 +110,7 @@ def modes(
             "multiplicity": m.multiplicity,
             "error": m.error,
             "bar": bars.get(m.name),
+            "split": m.split,
         }
         for m in found.modes
     ]
@@ -104,12 +120,12 @@ def modes(
             "fidelity": body.fidelity,
             "dofs": body.size,
             "modes": rows,
-            "evidence": found.evidence,
+            "evidence": evidence,
             "cautions": said,
             "open": open_.model_dump(mode="json"),
         }
-        if settled is not None:
-            record |= settled.as_dict() | {"without_bar": without_bar(found, bars)}
+        record |= {} if settled is None else settled.as_dict()
+        record |= {"without_bar": bare, "why_without_bar": why}
         print(json.dumps(record, default=float))
         ended(settled)
         return
@@ -122,17 +138,7 @@ def modes(
     if planes:
         say(planes.strip())
     e = found.evidence
-    say(
-        f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
-        f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
-        soft_wrap=False,
-    )
-    for one, other, gap in e.get("torn_pairs", []):
-        say(
-            f"caution: {one} and {other} are twins that the mesh has split by {gap:.1e}: refine "
-            "it, or use hexahedra or the harmonic model.",
-            soft_wrap=False,
-        )
+    say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
     say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
     if e["error"] > 1e-6:
         say(
@@ -141,16 +147,19 @@ def modes(
             soft_wrap=False,
         )
     if count:
-        say(completeness(e, body.fidelity), soft_wrap=False)
-    lines = bar_lines(settled)
-    if settled is None:
-        why = "the model was given, and its mesh with it; -f auto has them"
-        files = loaded.body is not None and loaded.body.one_mesh
-        if not bars and second and files and body.fidelity in SECOND:
-            why = no_bar(loaded, body, options(model.pairs))
-        lines.append("Bars: from a second, coarser mesh." if bars else f"No bars: {why}.")
-    if bars:
-        lines += unjudged(without_bar(found, bars), body.fidelity, second=settled is None)
+        say(
+            f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
+            f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
+            soft_wrap=False,
+        )
+        say(completeness(evidence, body.fidelity), soft_wrap=False)
+    lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
+    if bars and settled is None:
+        lines.append(SECOND_MESH)
+    if not bars and why:
+        lines.append(f"No bars: {why}.")
+    elif why:
+        lines.append(f"No bar of their own: {listed(bare, most=3)}; {why}.")
     lines += beyond(bars, settled)
     say(*lines)
     say(*map(caution, said), soft_wrap=False)

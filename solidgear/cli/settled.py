@@ -11,11 +11,15 @@ from solidgear.cli.answer import sentences
 from solidgear.cli.app import NOT_REACHED
 from solidgear.errors import listed
 from solidgear.judge.quantities import in_words
-from solidgear.judge.settle import Settled
+from solidgear.judge.settle import Settled, widest
 from solidgear.ladder.registry import LADDER
+from solidgear.quantity import Quantity
 from solidgear.report.words import is_number, percent
 from solidgear.scene import Scene
 from solidgear.solve.modes import ModeSet
+
+#: where bars of a 3D solid come from whose mesh was set
+SECOND_MESH = "Bars: from a second, coarser mesh."
 
 
 def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
@@ -27,11 +31,14 @@ def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
     return f"{scene.name}: {model}, {part}{body.size} unknowns"
 
 
-def bar_lines(settled: Settled | None) -> list[str]:
-    """The largest bar, what was passed over and whether the tolerance is kept, in plain text."""
+def bar_lines(settled: Settled | None, bars: Mapping[Quantity, float] | None = None) -> list[str]:
+    """The largest of the bars that are shown, by default of all that were judged, and whether the
+    tolerance is kept, in plain text.
+    """
     if settled is None:
         return []
-    return [*_largest(settled, ""), *sentences(settled)]
+    shown = settled.bars if bars is None else bars
+    return [*largest_bar(shown, settled.point), *sentences(settled)]
 
 
 def over_the_sweep(settled: Settled | None) -> list[str]:
@@ -42,15 +49,17 @@ def over_the_sweep(settled: Settled | None) -> list[str]:
     where = f" over {settled.judged_on} bearing sets (the scene's and those at the ends)"
     if settled.judged_on == 1:
         where = " on the bearing set of the scene alone (what lies at the ends is refused)"
-    return [mesh, *_largest(settled, where), *sentences(settled)]
+    return [mesh, *largest_bar(settled.bars, settled.point, where), *sentences(settled)]
 
 
-def _largest(settled: Settled, where: str) -> list[str]:
-    if settled.largest is None:
+def largest_bar(bars: Mapping[Quantity, float], point: str, where: str = "") -> list[str]:
+    """Sentence on the quantity with the largest bar, if any has one; `point` is the main one."""
+    top = widest(bars)
+    if top is None:
         return []
 
-    quantity, bar = settled.largest
-    main = settled.point if any(name.points for name in settled.bars) else ""
+    quantity, bar = top
+    main = point if any(name.points for name in bars) else ""
     width = percent(bar, signed=False) if is_number(bar) else "unknown"
     return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
 
@@ -75,16 +84,17 @@ def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     ]
 
 
-def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> list[str]:
-    """Sentences on modes without a bar, of a second mesh where that told the others."""
+def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
+    """Reason why modes beside others have no bar, of a second mesh where that told the others; empty where
+    there are none.
+    """
     if not names:
-        return []
-    why = "the higher a mode, the more it asks of a mesh"
+        return ""
     if second:
-        why = "the coarser mesh has no mode of that name, or no fewer cells around"
+        return "the coarser mesh has no mode of that name, or no fewer cells around"
     if LADDER[model].bounded:
-        why = "no further mode of their family was found above, which a bar needs; raise -n"
-    return [f"No bar of their own: {listed(names, most=3)}; {why}."]
+        return "no further mode of their family was found above, which a bar needs; raise -n"
+    return "the higher a mode, the more it asks of a mesh"
 
 
 def ended(settled: Settled | None) -> None:

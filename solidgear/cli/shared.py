@@ -32,6 +32,8 @@ MODEL = "harmonic"
 AUTO = "auto"
 #: spellings of the option that names a model
 BY_MODEL = ("--model", "--fidelity", "-f")
+#: models that have error bars from a second mesh where theirs is set
+SECOND = ("solid",)
 #: units of tables and pages unless told otherwise
 UNITS = ENGINEERING.name
 
@@ -179,11 +181,39 @@ class Solved(Chosen):
             "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
         ),
     ] = None
+    second: Annotated[
+        bool,
+        typer.Option(
+            "--bars/--no-bars",
+            help="Of -f solid: error bars by a coarser second mesh, a quarter to two thirds more time.",
+        ),
+    ] = True
 
     @property
     def pairs(self) -> list[str]:
         """``--set`` options with that of ``--engine``."""
         return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
+
+    @property
+    def on_two_meshes(self) -> bool:
+        """True where error bars come from a second mesh."""
+        return self.second and self.name in SECOND
+
+    def without_bars(
+        self, bars: Mapping[str, float], settled: Settled | None, scene: Scene, body: Body
+    ) -> str:
+        """Reason why numbers have no error bar; empty where they have one."""
+        if bars or settled is not None:
+            return ""
+        if self.on_two_meshes:
+            if scene.body is not None and scene.body.one_mesh:
+                from solidgear.judge.coarser_mesh import no_bar  # start-up: for mesh files alone
+
+                return no_bar(scene, body, options(self.pairs))
+            return "there is no coarser mesh beside the one that was set"
+        if self.name in SECOND:
+            return "--no-bars leaves the second mesh out"
+        return "the model was given, and its mesh with it; -f auto has them"
 
     def body(
         self, scene: Scene, ask: str, points: Sequence[str] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
@@ -10,12 +11,12 @@ import typer
 
 from solidgear.cli.app import caution, command, say
 from solidgear.cli.reading import load
-from solidgear.cli.settled import bar_lines, ended, heading
-from solidgear.cli.shared import SceneFile, Shown, Solved
+from solidgear.cli.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
+from solidgear.cli.shared import SceneFile, Shown, Solved, options
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
-from solidgear.judge.settle import Settled
-from solidgear.quantity import COMPLIANCE, STIFFNESS
+from solidgear.judge.coarser_mesh import static_bars
+from solidgear.quantity import COMPLIANCE, STIFFNESS, Quantity
 from solidgear.report.open_words import table as open_table
 from solidgear.report.table import Column, Table
 from solidgear.report.terminal import matrix_table
@@ -56,6 +57,10 @@ def stiffness(
     body, settled = model.body(loaded, "stiffness", names[1:])
     found = condense(body, loaded, names[0])
     coupled = condense(body, loaded, names) if len(names) > 1 else None
+    bars = settled.bars if settled is not None else {}
+    if settled is None and model.on_two_meshes:
+        bars = static_bars(loaded, body, names, options(model.pairs))
+    why = model.without_bars(bars, settled, loaded, body)
     said = cautions(loaded, body)
     open_ = beside(loaded, body)
 
@@ -64,8 +69,8 @@ def stiffness(
         record |= _plain(found) if coupled is None else _plain_coupled(coupled)
         evidence = {"evidence": record.pop("evidence")}
         record |= {"dofs": body.size, **evidence, "cautions": said}
-        if settled is not None:
-            record |= settled.as_dict()
+        record |= {"bars": bars} if settled is None else settled.as_dict()
+        record |= {"why_without_bar": why}
         print(json.dumps(record | {"open": open_.model_dump(mode="json")}))
         ended(settled)
         return
@@ -74,11 +79,13 @@ def stiffness(
         _tell(head, loaded, found, run.units)
     else:
         _tell_coupled(head, loaded, coupled, run.units)
-        if settled is not None:
-            say(_bars(settled, coupled))
+        if bars:
+            say(_bars(bars, coupled))
     if open_.inputs:
-        bars = settled.bars if settled is not None else {}
         say(open_table(open_, bars, units_named(run.units)))
+    if settled is None:
+        lines = [f"No bars: {why}."] if why else largest_bar(bars, names[0])
+        say(*lines, *([] if why else [SECOND_MESH]))
     say(*bar_lines(settled))
     say(*map(caution, said), soft_wrap=False)
     ended(settled)
@@ -152,10 +159,10 @@ def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
         say(line)
 
 
-def _bars(settled: Settled, found: Coupled) -> Table:
+def _bars(bars: Mapping[Quantity, float], found: Coupled) -> Table:
     """The largest mesh bar of every block."""
     largest: dict[tuple[str, ...], float] = {}
-    for name, bar in settled.bars.items():
+    for name, bar in bars.items():
         if name.pair or name.kind == COMPLIANCE:  # what one point resists alone is not told here
             point = next(iter(name.points), found.ports[0])
             key = (name.kind, *sorted(name.pair or (point, point), key=found.ports.index))

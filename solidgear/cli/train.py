@@ -138,7 +138,8 @@ def response(
     how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
     with held(out):
-        found = [respond(shop, *mix, forces=forces, **how) for mix in mixes]
+        turns = asked.turns or None
+        found = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
         unpublished = shop.train.unpublished()
         said = slips(shop)
         cautions = [*said, *found[0].cautions]

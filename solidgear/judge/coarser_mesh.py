@@ -80,7 +80,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
                 left = _left(max(step, 0.0), falls.get(str(mode.name)))
             else:
                 left = REFINEMENT.steps[0] * _left_over(scene, before, body) * abs(step)
-            bars[str(mode.name)] = left + mode.error + _shape(body)
+            bars[str(mode.name)] = left + mode.left + _shape(body)
     return bars
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from solidgear.judge.hidden import COMPLETE, COUNTED
 from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
 
@@ -23,10 +24,7 @@ def completeness(evidence: dict, model: str) -> str:
         return f"Not counted: {bad[0]}."
     rows = evidence["families"]
     counted = [row for row in rows if row["counted"]]
-    text = (
-        f"No mode missed below {evidence['complete_below_hz']:.6g} Hz (counted by the inertia of "
-        f"a second factor): {_listed(counted)}"
-    )
+    text = f"{_reach(evidence)}: {_listed(counted)}"
     if LADDER[model].family == BEAM:
         return f"{text}; a beam knows no others."
     left = _left([row for row in rows if not row["counted"]])
@@ -53,6 +51,29 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
         f"Hz, and {asked_hz:g} Hz are asked for: there may be more between; raise "
         f"{option + ', or ' if option else ''}modes under [ask]"
     ]
+
+
+def split_apart(evidence: dict) -> list[str]:
+    """Sentences on pairs that a mesh has split further than meshes like it do."""
+    return [
+        f"the mesh splits the pair {name} by {split:.1e}, where the body has one frequency: refine "
+        "it, or use hexahedra or the harmonic model."
+        for name, split in evidence.get("split_pairs", ())
+    ]
+
+
+def _reach(evidence: dict) -> str:
+    """Reach of a count: into the body, where the error bars of what lies above the list are
+    known.
+    """
+    by = "counted by the inertia of a second factor"
+    if COMPLETE not in evidence:
+        return (
+            f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({by}; without error "
+            "bars the body itself may have one)"
+        )
+    less = "" if evidence[COMPLETE] == evidence[COUNTED] else ", less error bars of what lies above"
+    return f"No mode missed below {evidence[COMPLETE]:.6g} Hz ({by}{less})"
 
 
 def _listed(rows: list[dict]) -> str:

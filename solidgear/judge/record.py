@@ -82,6 +82,7 @@ class EvidenceRecord(Part):
     mode_count: list[Facts] = []
     families: list[Facts] = []
     complete: str = ""
+    complete_below_hz: Number = None
     rigid_modes: int | None = None
     coupling_bound: Number = None
     shift_rad2: Number = None

@@ -6,10 +6,12 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from solidgear.frames import DOF_NAMES
+from solidgear.judge.at_rest import spin_caution
 from solidgear.judge.bars import ErrorBar
-from solidgear.judge.completeness import completeness, cut_short
+from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.correlation import correlate
 from solidgear.judge.deviations import Deviation, deviations
+from solidgear.judge.hidden import COMPLETE, less_widest
 from solidgear.judge.lumped import drawn, model_record
 from solidgear.judge.quantities import usual
 from solidgear.judge.record import (
@@ -96,6 +98,8 @@ def recorded(
         _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
+        own = {q: bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
+        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, own)
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out
@@ -142,11 +146,7 @@ def _warnings(
         for what, why in r.failed.items()
     ]
     for model, solution in solutions.items():
-        for one, other, gap in solution.modes.evidence.get("torn_pairs", ()):
-            out.append(
-                f"{LADDER[model].title}: {one} and {other} are twins that the mesh has split by "
-                f"{gap:.1e}: refine it, or use hexahedra"
-            )
+        out += [f"{LADDER[model].title}: {one}" for one in split_apart(solution.modes.evidence)]
         out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(solution.modes)]
     return out
 
@@ -271,7 +271,11 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
 
 
 def _evidence(solution: Solution) -> EvidenceRecord:
-    statics, found = solution.condensed.evidence, solution.modes.evidence
+    statics = solution.condensed.evidence
+    own = solution.error_bars.get(SCENE, {})
+    found = less_widest(
+        solution.modes.evidence, [bar.width for q, bar in own.items() if q.is_frequency]
+    )
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],
@@ -280,6 +284,7 @@ def _evidence(solution: Solution) -> EvidenceRecord:
         orthogonality=found["orthogonality"],
         eigensolver=found["method"],
         mode_count=found.get("count", []),
+        complete_below_hz=found.get(COMPLETE),
         families=found.get("families", []),
         complete=completeness(found, solution.model) if "count" in found else "",
         rigid_modes=found["rigid_modes"],

@@ -102,14 +102,8 @@ class Settled:
 
     @property
     def largest(self) -> tuple[Quantity, float] | None:
-        """The quantity with the largest bar, and the bar; None where nothing is judged.
-
-        Twins of the two planes have equal bars but for rounding: the first listed is named.
-        """
-        if not self.bars:
-            return None
-        top = max(self.bars.values())
-        return next((q, bar) for q, bar in self.bars.items() if bar >= top * (1 - SAME))
+        """The quantity with the largest bar, and the bar; None where nothing is judged."""
+        return widest(self.bars)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data, without the body."""
@@ -122,6 +116,17 @@ class Settled:
             "reached": self.reached,
             "judged_on": self.judged_on,
         }
+
+
+def widest(bars: Mapping[Quantity, float]) -> tuple[Quantity, float] | None:
+    """The quantity with the largest bar, and the bar; None without any.
+
+    Twins of the two planes have equal bars but for rounding: the first listed is named.
+    """
+    if not bars:
+        return None
+    top = max(bars.values())
+    return next((q, bar) for q, bar in bars.items() if bar >= top * (1 - SAME))
 
 
 @pinned

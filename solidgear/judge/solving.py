@@ -120,7 +120,7 @@ def _left(
         if name.is_frequency:
             mode = found.named(name) if found is not None else None
             if mode is not None:
-                solver[name] = mode.error
+                solver[name] = mode.left
         elif statics is not None:
             inverted = statics.coupled if name.pair and name.kind == STIFFNESS else None
             solver[name] = statics.main.evidence["residual"]

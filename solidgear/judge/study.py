@@ -8,12 +8,14 @@ import logging
 import math
 from collections.abc import Callable, Mapping
 from collections.abc import Sequence as Listed
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.judge.bars import ErrorBar, sizes_of
 from solidgear.judge.bounded import Bounded, bounded
+from solidgear.judge.hidden import complete_list
 from solidgear.judge.quantities import change, usual
 from solidgear.judge.question import Solved, mesh_words
 from solidgear.judge.record import LevelRecord
@@ -252,6 +254,8 @@ class Tied(Loop):
                     count=True,
                     ovalising=True,
                 )
+                whole = complete_list(scene, found.body, found.supports, found.modes)
+                found.modes = replace(found.modes, evidence=whole.evidence)
 
 
 def _judged(

@@ -51,8 +51,8 @@ def trusted(
             why = f"the {LADDER[model].title} has no error bar of its own ({_reason(solutions[model])})"
         elif worst > tolerance:
             why = (
-                f"the {LADDER[model].title} is sure of itself to no better than {percent(worst)}, "
-                f"more than the {percent(tolerance)} asked for"
+                f"the own error of the {LADDER[model].title} may be {percent(worst)}, more than the "
+                f"{percent(tolerance)} asked for"
             )
         else:
             return model, ""
@@ -129,7 +129,7 @@ def _judged(
             text = (
                 "it has no error bar of its own"
                 if worst is None
-                else f"it is sure of itself to no better than {percent(worst)}"
+                else f"its own error may be {percent(worst)}"
             )
             return Judgement(
                 False,
@@ -193,11 +193,8 @@ def _trust(solutions, reference, gaps, judged) -> list[str]:
         size.append(f"{percent(c)} in compliance")
     if f is not None:
         size.append(f"{percent(f)} in first bending")
-    told = " and ".join(size) or "the numbers it has"
-    out = [
-        f"Trust the {LADDER[reference].title}: {LADDER[reference].theory}, sure of itself to "
-        f"{told} ({len(base.levels)} mesh{'es' * (len(base.levels) != 1)})."
-    ]
+    told = f": own error {', '.join(size)}" if size else ""
+    out = [f"Trust the {LADDER[reference].title}{told}."]
     for model in LADDER.of(SOLID):
         if model in solutions and model != reference:
             same = all("sectors" in solutions[m].body.mesh for m in (model, reference))

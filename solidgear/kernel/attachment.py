@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.body import Block
+from solidgear.body.model import Swirl
 from solidgear.body.sections import from_points, through
 from solidgear.errors import SolidgearError
 from solidgear.frames import on_axis, shift
@@ -101,7 +102,13 @@ def tie_rigidly(
         sections=through(
             block.sections or from_points(block.mass, block.rigid, block.y, block.components), t
         ),
+        swirl=reduced(block.swirl, t),
     )
+
+
+def reduced(swirl: Swirl | None, t: sp.csr_matrix) -> Swirl | None:
+    """Effect of spin on fewer unknowns v, where ``u = t v``, from that of u."""
+    return None if swirl is None else lambda v: t.T @ swirl(t @ v)
 
 
 def _about(block: Block, place: float | Sequence[float]) -> np.ndarray:

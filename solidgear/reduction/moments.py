@@ -100,8 +100,8 @@ class Reduced:
         :func:`solidgear.solve.statics.condense`.
     shift : float
         sigma, rad^2/s^2.
-    pair_tolerance : float
-        Two shapes of a family nearer than this are a pair.
+    round : bool
+        Whether symmetry promises pairs.
     level : int
         How often the basis was enlarged.
     """
@@ -109,7 +109,7 @@ class Reduced:
     blocks: tuple[ReducedBlock, ...]
     frame: Body
     shift: float
-    pair_tolerance: float
+    round: bool
     level: int
 
     @property
@@ -169,7 +169,7 @@ def reduce(body: Body, n: int, level: int = 0) -> Reduced:
         tuple(blocks),
         _frame(body),
         SHIFT * body.scale,
-        body.mesh.get("pair_tolerance", 1e-7),
+        body.mesh.get("round", True),
         level,
     )
 

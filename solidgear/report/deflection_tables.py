@@ -195,10 +195,10 @@ def _of_weight(value: float, alike: Sequence[float]) -> float:
     return float(value) if abs(value) > ROUNDING * max(map(abs, alike)) else 0.0
 
 
-def models(shafts: Sequence[Any], port: str, units: Units = ENGINEERING) -> Table:
+def models(shafts: Sequence[Any], port: str, note: str, units: Units = ENGINEERING) -> Table:
     """Motion of one place by every model, of which there is a shaft each."""
     columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
-    return Table(f"Motion of {port}", columns, shafts)
+    return Table(f"Motion of {port}", columns, shafts, note)
 
 
 def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:

@@ -220,16 +220,20 @@ def algebra(record: Record) -> Table:
         columns,
         rows,
         "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second "
-        "factor (Sylvester).",
+        "factor (Sylvester), less the error bars of what lies above.",
     )
 
 
 def _counted_below(evidence: EvidenceRecord) -> str:
-    """The frequency up to which the inertia of a factor confirms that every mode was found."""
+    """The frequency up to which the inertia of a factor confirms that every mode was found: of the
+    body, or of its mesh where no error bar tells more.
+    """
     parts = evidence.mode_count
     if not parts or not all(part.get("checked") for part in parts):
         return "not counted"
-    return f"{min(part['below_hz'] for part in parts):.0f}"
+    if evidence.complete_below_hz is not None:
+        return f"{evidence.complete_below_hz:.0f}"
+    return f"{min(part['below_hz'] for part in parts):.0f} (of this mesh)"
 
 
 def pairs(record: Record) -> Table:

@@ -72,10 +72,7 @@ def remark(found: OpenNumbers) -> str:
     refused = [f" Left out of them: {reason}." for reason in found.refused]
     named = ", ".join(one.path for one in found.inputs)
     sources = ", ".join(dict.fromkeys(one.source for one in found.inputs))
-    return (
-        f"Ranges of {sources}: by what is open ({named}), relative, of the {found.title}; "
-        f"solidgear budget tells which input leaves how much.{''.join(lost + refused)}"
-    )
+    return f"Ranges of {sources}: from {named}. See: solidgear budget.{''.join(lost + refused)}"
 
 
 def table(found: OpenNumbers, bars: dict[Quantity, float], units: Units) -> Table:

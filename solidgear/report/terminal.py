@@ -89,13 +89,12 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
     reference = reading.reference_of(record)
     if reference:
         notes.append(
-            f"d: difference from the {reading.model_name(record, reference)} (ref.); "
-            "a beam's is taken with section ties on both sides"
+            f"d: difference from the {reading.model_name(record, reference)} (ref.), with equal seats"
         )
     if any(reading.validity(m) == "open" for m in record.models.values()):
         notes.append("?: not judged, or too close to the tolerance to tell")
     if unresolved:
-        notes.append("n.r.: not resolved, the difference lies inside the error bars of both models")
+        notes.append("n.r.: difference smaller than the error bars")
     if record.models:
         notes.append(
             "fb1: first bending mode; bar C: error bar of the worst compliance; "

@@ -55,6 +55,22 @@ def without_axis(scene: Any) -> bool:
     return body is not None and body.edges is not None
 
 
+def turning_speed(scene: Any) -> float | None:
+    """Speed of a shaft, rad/s: that of its fastest bearing, else of its lubrication; None where neither
+    says one.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> turning_speed(sg.load("geometry/shaft_stepped.toml")) is None
+    True
+    """
+    data = [b.catalogue for b in getattr(scene, "bearings", ()) if b.catalogue is not None]
+    fastest = max((one.speed for one in data), default=0.0)
+    oil = getattr(scene, "lubrication", None)
+    return fastest or (oil.speed if oil is not None else None) or None
+
+
 def named(features: Iterable[Any]) -> str:
     """Features in a sentence, such as ``keyway "key"``."""
     return ", ".join(f'{f.what} "{f.name}"' for f in features)

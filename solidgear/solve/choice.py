@@ -66,9 +66,9 @@ def choice(
         why = missing(name)
         if not why:
             break
-        absent.append(f"{why}; {INSTALL[name]}")
+        absent.append(f"{INSTALL[name]} ({why})")
     return name, f"{unknowns} unknowns are above {SMALL}" + "".join(
-        f"; faster but absent: {why}" for why in absent
+        f"; faster: {way}" for way in absent
     )
 
 

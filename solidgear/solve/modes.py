@@ -9,7 +9,7 @@ exactly; they are projected out and reported as 0 Hz instead of as noise.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -63,6 +63,9 @@ class Mode:
     error : float
         Bound on the relative error of the frequency that the solution of the eigenproblem leaves
         (not that of the mesh).
+    split : float
+        Relative distance of the frequencies of a pair that the mesh, or unequal bearings, have split;
+        `frequency_hz` is between them.
     """
 
     name: ModeName
@@ -74,6 +77,14 @@ class Mode:
     captured: float
     waves: int = 0
     error: float = 0.0
+    split: float = 0.0
+
+    @property
+    def left(self) -> float:
+        """Relative error that the solution leaves by itself: of the eigenproblem, and half of what
+        twins are apart.
+        """
+        return self.error + self.split / 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,15 +104,16 @@ class ModeSet(Displayed):
         ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``,
         a list of ``{family, n, counted, modes_below, lowest_hz}`` with ``n`` None for a body that
         holds all motions in one and ``above`` where a row stands for all of more waves, which begin
-        at ``lowest_hz`` at the earliest; ``torn_pairs`` where the mesh has split twins too far
-        apart to be taken for one pair. Where asked for, ``count``, ``count_seconds`` and
-        ``complete_below_hz``, below which no mode of any family listed is missing.
+        at ``lowest_hz`` at the earliest; ``split_pairs``, names and splits where the mesh has split
+        twins further than meshes like it do. Where asked for, ``count``, ``count_seconds`` and
+        ``counted_below_hz``, below which the body as meshed has no further mode of any family
+        listed.
     beyond : tuple of Mode
         Further modes of the body's own blocks that were solved and lie above the end of the list,
         because ovalising ones took their places.
     above : tuple of Mode
-        All others of the body's own blocks that were solved to know that the list is whole, as far
-        as none of their family is missing between: what is near to a mode of the list.
+        All others that were solved to know that the list is whole, as far as none of their family
+        is missing between: what is near to a mode of the list.
     """
 
     shown: ClassVar[str] = "mode_set"
@@ -118,6 +130,12 @@ class ModeSet(Displayed):
     def solved(self) -> tuple[Mode, ...]:
         """The list and all others that were solved."""
         return (*self.modes, *self.beyond, *self.above)
+
+    @property
+    def whole(self) -> ModeSet:
+        """The list with all others that were solved in it."""
+        every = sorted(self.solved, key=lambda mode: mode.frequency_hz)
+        return replace(self, modes=tuple(every), beyond=(), above=())
 
     @property
     def frequency_hz(self) -> np.ndarray:
@@ -239,7 +257,7 @@ def modes(
     project = Projection(body, np.linspace(0.0, body.length, stations))
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
-    listed, beyond, above, torn, every = _named(body, names, parts, n, max_frequency)
+    listed, beyond, above, unusual, every = _named(body, names, parts, n, max_frequency)
     evidence = {
         "residual": max((r.residual for r in _lowest(parts, n + 2)), default=0.0),
         "error": max((m.error for m in listed), default=0.0),
@@ -255,11 +273,11 @@ def modes(
     if count:
         evidence |= {"count": verdicts, "count_seconds": spent}
         if all(verdict["checked"] for verdict in verdicts):
-            evidence["complete_below_hz"] = min(
+            evidence["counted_below_hz"] = min(
                 [verdict["below_hz"] for verdict in verdicts] + [u.begins_hz for u in left]
             )
-    if torn:
-        evidence["torn_pairs"] = torn
+    if unusual:
+        evidence["split_pairs"] = unusual
     return ModeSet(
         body.fidelity,
         (*_rigid(names, rigid), *listed),
@@ -299,21 +317,22 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes of the list, own modes beyond the end of the list and those above them, torn pairs, and
-    (family, frequency, shapes) of all that was found: no pair is cut in two.
+    """Modes of the list, own modes beyond the end of the list and those above them, names and splits of
+    pairs that are unusually far apart, and (family, frequency, shapes) of all that was found: no pair
+    is cut in two.
     """
     whole = whole_to(parts)
     raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     value = np.array([r.value for r in raw])
     shapes = names.unmixed(shapes, [r.vectors for r in raw], value)
-    groups, torn = names.pairs(shapes, value)
+    groups = names.pairs(shapes, value)
     labels = numbered([shapes[group[0]].label for group in groups])
     listed: list[Mode] = []
     beyond: list[Mode] = []
     above: list[Mode] = []
     every: list[tuple[str, float, int]] = []
-    of: dict[int, Mode] = {}
+    unusual: list[tuple[ModeName, float]] = []
     room = own_room = n
     for group, label in zip(groups, labels):
         members, first = [raw[i] for i in group], shapes[group[0]]
@@ -331,20 +350,17 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             captured=float(min(shapes[i].captured for i in group)),
             waves=first.waves,
             error=float(max(r.error for r in members) / 2),
+            split=float(np.sqrt(members[-1].value / members[0].value) - 1) if group[1:] else 0.0,
         )
         own = all(b < FURTHER for r in members for b in r.vectors)
         if room > 0 and not over:
             listed.append(sound(body, mode, parts))
-            of |= dict.fromkeys(group, mode)
+            if value[group[-1]] > (1 + names.usual(first)) * value[group[0]]:
+                unusual.append((mode.name, mode.split))
         elif own and own_room > 0 and not over:
             beyond.append(mode)
-        elif own and all(r.value <= whole[b] for r in members for b in r.vectors):
+        elif all(r.value <= whole[b] for r in members for b in r.vectors):
             above.append(mode)
         room -= mode.multiplicity
         own_room -= mode.multiplicity if own else 0
-    pairs = [
-        (of[i].name, of[j].name, of[j].frequency_hz / of[i].frequency_hz - 1)
-        for i, j in torn
-        if i in of and j in of
-    ]
-    return tuple(listed), tuple(beyond), tuple(above), pairs, every
+    return tuple(listed), tuple(beyond), tuple(above), unusual, every

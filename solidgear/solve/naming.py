@@ -7,8 +7,8 @@ whatever its sections do; a 3D mesh is asked by :mod:`solidgear.solve.circumfere
 
 Two modes are one pair only where symmetry makes them so: the same profile over the meridian, a
 quarter of a wave further round, with bearings that a quarter turn leaves as they are, or with n >=
-2, which bearings do not touch. Twins that the mesh has split beyond its tolerance stay apart and
-are reported.
+2, which bearings do not touch. However far a mesh splits twins, they are one pair: the split is an
+error of the mesh, is a part of the error bar, and is reported where it is unusual.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from solidgear.solve.quarter_turn import alike
 #: at most.
 ALIKE = 1e-6
 _QUARTER = rotation(1, np.pi / 2)
-#: Eigenvalues of twins of two and more waves that a 3D mesh has split by this much are still
-#: reported as one pair.
+#: Distance, relative, that 3D meshes usually leave between eigenvalues of twins of two and more
+#: waves.
 OVAL_TOLERANCE = 1e-2
 
 
@@ -311,22 +311,14 @@ class Names:
             self._momenta[id(shape)] = shape, heavy
         return self._momenta[id(shape)][1]
 
-    def pairs(
-        self, shapes: list[Shape], value: np.ndarray
-    ) -> tuple[list[tuple[int, ...]], list[tuple[int, int]]]:
+    def pairs(self, shapes: list[Shape], value: np.ndarray) -> list[tuple[int, ...]]:
         """Groups of shapes that belong together, by their eigenvalues (k,), ascending: pairs and single
-        modes in ascending order of the first member; and twins that the mesh has split too far to be one.
+        modes in ascending order of the first member.
         """
-        own = self.body.mesh.get("pair_tolerance", 1e-7)
         partner: dict[int, int] = {}
-        torn = []
         for i, shape in enumerate(shapes):
-            double = shape.waves >= 1 and (shape.waves > 1 or self.promised <= ALIKE)
-            if self._split or not double or shape.double or i in partner:
+            if shape.double or i in partner or not self._promises_twins(shape):
                 continue
-            tolerance = (
-                2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)
-            )
             others = [
                 j
                 for j in range(i + 1, len(shapes))
@@ -336,19 +328,29 @@ class Names:
             ]
             like = {j: self.overlap(shape, shapes[j]) for j in others}
             twin = max(like, key=like.__getitem__, default=None)
-            near = others and value[others[0]] - value[i] <= tolerance * abs(value[i])
             if twin is None or like[twin] < 0.5:
                 # Shapes of a cluster mix: then the nearest is as good as any.
+                near = others and value[others[0]] - value[i] <= self.usual(shape) * abs(value[i])
                 twin = others[0] if near else None
-            if twin is None:
-                continue
-            if value[twin] - value[i] <= tolerance * abs(value[i]):
+            if twin is not None:
                 partner[i] = partner[twin] = twin
-            elif like[twin] >= 0.5:
-                torn.append((i, twin))
         groups: list[tuple[int, ...]] = [
             (i, partner[i]) if i in partner else (i,)
             for i in range(len(shapes))
             if partner.get(i) != i
         ]
-        return groups, torn
+        return groups
+
+    def _promises_twins(self, shape: Shape) -> bool:
+        """True where symmetry gives a shape a twin: around N equal sectors none of N/2 waves has one."""
+        if self._split or shape.waves < 1:
+            return False
+        if shape.waves == 1:
+            return self.promised <= ALIKE
+        sectors = self.body.mesh.get("sectors")
+        return not sectors or 2 * shape.waves % sectors != 0
+
+    def usual(self, shape: Shape) -> float:
+        """Relative distance of eigenvalues that meshes like this one leave between the twins of a shape."""
+        own = self.body.mesh.get("pair_tolerance", 1e-7)
+        return 2 * max(own, self.promised) if shape.waves == 1 else max(2 * own, OVAL_TOLERANCE)

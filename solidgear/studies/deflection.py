@@ -31,6 +31,8 @@ MODELS = ("euler", "timoshenko", LADDER.judges[0])
 SHAFT = "shaft"
 #: modes kept of a body whose statics alone are asked for
 FEW = 6
+#: why numbers have no error bar
+WITHOUT_BAR = "each model is solved on its usual mesh alone; solidgear stiffness shows error bars"
 #: N/m and N m/rad of a held seat at rest: a millionth of a shaft's flexibility, and rounding as small
 FIRM = 1e15
 
@@ -186,6 +188,7 @@ class SceneDeflection:
             "scene": self.title,
             "load": self.load.tolist(),
             "models": {shaft.model: shaft.as_dict() for shaft in self.shafts},
+            "why_without_bar": WITHOUT_BAR,
         }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from solidgear.body import Body, as_supports
@@ -97,7 +97,7 @@ def one_shaft(
         spare=True,
     )
     say("how sure its frequencies are")
-    bars = bars_of_modes(scene, body, all_modes(found.modes), settled)
+    bars = bars_of_modes(scene, body, found.modes.whole, settled)
     for asked in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
         mode = found.modes.named(asked)
@@ -107,12 +107,6 @@ def one_shaft(
     said = tuple(cautions(scene, body))
     numbers = found.quantities, found.modes, bars
     return OneShaft(letter, name, said, scene, settled, *numbers, mass, exact)
-
-
-def all_modes(found: ModeSet) -> ModeSet:
-    """All modes of a list, beyond it and above both as one list."""
-    every = sorted((*found.modes, *found.beyond, *found.above), key=lambda mode: mode.frequency_hz)
-    return replace(found, modes=tuple(every), beyond=(), above=())
 
 
 def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:

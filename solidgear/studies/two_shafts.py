@@ -30,7 +30,7 @@ from solidgear.solve.modes import ModeSet
 from solidgear.studies import two_shafts_told as told
 from solidgear.studies.beside import Beside, all_pairs
 from solidgear.studies.change import BarredMode, Change, ModePair
-from solidgear.studies.one_shaft import OneShaft, Progress, all_modes, one_shaft
+from solidgear.studies.one_shaft import OneShaft, Progress, one_shaft
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -227,7 +227,7 @@ def _frequencies(
 def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     """Modes of both lists with their partners, and in words how they were found."""
     mine, its = (
-        [one.seen(m) for m in all_modes(one.modes).modes if m.frequency_hz > 0] for one in (a, b)
+        [one.seen(m) for m in one.modes.whole.modes if m.frequency_hz > 0] for one in (a, b)
     )
     alike: list[ModePair[BarredMode]] = []
     words = "by name, for both shafts are not told at the same places along the axis"

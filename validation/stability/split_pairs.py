@@ -141,10 +141,10 @@ def measure(quick: bool = False) -> Finding:
         + ". The true split passes that of the mesh only above an anisotropy of "
         + ", ".join(f"{a:.0e} ({n})" for n, a in blind.items())
         + ".",
-        "`solidgear modes` groups twins within a tolerance of the body: 1e-9 harmonic, "
-        "1e-7 beams, 1e-6 hexahedra, 2e-3 tetrahedra. `check`, `modes` and `compare` "
-        "say where a pair is split by less than the mesh splits it. `compare` pairs "
-        "modes by subspace MAC.",
+        "`solidgear modes` groups twins by shape where symmetry promises them; half of "
+        "what the mesh splits is in their error bar. `check`, `modes` and `compare` say "
+        "where a pair is split by less than the mesh splits it. `compare` pairs modes by "
+        "subspace MAC.",
         "tests/test_check_guards.py::test_guard[pair split by 1e-8]",
         rows,
     )

@@ -98,10 +98,7 @@ def on_nodes(
     size = {name: int(places.max()) + 1 for name, places in at.items()}
     k, m = {}, {}
     for name, (stiff, heavy, _) in made.items():
-        places = np.broadcast_to(at[name][:, :, None], stiff.shape)
-        both = (places.ravel(), places.transpose(0, 2, 1).ravel())
-        k[name] = sp.csr_matrix((stiff.ravel(), both), shape=(size[name],) * 2)
-        m[name] = sp.csr_matrix((heavy.ravel(), both), shape=(size[name],) * 2)
+        k[name], m[name] = (_sum(one, at[name], size[name]) for one in (stiff, heavy))
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
     one, zero = np.ones(n), np.zeros(n)
     lift = np.column_stack(
@@ -111,6 +108,10 @@ def on_nodes(
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
     shape = {name: part[2] for name, part in made.items()}
     rows = [port_rows(station, how, elements, shape, at, size) for station, how in wanted]
+
+    turn = shape["bending"][:, 1]
+    tilting = np.einsum("eqi,eq,eqj->eij", turn, section.w * section.rotary, turn)
+    swirl = _sum(tilting, at["bending"], size["bending"])
 
     def block(
         name: str, components: tuple[int, ...], family: str, rigid, y, per_node: int
@@ -122,7 +123,9 @@ def on_nodes(
                 ports.append(Attached(station.y, held=mask))
             else:
                 ports.append(Attached(station.y, row[family]))
-        return with_ports(Block(name, components, k[family], m[family], rigid, y), ports)
+        spun = swirl.__matmul__ if family == "bending" else None
+        made = Block(name, components, k[family], m[family], rigid, y, swirl=spun)
+        return with_ports(made, ports)
 
     bending = block("bending_z", (2, 3), "bending", lift, y2, 2)
     blocks = (
@@ -149,6 +152,13 @@ def on_nodes(
         facts,
         geometry=BeamLine(scene, nodes),
     )
+
+
+def _sum(matrices: np.ndarray, at: np.ndarray, size: int) -> sp.csr_matrix:
+    """Matrices (e, k, k) of elements put together by their unknowns (e, k)."""
+    places = np.broadcast_to(at[:, :, None], matrices.shape)
+    both = (places.ravel(), places.transpose(0, 2, 1).ravel())
+    return sp.csr_matrix((matrices.ravel(), both), shape=(size, size))
 
 
 def mesh(scene, elements: int | None, wanted=()):

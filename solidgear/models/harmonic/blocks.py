@@ -21,7 +21,7 @@ from solidgear.body import Block
 from solidgear.body.sections import Sections, through
 from solidgear.errors import SolidgearError
 from solidgear.kernel.assembly import Pattern, Tabulated, batches, tabulate
-from solidgear.kernel.attachment import Attached, with_ports
+from solidgear.kernel.attachment import Attached, reduced, with_ports
 from solidgear.kernel.cell_shapes import Shapes
 from solidgear.kernel.lobatto import gauss, gauss_box
 from solidgear.models.harmonic.families import TORSION, Family, family_of
@@ -120,13 +120,16 @@ class Work:
         keep = family.free(self.geometry.on_axis).ravel()
         r, y = self.place
         rigid = family.rigid(r, y, self.point.astype(float)).reshape(self.n * c, -1)
+        heavy_left, turns = mass[keep][:, keep], np.tile(family.turns, self.n)[keep, None]
         block = Block(
             name,
             components,
             stiffness.matrix()[keep][:, keep],
-            mass[keep][:, keep],
+            heavy_left,
             rigid[keep],
             np.repeat(self.y, c)[keep],
+            # the mass couples no two unknowns of a point
+            swirl=(lambda v: heavy_left @ (turns * v)) if turns.any() else None,
         )
         seats = [
             self._seat_unknowns(station, c)[keep] if attachment == "rigid" else None
@@ -166,6 +169,7 @@ class Work:
             y=block.y[free],
             ports=block.ports[:, free],
             expand=to,
+            swirl=reduced(block.swirl, to),
         )
 
     def _sections(self, family: Family, keep: np.ndarray) -> Sections:

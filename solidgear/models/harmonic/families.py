@@ -59,6 +59,12 @@ class Family:
         return np.array([2.0, 2.0, 1.0]) if self.count == 3 else np.ones(self.count)
 
     @property
+    def turns(self) -> np.ndarray:
+        """(c,) waves around of every unknown's motion along fixed axes; none where nothing varies."""
+        n = self.waves
+        return np.array([n - 1.0, n + 1.0, n]) if self.count == 3 else np.zeros(self.count)
+
+    @property
     def held(self) -> tuple[int, ...]:
         """Unknowns that are zero on the axis."""
         return {TORSION: (), 0: (0,), 1: (1, 2)}.get(self.waves, (0, 1, 2))

@@ -30,9 +30,9 @@ BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
 #: those that factor in single precision, and those that keep a factor in files
 SINGLE, OUT_OF_CORE = ("pardiso", "superlu"), ("pardiso", "mumps")
 INSTALL = {
-    "pardiso": "install the extra 'fast'",
-    "cholmod": "install the extra 'cholmod'",
-    "mumps": "install the extra 'mumps'",
+    "pardiso": "pip install 'solidgear[fast]'",
+    "cholmod": "pip install 'solidgear[cholmod]'",
+    "mumps": "pip install 'solidgear[mumps]'",
 }
 
 

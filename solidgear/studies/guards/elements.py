@@ -222,9 +222,9 @@ def memory(probe: Probe) -> Notices:
     largest = max(unknowns for unknowns, _ in size.matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
     for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):
-        if not (why := missing(name)):
+        if not missing(name):
             break
-        absent.append(f"{why}; {INSTALL[name]}")
+        absent.append(INSTALL[name])
     need = float(f"{sum(law(name, *matrix) for matrix in size.matrices):.2g}")  # good to GOOD_TO
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
@@ -237,7 +237,7 @@ def memory(probe: Probe) -> Notices:
         "fact",
         ("solid",),
         f"{which} 3D solid, {size.unknowns} unknowns, is factored by {name} in about {need:.0f} MB"
-        + "".join(f"; faster but absent: {why}" for why in absent),
+        + "".join(f"; faster: {way}" for way in absent[:1]),
     )
     if free is not None and GOOD_TO * need > free:
         yield Notice(

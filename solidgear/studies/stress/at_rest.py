@@ -34,6 +34,8 @@ from solidgear.studies.train.operation import Operating, OperatingState
 
 #: model on which shafts and bearings settle, unless told otherwise
 MODEL = LADDER.judges[0]
+#: what has no error bar, and why
+WITHOUT_BAR = "reactions and section forces are those of one mesh; form factors have error bars"
 
 Progress = Callable[[str], None]
 
@@ -142,6 +144,7 @@ class StressAtRest:
     def as_dict(self) -> dict[str, Any]:
         """Plain data in SI that JSON can hold."""
         data = plain(self) | {"components": list(COMPONENTS), "shafts": {}}
+        data["why_without_bar"] = WITHOUT_BAR
         data["asked"]["conditions"] = self.asked.conditions.model_dump(mode="json")
         for shaft in self.shafts:
             worst = [notch.name for notch in shaft.found.worst]

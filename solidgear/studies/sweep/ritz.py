@@ -31,6 +31,7 @@ to the wanted theta.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,7 +41,7 @@ from solidgear.body import Supports, component_rows
 from solidgear.body.mode_names import numbered
 from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.solve.coupling import decoupled, groups
-from solidgear.solve.naming import ALIKE, OVAL_TOLERANCE, alike
+from solidgear.solve.naming import ALIKE, alike
 from solidgear.springs import root_of
 
 #: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings
@@ -206,7 +207,7 @@ def ritz_modes(
     ]
     return RitzModes(
         np.sqrt(value) / (2 * np.pi),
-        _names(value, family, _tolerances(reduced, supports)),
+        _names(family, _paired(reduced, supports)),
         float(bound),
     )
 
@@ -298,30 +299,30 @@ def _bound(part: _Group, count: int, last: float, shift: float, slack: float) ->
     return float(np.max(np.sqrt(value / lower) - 1, initial=0.0))
 
 
-def _tolerances(reduced: Reduced, supports: Supports) -> tuple[float, float]:
-    """Distance of eigenvalues of one pair, relative, for bending and for more waves around; as
+def _paired(reduced: Reduced, supports: Supports) -> Callable[[str], bool]:
+    """Tells whether symmetry promises twins to a family, as
     :meth:`solidgear.solve.naming.Names.pairs` has it.
     """
-    own, bearings = reduced.pair_tolerance, alike(supports)
-    whole = len(reduced.blocks) == 1
-    return 2 * max(own, bearings) if bearings <= ALIKE else -1.0, max(
-        2 * own, OVAL_TOLERANCE
-    ) if whole else 2 * own
+    whole, bends = len(reduced.blocks) == 1, alike(supports) <= ALIKE
+
+    def promised(family: str) -> bool:
+        return reduced.round and (
+            bends if family == "bending" else whole and family.startswith("ovalising")
+        )
+
+    return promised
 
 
-def _names(value, family, tolerances) -> tuple[str, ...]:
-    """Names as :mod:`solidgear.solve.naming` gives them."""
+def _names(family: Sequence[str], promised: Callable[[str], bool]) -> tuple[str, ...]:
+    """Names as :mod:`solidgear.solve.naming` gives them, by the families of modes in ascending order: of
+    two twins the first stands for both.
+    """
     firsts: list[int] = []
+    waiting: dict[str, int] = {}
     for k, name in enumerate(family):
-        tolerance = -1.0
-        if name == "bending":
-            tolerance = tolerances[0]
-        elif name.startswith("ovalising"):
-            tolerance = tolerances[1]
-        # of two twins the first stands for both
-        alone = not firsts or firsts[-1] != k - 1 or family[k - 1] != name
-        twin = not alone and value[k] - value[k - 1] <= tolerance * value[k - 1]
-        firsts.append(k - 1 if twin else k)
+        firsts.append(waiting.pop(name, k))
+        if firsts[-1] == k and promised(name):
+            waiting[name] = k
     own = list(dict.fromkeys(firsts))
     named = dict(zip(own, numbered(family[k] for k in own)))
     return tuple(named[k] for k in firsts)

@@ -16,6 +16,7 @@ from solidgear.studies.train.meshes import mesh_bars, mesh_limit
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
 from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.spin import spin_cautions
 from solidgear.studies.train.strain import mounts_together
 from solidgear.studies.train.turn import frequencies_over_a_turn
 from solidgear.system.system import System
@@ -83,6 +84,8 @@ class TrainModes:
         Shaft that the speeds of modes are told of.
     turn : str
         What a turn of a carrier changes, in words.
+    hidden : str
+        That a mode above the list may in truth lie within it, in words.
     """
 
     train: str
@@ -102,6 +105,7 @@ class TrainModes:
     local: tuple[str, ...] = ()
     speeds: str = "pinion"
     turn: str = ""
+    hidden: str = ""
 
     def as_dict(self) -> dict:
         """Plain data that JSON can hold."""
@@ -126,7 +130,7 @@ class TrainModes:
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
-        lines += [*self._still(), *self.local, *filter(None, [self.turn])]
+        lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven"
             + "; it says nothing of the meshes of the shafts." * (not meshed)
@@ -240,8 +244,8 @@ def train_modes(
         found = replace(found, energy=stage.strained(found.energy))
     most = found.dominant()
     elastic = len(found.frequency_hz) - found.rigid
-    bars = mesh_bars(workshop, system, rungs, elastic)
-    sure = [None] * len(names) if bars is None else [None] * found.rigid + bars.tolist()
+    bars = mesh_bars(workshop, system, rungs, elastic + 1)
+    sure = [None] * len(names) if bars is None else [None] * found.rigid + bars[:elastic].tolist()
     modes = []
     for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
         strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
@@ -266,12 +270,26 @@ def train_modes(
         free_motions(workshop, system),
         tuple(line for met in workshop.contacts.values() for line in wrench_lines(met)),
         train.unpublished(),
-        workshop.cautions,
+        (*workshop.cautions, *spin_cautions(workshop, system, rungs, limit)),
         {side: families for side, families in still.items() if families},
         local_lines(workshop, system),
         train.reference,
         frequencies_over_a_turn(workshop, rungs, names),
+        "" if bars is None else _hidden(omega[elastic : elastic + 1], bars[elastic:], limit),
     )
+
+
+def _hidden(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
+    """Sentence on the first mode above a list, rad/s, whose error bar reaches into it, if it does:
+    those that follow lie no lower.
+    """
+    for hz, bar in zip(omega / (2 * np.pi), bars):
+        if hz * (1 - bar) < limit:
+            return (
+                f"One more mode may lie below {limit:g} Hz: the meshes have it at {hz:.2f} Hz with an "
+                f"error bar of {bar:.0e}."
+            )
+    return ""
 
 
 def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:

@@ -27,6 +27,7 @@ from solidgear.studies.train.naming import mode_names
 from solidgear.studies.train.parting import parting_lines
 from solidgear.studies.train.response import OrderCurve, Peak, TrainResponse
 from solidgear.studies.train.speeds import fastest
+from solidgear.studies.train.spin import spin_cautions
 from solidgear.studies.train.stages import mesh_row, phases_of
 from solidgear.system.modes import SystemModes
 from solidgear.system.steady import SteadyState, peaks, stands_out
@@ -327,6 +328,7 @@ def respond(
     forces: Mapping[str, np.ndarray] | None = None,
     frequency_hz: np.ndarray | None = None,
     mesh: str | None = None,
+    turns: float | None = None,
 ) -> TrainResponse:
     """Steady response of a train with its shafts by models.
 
@@ -338,6 +340,9 @@ def respond(
         As :class:`Drive`.
     frequency_hz : (f,) ndarray, optional
         Instead of an adaptive grid.
+    turns : float, optional
+        Of the engine's shaft in a second, for what spin does to modes; by default at the fastest
+        operating point.
 
     Raises
     ------
@@ -363,12 +368,13 @@ def respond(
     for order, force in enumerate(drive.over_cycle(hz, highest)[1:], start=2):
         columns[f"mesh force, order {order} [N]"] = force
     columns |= told
+    rungs = workshop.mix(models)
     cautions = [*workshop.cautions, *local_lines(workshop, drive.system)]
+    cautions += spin_cautions(workshop, drive.system, rungs, highest, turns)
     if damping == "literal":
         at = float(highest)
         cautions.append(LITERAL.format(at, np.pi * at * workshop.train.losses.mesh))
     parting = tuple(parting_lines(drive, hz, columns))
     curves = tuple(drive.curve(hz, order) for order in range(1, drive.orders + 1))
     seconds = workshop.seconds(*models)
-    rungs = workshop.mix(models)
     return TrainResponse(rungs, damping, hz, columns, curves, parting, tuple(cautions), seconds)

@@ -1,0 +1,66 @@
+"""Cautions that natural frequencies are those at rest, where the speed of a shaft is known: which of
+them spin opens by more than their error bars, or by more than a tolerance where they have none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isfinite, pi
+
+from solidgear.body import Body, as_supports
+from solidgear.errors import listed
+from solidgear.scene import Scene
+from solidgear.scene.shaft import turning_speed
+from solidgear.solve.modes import Mode
+from solidgear.solve.spin import spin_openings
+
+#: modes that a sentence names, and the least share of the largest opening for one to be counted
+MOST_NAMED, WORTH_NAMING = 3, 0.1
+
+
+def spin_caution(
+    scene: Scene,
+    body: Body,
+    modes: Sequence[Mode],
+    bars: Mapping[str, float],
+    speed: float | None = None,
+) -> list[str]:
+    """Sentence on the modes of a shaft that spin opens, or none.
+
+    Parameters
+    ----------
+    bars : mapping of str to float
+        Relative, by the names of modes; the tolerance of the scene stands for those that have none.
+    speed : float, optional
+        rad/s; by default that of the scene.
+    """
+    speed = speed or turning_speed(scene)
+    if not speed:
+        return []
+    turns = speed / (2 * pi)
+    openings = spin_openings(body, as_supports(scene), modes, turns)
+    frequency = {str(mode.name): mode.frequency_hz for mode in modes}
+    shares = {name: hz / frequency[name] for name, hz in openings.items()}
+    return opened_words(shares, bars, scene.ask.tolerance, f"at {60 * turns:.6g} rpm")
+
+
+def opened_words(
+    shares: Mapping[str, float], bars: Mapping[str, float | None], tolerance: float, when: str
+) -> list[str]:
+    """Sentence on modes by the share of their frequency by which spin opens them, the most first; none
+    where their error bars, or else a tolerance, are wider.
+    """
+    beyond = {}
+    for name, share in shares.items():
+        bar = bars.get(name)
+        if share > (bar if bar is not None and isfinite(bar) else tolerance):
+            beyond[name] = share
+    if not beyond:
+        return []
+    largest = max(beyond.values())
+    most = sorted(beyond, key=beyond.__getitem__, reverse=True)
+    most = [name for name in most if beyond[name] >= WORTH_NAMING * largest]
+    named = listed((f"{name} by {100 * beyond[name]:.2g} %" for name in most), most=MOST_NAMED)
+    return [
+        f"natural frequencies are those at rest; {when} spin moves {named}, up and down (first order)"
+    ]

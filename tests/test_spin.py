@@ -1,0 +1,171 @@
+"""What spin does to natural frequencies, to first order, from modes at rest."""
+
+import json
+from math import pi
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.body import as_supports
+from solidgear.judge.at_rest import opened_words, spin_caution
+from solidgear.scene import Bearing, Material, PointMass, Scene
+from solidgear.solve.spin import couplings, opened, spin_openings
+from solidgear.studies.train.models import Workshop
+from solidgear.studies.train.modes import train_modes
+from tests.shafts import shaft
+from validation.shipped import GEOMETRY
+
+#: harmonic meshes, good to 1 % here
+COARSE = {"order": 3, "layers": 0, "edge_layers": 0, "relative_size": 4.0}
+
+
+def opening(scene, name, model, **options):
+    """Frequency by which one turn in a second opens a mode, Hz."""
+    body = sg.build(scene, model, **options)
+    found = sg.modes(body, scene, 8)
+    return spin_openings(body, as_supports(scene), found.modes, 1.0)[name]
+
+
+@pytest.mark.parametrize("model", ["euler", "timoshenko"])
+def test_rotor_of_friswell(model):
+    """Friswell et al. 2010, Dynamics of Rotating Machines, example 5.9.1, a shaft with two discs at 4,000
+    rpm: 85.39, 87.80, 251.78, 294.71 rad/s. The mean of what both move is of first order; half of their
+    sum is of second, and is left out.
+    """
+    steel = Material(E=2.11e11, nu=0.2992610837, density=7810.0)
+    rod = shaft((1.5, 0.025, 0.025)).segments[0].model_copy(update={"material": steel})
+    stiff = np.diag([1e6, 0.0, 1e6, 0.0, 0.0, 0.0])
+    bearings = [
+        Bearing(name=name, y=y, seat_width=0.002, matrix=stiff, attachment="section")
+        for name, y in (("left", 0.001), ("right", 1.499))
+    ]
+    masses = []
+    for name, y, outer in (("small", 0.5, 0.28), ("large", 1.0, 0.35)):
+        mass = 7810 * pi / 4 * (outer**2 - 0.05**2) * 0.07
+        polar = mass * (outer**2 + 0.05**2) / 8
+        flat = polar / 2 + mass * 0.07**2 / 12
+        masses.append(
+            PointMass(
+                name=name,
+                mass=mass,
+                inertia=(flat, polar, flat),
+                y=y,
+                seat_width=0.001,
+                attachment="section",
+            )
+        )
+    scene = Scene.from_parts([rod], bearings=bearings, masses=masses)
+    body = sg.build(scene, model)
+    found = sg.modes(body, scene, 6)
+    turns = 4000 / 60
+    by = spin_openings(body, as_supports(scene), found.modes, turns)
+    # 1 %: the term of third order, and a shaft whose bearings stand 1 mm inside its ends
+    assert by["bending 1"] == pytest.approx((87.80 - 85.39) / (4 * pi), rel=0.02)
+    assert by["bending 2"] == pytest.approx((294.71 - 251.78) / (4 * pi), rel=0.02)
+
+
+def test_a_rigid_disc_opens_by_its_moments_of_inertia():
+    """A disc that only tilts, on a soft tilting spring beside a nearly massless shaft: the whirl of a
+    rigid rotor is ``w^2 - (Jp / Jd) Omega w - w0^2 = 0``, to first order w0 +- (Jp / 2 Jd) Omega.
+    """
+    light = Material(E=2e13, nu=0.3, density=1.0)
+    rod = shaft((0.1, 0.02, 0.02)).segments[0].model_copy(update={"material": light})
+    tilting = np.diag([1e10, 1e10, 1e10, 1e3, 0.0, 1e3])
+    held = Bearing(name="pivot", y=0.05, seat_width=0.01, matrix=tilting, attachment="section")
+    disc = PointMass(name="disc", mass=5.0, inertia=(0.01, 0.016, 0.01), on="pivot")
+    scene = Scene.from_parts([rod], bearings=[held], masses=[disc])
+    assert opening(scene, "bending 1", "timoshenko") == pytest.approx(0.016 / 0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize("name, g", [("gear_shaft", 0.794), ("pinion_overhung", 0.178)])
+def test_shipped_shafts_open_as_another_program_found(name, g):
+    """Inner products of an independent code on meshes of triangles, whose frequencies are 0.7 % off."""
+    scene = sg.load(GEOMETRY / f"{name}.toml")
+    assert opening(scene, "bending 1", "harmonic", **COARSE) == pytest.approx(g, rel=0.015)
+
+
+def test_every_model_sees_the_same_spin():
+    """Waves around a 3D mesh, a beam, and a narrow rigid seat, which takes unknowns of the mesh away,
+    against the harmonic solid.
+    """
+    scene = shaft((0.1, 0.015, 0.015), (0.03, 0.06, 0.06), (0.06, 0.015, 0.015))
+    soft = np.diag([1e5, 1e5, 1e5, 0.0, 0.0, 0.0])
+    held = [
+        scene.with_changes(
+            bearings=(
+                Bearing(name="A", y=0.02, seat_width=0.004, matrix=soft, attachment=attachment),
+            )
+        )
+        for attachment in ("average", "rigid")
+    ]
+    exact, tied = (opening(one, "bending 2", "harmonic", **COARSE) for one in held)
+    assert exact > 0.1 and tied == pytest.approx(exact, rel=0.03)
+    # a beam's disc does not bend, and cells as coarse as these are some per cent off
+    assert opening(held[0], "bending 2", "timoshenko") == pytest.approx(exact, rel=0.1)
+    assert opening(held[0], "bending 2", "solid", refinement=0.4) == pytest.approx(exact, rel=0.1)
+
+
+def test_a_thin_ring_opens_as_bryan_says():
+    """Bryan 1890: in a ring that turns, n waves lag by 2 / (n^2 + 1) of its turn; seen from outside they
+    go round by the rest of it, n (n^2 - 1) / (n^2 + 1) in their n waves, here of a wall of 2 %.
+    """
+    ring = shaft((0.03, 0.051, 0.051, 0.05, 0.05))
+    assert opening(ring, "ovalising n=2 1", "harmonic", order=3) == pytest.approx(6 / 5, rel=0.01)
+    assert opening(ring, "ovalising n=3 1", "harmonic", order=3) == pytest.approx(24 / 10, rel=0.01)
+    # so coarse cells are far too stiff, and have the other mode of two waves below it
+    cells = opening(ring, "ovalising n=2 2", "solid", refinement=0.5)
+    assert cells == pytest.approx(6 / 5, rel=0.01)
+
+
+def test_spin_couples_shapes_of_one_mode_antisymmetrically():
+    scene = shaft((0.1, 0.02, 0.02), (0.02, 0.05, 0.05))
+    body = sg.build(scene, "timoshenko")
+    found = sg.modes(body, scene, 6)
+    shapes = [v for m in found.modes if m.frequency_hz > 0 for v in m.vectors]
+    coupling = couplings(body, as_supports(scene), shapes)
+    assert coupling == pytest.approx(-coupling.T, abs=1e-15) and np.abs(coupling).max() > 0.1
+
+
+def test_a_split_pair_opens_by_the_root_of_both_squares():
+    coupling = np.array([[0.0, 0.3], [-0.3, 0.0]])
+    by = opened(np.array([100.0, 108.0]), coupling, turns=10.0)
+    assert by == pytest.approx([1.0, 1.0])  # 5 = hypot(4, 3)
+
+
+def test_what_spin_moves_more_than_a_bar_is_told(run):
+    shares = {"bending 1": 0.06, "bending 2": 0.002, "torsion 1": 0.0}
+    assert opened_words(shares, {"bending 1": 0.07, "bending 2": 0.01}, 0.05, "at 1 rpm") == []
+    (said,) = opened_words(shares, {"bending 1": 0.01}, 0.05, "at 3000 rpm")
+    assert (
+        "at 3000 rpm spin moves bending 1 by 6 %, up and down" in said and "bending 2" not in said
+    )
+    scene = sg.load(GEOMETRY / "gear_shaft.toml")
+    body = sg.build(scene, "timoshenko")
+    found = sg.modes(body, scene, 6)
+    assert spin_caution(scene, body, found.modes, {}) == []  # no speed is known
+    code, out, _ = run(
+        "modes", GEOMETRY / "gear_shaft.toml", "-f", "timoshenko", "--speed", "3000 rpm", "--json"
+    )
+    # 0.739 times 50 turns a second, of some 700 Hz
+    assert code == 0 and "spin moves bending 1 by 5.2 %" in " ".join(json.loads(out)["cautions"])
+
+
+def test_a_train_tells_spin_at_its_fastest_operating_point():
+    """Its ring gear turns 45/14 times slower than the pinion, whose speed it is."""
+    train = sg.load_train(GEOMETRY / "axle_overhung.toml")
+    point = sg.load_train(GEOMETRY / "gearbox_train.toml").operation[0]
+    point = point.with_changes(of="pinion", share=None)
+    # its bearings part the pair by more than 8,000 rpm do: 1.3 %, within the tolerance of 2 %
+    slow, fast = (
+        train_modes(
+            Workshop(train.with_changes(operation=[point.with_changes(speed=speed)])),
+            "timoshenko",
+            "timoshenko",
+            max_frequency=900.0,
+        ).cautions
+        for speed in ("8000 rpm", "20000 rpm")
+    )
+    assert not any("spin" in text for text in slow)
+    (said,) = (text for text in fast if "spin" in text)
+    assert "at 20000 rpm of the pinion spin moves gear bending 1 by" in said
