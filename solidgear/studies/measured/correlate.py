@@ -17,9 +17,10 @@ from solidgear.display import Displayed
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.studies.change import BarredMode
-from solidgear.studies.measured.alignment import Alignment, Peak, align
+from solidgear.studies.measured.alignment import Alignment, Peak
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
+from solidgear.studies.measured.same_part import FAR_SHIFTS, FEWEST, Likeness, alignment_of
 from solidgear.studies.measured.shapes import OnPoints
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
@@ -31,8 +32,6 @@ UNTOLD = 1e-4
 #: of a bearing's stiffness of which [uncertain] of the scene says nothing: what a catalogue leaves open of
 #: the inside is +- 9 to 11 % of it, a class of clearance as much, and rigid rings and seats the rest
 SPRINGS = 0.2
-#: pairs from which on a shift and a scatter of all are told
-FEWEST = 3
 
 
 @dataclass(frozen=True)
@@ -158,6 +157,8 @@ class Correlation(Displayed):
     measured : Measured
     computed : Computed
         What was held against each other.
+    likeness : Likeness
+        Whether the resonances can be those of this part.
     of_points : tuple of str
         Sentences on modes that the measuring points do not tell apart.
     """
@@ -172,6 +173,7 @@ class Correlation(Displayed):
     mac: np.ndarray | None
     measured: Measured
     computed: Computed
+    likeness: Likeness
     of_points: tuple[str, ...] = ()
 
     @property
@@ -214,6 +216,7 @@ class Correlation(Displayed):
             "mesh": self.mesh,
             "rms": None if self.worst is None else self.rms,
             "common": self.common and vars(self.common),
+            "other_part": self.likeness.results,
             "pairs": [
                 self._damping(pair.number)
                 | {
@@ -252,11 +255,16 @@ def correlate(
     `tol`, by default a tenth of the tolerance of the scene.
     """
     tol = scene.ask.tolerance / 10 if tol is None else tol
-    computed = computed_up_to(scene, measured.modes[-1].frequency, tol, progress)
-    on_points = on_points_of(measured, computed)
-    peaks = peaks_of(measured, computed, SPRINGS)
-    found = align(*peaks, on_points.seen if on_points else None)
-    return _correlation(scene, measured, computed, found, on_points)
+    highest = measured.modes[-1].frequency
+    correlation = _beside(measured, computed_up_to(scene, highest, tol, progress))
+    if correlation.likeness.sentence or correlation.likeness.condition:
+        # of a part that is much softer than the scene more modes lie below
+        highest *= math.exp(max(FAR_SHIFTS))
+        before = correlation.computed
+        wider = _beside(measured, computed_up_to(scene, highest, tol, progress, before))
+        if wider.likeness.believed:
+            return wider
+    return correlation
 
 
 def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
@@ -291,6 +299,14 @@ def peaks_of(
         for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]
     return mine, its
+
+
+def _beside(measured: Measured, computed: Computed) -> Correlation:
+    """Measured resonances and modes that were computed."""
+    on_points = on_points_of(measured, computed)
+    peaks = peaks_of(measured, computed, SPRINGS)
+    found = alignment_of(*peaks, on_points.seen if on_points else None)
+    return _correlation(computed.scene, measured, computed, found, on_points)
 
 
 def _correlation(
@@ -328,6 +344,7 @@ def _correlation(
         mac,
         measured,
         computed,
+        Likeness.of(found),
         () if on_points is None else on_points.sentences(below),
     )
 
@@ -335,9 +352,13 @@ def _correlation(
 def _sentences(found: Correlation) -> Iterator[str]:
     paired = [pair for pair in found.pairs if pair.computed is not None]
     sure = [pair for pair in paired if pair.sure]
+    doubt = found.likeness.sentence
+    if doubt:
+        yield doubt
     yield (
         f"{len(paired)} of {len(found.pairs)} measured resonances have a mode, {len(sure)} of them "
-        f"with a probability of {100 * SURE:.0f} % and no other in question."
+        f"with a probability of {100 * SURE:.0f} % and no other in question"
+        f"{', if they are of this part' * bool(doubt)}."
     )
     worst = found.worst
     if worst is not None and worst.computed is not None and worst.relative is not None:
@@ -345,8 +366,10 @@ def _sentences(found: Correlation) -> Iterator[str]:
             f"Computed frequencies are {100 * found.rms:.2g} % rms from the measured ones, at most "
             f"{100 * worst.relative:+.2g} %, of {worst.computed.name}."
         )
-    if found.common is not None:
+    if found.common is not None and not doubt:
         yield found.common.sentence
+    if found.likeness.condition:
+        yield found.likeness.condition
     if worst is not None and all(pair.measured.width_hz is None for pair in paired):
         yield (
             "No resonance says how sure it is, so that none has a band: write for example "

@@ -250,6 +250,7 @@ class _Study:
             self._predicted(predict, fit, computed) if predict else (),
             computed.mesh,
             self.tables_at(self.x),
+            fit.likeness,
             alike,
         )
 
