@@ -66,6 +66,16 @@ def test_intervals_of_95_per_cent_hold_95_of_a_hundred(points, grows):
         assert 0.91 < np.mean(np.abs(numbers) < 1.96) < 0.99
 
 
+def test_what_polynomials_leave_of_clean_responses_is_no_mode():
+    """Five digits of a formula, without noise: a third pole would be as wide as it is unsure."""
+    hertz = np.arange(2.0, 6001.0, 2.0)
+    modes = ((1496.4, 0.5), (3953.4, 0.4))
+    clean = sum(-(hertz**2) * s / (f**2 - hertz**2 + 0.004j * f * hertz) for f, s in modes)
+    digits = [float(f"{part:.5e}") for part in np.column_stack([clean.real, clean.imag]).ravel()]
+    found = fit_modes(hertz, np.reshape(digits, (1, -1, 2)) @ [1, 1j])
+    assert found.frequencies == pytest.approx([1496.4, 3953.4], abs=1e-3)
+
+
 def test_two_modes_within_their_half_width_are_told_apart_where_they_stand_out():
     near = [(700.0, 0.003), (701.5, 0.003)]
     found = fit_modes(HERTZ[500:900], accelerances(2, near, hertz=HERTZ[500:900]))

@@ -5,22 +5,22 @@ they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.special import chdtri, stdtrit
 
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
+from solidgear.scene.shaft import without_axis
 from solidgear.studies.change import BarredMode
 from solidgear.studies.measured.alignment import Alignment, Peak
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
-from solidgear.studies.measured.same_part import FAR_SHIFTS, FEWEST, Likeness, alignment_of
+from solidgear.studies.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
 from solidgear.studies.measured.shapes import OnPoints
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
@@ -90,52 +90,6 @@ class Pair:
         if self.band is None or self.relative is None:
             return f"no band{doubt}"
         return ("agrees" if abs(self.relative) <= self.band else "differs") + doubt
-
-
-@dataclass(frozen=True)
-class Common:
-    """Differences of pairs as a shift that is common to all and a scatter beside it, relative.
-
-    Attributes
-    ----------
-    off, reach : float
-        Shift, computed over measured, and how far it may be off, of 95 % (Student).
-    scatter, low, high : float
-        Standard deviation, and the ends of its interval of 95 % (chi-square).
-    """
-
-    count: int
-    off: float
-    reach: float
-    scatter: float
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, relative: Sequence[float]) -> Common | None:
-        """Estimates from differences of independent pairs; None from too few."""
-        count, free = len(relative), len(relative) - 1
-        if count < FEWEST:
-            return None
-        scatter = float(np.std(relative, ddof=1))
-        reach = float(stdtrit(free, 0.975)) * scatter / math.sqrt(count)
-        low, high = (scatter * math.sqrt(free / float(chdtri(free, p))) for p in (0.025, 0.975))
-        return cls(count, float(np.mean(relative)), reach, scatter, low, high)
-
-    @property
-    def sentence(self) -> str:
-        """Conclusion."""
-        told = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
-        left = (
-            f"{100 * self.scatter:.2g} % is left beside it ({self.count} sure pairs; with 95 %, "
-            f"{100 * self.low:.2g} to {100 * self.high:.2g} %)"
-        )
-        if abs(self.off) <= self.reach:
-            return f"No shift is common to all ({told}); {left}."
-        return (
-            f"Common to all is {told}, as a modulus, a density or a length that is not right makes it; "
-            f"{left}."
-        )
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -267,6 +221,11 @@ def correlate(
     return correlation
 
 
+def placed_in(measured: Measured, computed: Computed) -> Measured:
+    """Measured resonances with their points in the frame of the scene."""
+    return measured.placed(computed.body.surface({}), not without_axis(computed.scene))
+
+
 def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
     """Modes on the measuring points; None without measured shapes."""
     shapes = measured.on_points
@@ -303,6 +262,7 @@ def peaks_of(
 
 def _beside(measured: Measured, computed: Computed) -> Correlation:
     """Measured resonances and modes that were computed."""
+    measured = placed_in(measured, computed)
     on_points = on_points_of(measured, computed)
     peaks = peaks_of(measured, computed, SPRINGS)
     found = alignment_of(*peaks, on_points.seen if on_points else None)
@@ -387,6 +347,7 @@ def _sentences(found: Correlation) -> Iterator[str]:
             yield f"{pair.measured.frequency:.6g} Hz is {own}" + (
                 f", or with it {names}." if names else "."
             )
+    yield from found.measured.remarks
     yield from found.of_points
     if found.missed:
         named = ", ".join(f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in found.missed)

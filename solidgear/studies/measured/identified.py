@@ -117,6 +117,8 @@ class Identification(Displayed):
         Of the scene file with the values put in.
     likeness : Likeness
         Whether the resonances can be those of this part.
+    remarks : tuple of str
+        On how the file of resonances was read.
     alike : tuple of tuple of float
         Other values of all entries, SI, that fit as well.
     """
@@ -135,6 +137,7 @@ class Identification(Displayed):
     mesh: str
     tables: Tables
     likeness: Likeness
+    remarks: tuple[str, ...] = ()
     alike: tuple[tuple[float, ...], ...] = ()
 
     def __getitem__(self, path: str) -> Identified:
@@ -202,6 +205,7 @@ def _sentences(found: Identification) -> Iterator[str]:
                 "So many left out may hide values that fit better: begin nearer, lower --tol, or "
                 "measure shapes."
             )
+    yield from found.remarks
     alike = np.abs(found.correlations - np.eye(len(found.entries)))
     if len(found.entries) > 1 and alike.max() > SURE:
         i, j = np.unravel_index(int(alike.argmax()), alike.shape)

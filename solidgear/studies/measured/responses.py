@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.meshing.placing import Placing
 from solidgear.studies.measured.modal_fit import ModalFit, fit_modes
 from solidgear.studies.measured.universal import Responses, Shapes
 
@@ -39,6 +41,22 @@ class ResponseFit:
         fit = fit_modes(hertz, responses.values * (2j * np.pi * hertz) ** missing)
         return cls(responses, fit, _shapes(responses, fit) if responses.places else None)
 
+    def placed(self, placing: Placing) -> ResponseFit:
+        """The same in the frame of a scene."""
+        shapes = self.shapes and self.shapes.placed(placing)
+        return replace(self, responses=self.responses.placed(placing), shapes=shapes)
+
+    @property
+    def remarks(self) -> Iterator[str]:
+        """Sentences on what of the file was read otherwise than it may be meant, and what it lacks."""
+        yield from self.responses.remarks
+        if self.responses.places and not self.responses.scaled:
+            yield (
+                "The file does not say the unit of its responses (dataset 164, or labels of axes), so "
+                "they are not laid over computed ones; a TOML file with file = and "
+                'response_unit = "m/s^2/N" says it.'
+            )
+
 
 def moving(responses: Responses) -> list[tuple[int, tuple[int, int]]]:
     """Responses that tell one shape, each with the point and the direction of it: those to one
@@ -68,4 +86,4 @@ def _shapes(responses: Responses, fit: ModalFit) -> Shapes | None:
         along = abs(direction) - 1
         values[:, numbers.index(number), along] = np.sign(direction) * fit.residues[:, k]
     places = np.array([responses.places[number] for number in numbers])
-    return Shapes(np.array(numbers), places, values)
+    return Shapes(np.array(numbers), places, values, responses.length)
