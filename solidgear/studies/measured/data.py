@@ -328,8 +328,8 @@ def of_responses(responses: Responses, where: str = "responses") -> Measured:
     """Resonances that are found in responses of a file; refused where none stands out of the noise."""
     with explained(where, {}):
         found = ResponseFit.of(responses)
-    told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
-    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]
+    both = zip(found.fit.frequencies.tolist(), found.widths_hz.tolist())
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in both]
     out = _of_modes(modes, where, found.shapes, found)
     out._remarks = tuple(found.remarks)
     return out

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,6 +13,11 @@ from solidgear.errors import SolidgearError
 from solidgear.meshing.placing import Placing
 from solidgear.studies.measured.modal_fit import ModalFit, fit_modes
 from solidgear.studies.measured.universal import Responses, Shapes
+
+#: standard deviation to which a frequency repeats, relative, whatever the noise: the modulus of steel falls
+#: by 0.03 % a kelvin (EN 13480-3: 212 GPa at 20 degrees, 207 at 100), so that 1.3 K are as much, as are 0.4 g
+#: of accelerometer or cord that move with a kilogram
+REPEATS = 2e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +31,8 @@ class ResponseFit:
     shapes : Shapes or None
         None where the file gives no places of its points.
     """
+
+    repeats: ClassVar[float] = REPEATS
 
     responses: Responses
     fit: ModalFit
@@ -40,6 +48,11 @@ class ResponseFit:
         missing = 2 - (2 if responses.derivatives is None else responses.derivatives)
         fit = fit_modes(hertz, responses.values * (2j * np.pi * hertz) ** missing)
         return cls(responses, fit, _shapes(responses, fit) if responses.places else None)
+
+    @property
+    def widths_hz(self) -> np.ndarray:
+        """(n,) standard deviations of frequencies, of noise and of what repeats no better."""
+        return np.hypot(self.fit.deviations[0], self.repeats * self.fit.frequencies)
 
     def placed(self, placing: Placing) -> ResponseFit:
         """The same in the frame of a scene."""
