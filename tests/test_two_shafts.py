@@ -6,9 +6,11 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.report.sketch import draw, extent
 from solidgear.scene.differences import differences, scene_differences
 from solidgear.studies.two_shafts import two_shafts
 from tests.command import command, page_of
@@ -57,6 +59,36 @@ def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
     assert {one["verdict"] for one in numbers.values()} == {"resolved"}
     # the shaft is 208 mm of 90 mm, 7850 kg/m^3: pi/4 (94.5^2 - 90^2) mm^2 more
     assert numbers["mass"]["difference"] == pytest.approx(1.0649, rel=1e-3)
+
+
+def test_what_is_asked_stands_first_with_the_better_of_both_and_what_bearings_leave_open(tmp_path):
+    asks = 'tolerance = 0.2\nquantities = ["bending 1", "C_z,thx", "C_zz"]'
+    text = SCENE.read_text().replace("tolerance = 0.05", asks)
+    text = text.replace('status = "published"', 'status = "assumed"')
+    (tmp_path / "a.toml").write_text(text)
+    (tmp_path / "b.toml").write_text(text.replace('diameter = "90 mm"', 'diameter = "94.5 mm"'))
+    done = command("compare", tmp_path / "a.toml", tmp_path / "b.toml", "--json")
+    told = json.loads(done.stdout)
+    # stiffer in both; of a coupling neither is better
+    assert told["asked"] == {"bending 1": "B", "C_z,thx": None, "C_zz": "B"}
+    first, *_, score = told["sentences"][:4]
+    assert first.startswith("bending 1: B is better, from ")
+    assert score.startswith("B is better in 2 of 3 numbers asked for, if stiffer")
+    # its bearings are assumed: half to twice their stiffness moves bending 1 by more than 5 % of diameter
+    assert told["open"]["a"]["inputs"] and "data leave open -" in first
+
+
+def test_both_sections_are_drawn_to_one_scale(thicker):
+    _, folder = thicker
+    assert "Both to one scale." in (folder / "report.html").read_text(encoding="utf-8")
+    both = [sg.load(path).as_dict() for path in (SCENE, OTHER)]
+    lengths, radii = zip(*map(extent, both))
+    # the line of the axis passes 0.3 in beyond either end
+    papers = [draw(one, room=(max(lengths), max(radii))).axes[0] for one in both]
+    axes = [next(one for one in paper.lines if not np.any(one.get_ydata())) for paper in papers]
+    drawn = [float(np.ptp(line.get_xdata())) - 0.6 for line in axes]
+    assert drawn[0] / drawn[1] == pytest.approx(lengths[0] / lengths[1], rel=1e-6)
+    assert lengths[0] != lengths[1]
 
 
 def test_numbers_are_those_of_each_shaft_alone_within_both_bars(thicker):
