@@ -29,7 +29,7 @@ extensions = [
 # attributes of several classes share a name, and a word in a docstring may be one of them
 suppress_warnings = ["ref.python"]
 root_doc = "index"
-exclude_patterns = ["tools", "written", "package.md"]
+exclude_patterns = ["tools", "package.md"]
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 3

@@ -6,9 +6,11 @@ a machine's own.
 """
 
 import doctest
+import os
 import re
 import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -26,6 +28,7 @@ import bearing_keys  # noqa: E402
 import build  # noqa: E402
 import console  # noqa: E402
 import gallery  # noqa: E402
+import pages  # noqa: E402
 import prose  # noqa: E402
 
 MADE = ("written",)
@@ -239,6 +242,54 @@ def test_tests_named_as_guards_are_there():
     assert len(guards) > 20
     for path, name in guards:
         assert f"def {name}(" in (ROOT / path).read_text(), name
+
+
+def tracked():
+    """Files as a clone has them; of a source distribution those that are there."""
+    if (ROOT / ".git").exists() and shutil.which("git"):
+        asked = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(asked, cwd=ROOT, capture_output=True, text=True, check=True)
+        return {path for path in map(ROOT.joinpath, listed.stdout.splitlines()) if path.exists()}
+    return {path for path in ROOT.rglob("*") if path.is_file() and path.parent != pages.COPIES}
+
+
+def astray(files):
+    """Links, pictures and includes of Markdown files that lead to none of these files."""
+    folders = {folder for path in files for folder in path.parents}
+    for path in sorted(path for path in files if path.suffix == ".md"):
+        text = re.sub(
+            r"(?ms)^(`{3,})(?!\{).*?^\1\s*$|`[^`\n]*`", "", path.read_text(encoding="utf-8")
+        )
+        for link in pages.LINK.finditer(text):
+            target = link[2].partition("#")[0]
+            place = Path(os.path.normpath(path.parent / target))
+            if target and not re.match(r"\w+:", target) and not {place} & (files | folders):
+                yield f"{path.relative_to(ROOT)}: {link[2]}"
+
+
+def test_links_pictures_and_includes_of_a_clone_lead_to_files_that_it_has():
+    files = tracked()
+    assert list(astray(files)) == []
+    assert len(list(astray(files - {DOCS / "guide" / "stress.md"}))) > 3
+
+
+def test_a_build_links_to_copies_of_what_lies_outside_of_it():
+    text = "[case](../../validation/manual/roller_row.md#top), ![x](../../validation/figures/backlash.png)"
+    assert pages.to_copies(text, DOCS / "guide") == (
+        "[case](../validation/written/roller_row.md#top), ![x](../validation/written/backlash.png)"
+    )
+    assert "written/cases.md" in pages.to_copies(
+        (DOCS / "validation" / "index.md").read_text(), DOCS / "validation"
+    )
+
+
+def test_tables_in_pages_are_those_of_the_program():
+    names = []
+    for page in PAGES:
+        text = (DOCS / page).read_text(encoding="utf-8")
+        names += [mark[2] for mark in pages.TABLE.finditer(text)]
+        assert pages.with_tables(text) == text, f"{page}: run docs/tools/pages.py"
+    assert sorted(names) == sorted(pages.TABLES)
 
 
 def test_a_broken_link_and_a_file_from_a_network_are_seen(tmp_path):

@@ -20,10 +20,11 @@ from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, Seen, align
 from solidgear.studies.measured.computed import Computed, computed_up_to
-from solidgear.studies.measured.correlate import SURE, Common, correlate
+from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
 from solidgear.studies.measured.fit import Fit
 from solidgear.studies.measured.identify import identify
+from solidgear.studies.measured.same_part import Common
 from solidgear.studies.measured.sprung import Sprung
 from solidgear.studies.measured.varied import varied_of
 from solidgear.studies.sensitivity.derivatives import Derivatives

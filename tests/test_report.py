@@ -19,9 +19,11 @@ from solidgear.judge.record import SCHEMA, Record
 from solidgear.judge.recording import recorded
 from solidgear.report import charts, input_tables
 from solidgear.report.border import as_record
+from solidgear.report.page_parts import data_uri
 from solidgear.report.plot import WIDE
 from solidgear.report.terminal import matrix_table, modes_table
 from solidgear.report.units import ENGINEERING
+from solidgear.report.viewer import END, START, TURNED
 from solidgear.report.words import engineering, hertz, percent
 from tests.made_up_run import STIFFNESS, fixture_results
 from tests.plain import final_table, render_page, verdict_text, write_report
@@ -62,6 +64,38 @@ def test_page_needs_no_other_file_and_no_network(page):
     assert "@import" not in page and "<link" not in page
     assert not re.search(r"url\((?!#)", page)
     assert page.count("<svg") == 2 * 8, "a wide and a narrow one for each chart"
+
+
+#: elements that a label may name without a role
+NAMED = ("section", "nav", "select", "input", "button")
+
+
+def test_what_has_a_label_has_a_role(page):
+    labelled = re.findall(r"<(\w+)([^>]*\saria-label=[^>]*)>", page)
+    assert len(labelled) > 100
+    assert [tag for tag, rest in labelled if tag not in NAMED and " role=" not in rest] == []
+
+
+def test_pictures_are_dark_where_the_page_is_and_cut_tables_show_it(page):
+    dark = re.findall(r"@media screen and \(prefers-color-scheme: dark\) \{ (.+) \}\n", page)
+    assert any("figure img" in rule and "invert" in rule for rule in dark)
+    scroll = re.search(r"\.scroll \{[^}]*\}", page)[0]
+    # the cover moves with the table, the shade stays at the edge
+    assert "background-attachment: local, local, scroll, scroll" in scroll
+
+
+def test_a_picture_is_in_the_page_once(tmp_path, no_charts):
+    picture = tmp_path / "mode.png"
+    picture.write_bytes(b"\x89PNG made up")
+    results = fixture_results() | {"images": {"harmonic": "mode.png"}, "files": [TURNED]}
+    uri = data_uri("harmonic", picture)
+    viewer = (
+        f'<div class="sg-turn has-still"><img src="{uri}" alt="Mode shape, deformation enlarged">'
+    )
+    (tmp_path / TURNED).write_text(f"{START}\n{viewer}</div>\n{END}")
+    assert render_page(results, tmp_path).count(uri) == 1
+    # the viewer's own stands in where no other picture does
+    assert render_page(results | {"images": {}}, tmp_path).count(uri) == 1
 
 
 def test_identifiers_of_the_charts_do_not_collide(page):

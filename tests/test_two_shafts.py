@@ -6,10 +6,13 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.report.sketch import draw, extent
 from solidgear.scene.differences import differences, scene_differences
+from solidgear.scene.uncertain import stated
 from solidgear.studies.two_shafts import two_shafts
 from tests.command import command, page_of
 
@@ -57,6 +60,46 @@ def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
     assert {one["verdict"] for one in numbers.values()} == {"resolved"}
     # the shaft is 208 mm of 90 mm, 7850 kg/m^3: pi/4 (94.5^2 - 90^2) mm^2 more
     assert numbers["mass"]["difference"] == pytest.approx(1.0649, rel=1e-3)
+
+
+def mounted(diameter):
+    """A rod on two bearings that are known to half and twice their stiffness."""
+    scene = sg.Scene.from_parts(
+        [sg.Segment.cylinder("rod", length=0.2, diameter=diameter)],
+        bearings=[
+            sg.Bearing(name=name, y=y, seat_width=0.02, stiffness=dict(kxx=1e8, kyy=1e8, kzz=1e8))
+            for name, y in (("a", 0.02), ("b", 0.18))
+        ],
+        port=sg.Port(name="gear", y=0.07, lo=0.05, hi=0.09),
+        ask=sg.Ask(quantities=["bending 1", "C_z,thx", "C_zz"], tolerance=0.2),
+    )
+    return stated(scene, {f"bearing.{name}.stiffness": "0.5 : 2" for name in "ab"})
+
+
+def test_what_is_asked_stands_first_with_the_better_of_both_and_what_bearings_leave_open():
+    found = sg.compare(mounted(0.050), mounted(0.052))
+    # the thicker rod is stiffer, but swings lower on its springs, being heavier; of a coupling neither
+    # is better
+    assert found.results["asked"] == {"bending 1": "A", "C_z,thx": None, "C_zz": "B"}
+    first, _, _, score = found.sentences[:4]
+    assert first.startswith("bending 1: A is better, from ")
+    assert score.startswith("A is better in 1 of 3 numbers asked for and B in 1, if stiffer")
+    # half to twice the stiffness of what it rests on moves the frequency by far more than 4 % of diameter
+    assert "data leave open -" in first and first.endswith(", more than the difference.")
+    assert found.results["open"]["a"]["inputs"]
+
+
+def test_both_sections_are_drawn_to_one_scale(thicker):
+    _, folder = thicker
+    assert "Both to one scale." in (folder / "report.html").read_text(encoding="utf-8")
+    both = [sg.load(path).as_dict() for path in (SCENE, OTHER)]
+    lengths, radii = zip(*map(extent, both))
+    # the line of the axis passes 0.3 in beyond either end
+    papers = [draw(one, room=(max(lengths), max(radii))).axes[0] for one in both]
+    axes = [next(one for one in paper.lines if not np.any(one.get_ydata())) for paper in papers]
+    drawn = [float(np.ptp(line.get_xdata())) - 0.6 for line in axes]
+    assert drawn[0] / drawn[1] == pytest.approx(lengths[0] / lengths[1], rel=1e-6)
+    assert lengths[0] != lengths[1]
 
 
 def test_numbers_are_those_of_each_shaft_alone_within_both_bars(thicker):

@@ -51,8 +51,6 @@ def test_responses_come_back_in_si_over_one_axis(tmp_path):
 def test_bad_files_end_in_one_sentence(tmp_path):
     shape = np.ones((len(PLACES), 3))
     cases = {
-        "does not tell its units": (nodes(PLACES), mode(1, 250.0, shape)),
-        "gives no places": (units(), mode(1, 250.0, shape)),
         "gives no place of point 18": (units(), nodes(PLACES[:-1]), mode(1, 250.0, shape)),
         "holds no mode shapes": (units(), nodes(PLACES)),
     }

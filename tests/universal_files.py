@@ -3,6 +3,15 @@
 import pytest
 
 
+def header():
+    """Dataset 151, which says nothing of units; pyuff writes no response as the first of a file."""
+    texts = ("model_name", "description", "db_app", "program", "date_db_created", "time_db_created")
+    texts += ("date_db_saved", "time_db_saved")
+    return {"type": 151, "version_db1": 0, "version_db2": 0, "file_type": 0} | dict.fromkeys(
+        texts, "-"
+    )
+
+
 def units(code=5, length=1e3, force=1e3):
     """Dataset 164: units by their code, with what one metre and one newton are in them."""
     factors = {"length": length, "force": force, "temp": 1.0, "temp_offset": 273.15}

@@ -1,22 +1,28 @@
-"""Pages that other parts of the project write, and tables of what the program knows, brought under
-`docs/` when it is built.
+"""Pages that other parts of the project write, brought under `docs/` when it is built, and tables of
+what the program knows, between marks of the pages that hold them.
+
+    python docs/tools/pages.py          # write those tables anew
 
 The validation manual and the claims are written by `python -m validation.manual` and
-`python -m validation.thesis.claims`; what is shown here is a copy of those files, made at every build.
+`python -m validation.thesis.claims`. Pages link to those files, so that links lead somewhere in a clone;
+a build links to copies instead, which it makes.
 """
 
+import os
 import re
 import shutil
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
-from validation.common import read_result
-from validation.race.real_costs import markdown, rows_of
-from validation.race.real_lines import PARTS
+ROOT = Path(__file__).parent.parent.parent
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
 
-DOCS = Path(__file__).parent.parent
-#: tables of what the program knows, not under version control
-TABLES = DOCS / "written"
-ROOT = DOCS.parent
+from validation.common import read_result  # noqa: E402
+from validation.race.real_costs import markdown, rows_of  # noqa: E402
+
+DOCS = ROOT / "docs"
 #: where copies go, not under version control
 COPIES = DOCS / "validation" / "written"
 
@@ -26,15 +32,26 @@ WRITTEN = {
     ROOT / "validation" / "thesis" / "claims.md": "thesis_claims.md",
     ROOT / "validation" / "thesis" / "bearings.md": "thesis_bearings.md",
 }
-PICTURES = (
-    "speed_accuracy.png",
-    "real_keyed.png",
-    "real_toothed.png",
-    "real_step.png",
-    "pinion_bending_1.png",
-    "reducer.png",
-    "reducer_spectra.png",
-    "backlash.png",
+PICTURES = tuple(
+    ROOT / "validation" / "figures" / f"{name}.png"
+    for name in (
+        "speed_accuracy",
+        "real_keyed",
+        "real_toothed",
+        "real_step",
+        "pinion_bending_1",
+        "reducer",
+        "reducer_spectra",
+        "backlash",
+    )
+)
+#: what leads from a page to another file: a link, a picture, a directive
+LINK = re.compile(
+    r"(\]\(|^\[[^\]]+\]: *|^(?:```|:::)\{(?:image|figure|include|literalinclude)\} )([^)\s]+)", re.M
+)
+#: a table that is made, between its marks
+TABLE = re.compile(
+    r"(<!-- made by docs/tools/pages.py: (\w+) -->\n\n)(.*?)(\n<!-- made until here -->)", re.S
 )
 
 
@@ -47,9 +64,24 @@ def copy_pages(app=None):
         if name == "README.md":
             name, text = "cases.md", with_contents(text)
         (COPIES / name).write_text(fenced(text))
-    thesis = (ROOT / "validation" / "thesis").glob("claim_*.png")
-    for picture in [*(ROOT / "validation" / "figures" / name for name in PICTURES), *thesis]:
+    for picture in [*PICTURES, *(ROOT / "validation" / "thesis").glob("claim_*.png")]:
         shutil.copy(picture, COPIES)
+
+
+def to_copies(text: str, folder: Path) -> str:
+    """The text of a page in a folder with links to the copies of what they lead to."""
+    copies = {source: COPIES / name for source, name in WRITTEN.items()}
+    copies[ROOT / "validation" / "manual" / "README.md"] = COPIES / "cases.md"
+    copies |= {picture: COPIES / picture.name for picture in PICTURES}
+
+    def turned(link: re.Match) -> str:
+        path, anchor, place = link[2].partition("#")
+        copy = copies.get(Path(os.path.normpath(folder / path)))
+        return link[1] + (
+            link[2] if copy is None else os.path.relpath(copy, folder) + anchor + place
+        )
+
+    return LINK.sub(turned, text)
 
 
 def fenced(text: str) -> str:
@@ -67,14 +99,14 @@ def with_contents(text: str) -> str:
     return text.replace("# Validation manual", "# Cases with a known answer", 1) + f"\n{contents}\n"
 
 
-def write_tables(app=None):
-    """Materials and builder options, as the program has them, and tables of measured costs."""
-    TABLES.mkdir(exist_ok=True)
-    (TABLES / "materials.md").write_text(materials())
-    (TABLES / "options.md").write_text(options())
-    rows = rows_of(read_result("real_parts"))
-    for part in PARTS:
-        (TABLES / f"real_{part}.md").write_text("\n".join(markdown(rows, part)) + "\n")
+def with_tables(text: str) -> str:
+    """A page whose tables are those of the program as it is."""
+    return TABLE.sub(lambda mark: mark[1] + TABLES[mark[2]]() + mark[4], text)
+
+
+def real(part: str) -> str:
+    """The table of measured costs of a real part."""
+    return "\n".join(markdown(rows_of(read_result("real_parts")), part)) + "\n"
 
 
 def materials() -> str:
@@ -111,7 +143,29 @@ def options() -> str:
     return "\n".join(lines)
 
 
+#: name of a table in its marks -> what makes it
+TABLES: dict[str, Callable[[], str]] = {
+    "materials": materials,
+    "options": options,
+    "real_keyed": lambda: real("keyed"),
+    "real_toothed": lambda: real("toothed"),
+    "real_step": lambda: real("step"),
+}
+
+
 def setup(app):
-    """Write all of it before sources are read."""
+    """Copy before sources are read, and link to the copies."""
     app.connect("builder-inited", copy_pages)
-    app.connect("builder-inited", write_tables)
+    app.connect("source-read", read)
+
+
+def read(app, name, source):
+    """Text of a page as it is built."""
+    source[0] = to_copies(source[0], (DOCS / name).parent)
+
+
+if __name__ == "__main__":
+    for page in DOCS.rglob("*.md"):
+        text = page.read_text(encoding="utf-8")
+        if TABLE.search(text):
+            page.write_text(with_tables(text), encoding="utf-8")

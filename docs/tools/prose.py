@@ -20,6 +20,8 @@ GENERATED = {
     "docs/validation/scoreboard.md",
     "docs/validation/stability.md",
 }
+#: and a table of a page that is
+MADE = re.compile(r"<!-- made by .*?<!-- made until here -->", re.S)
 PARAGRAPH, SENTENCE, RUN = 120, 35, 12
 #: words of the longest page, and of all of them
 PAGE, TOTAL = 920, 20000
@@ -58,6 +60,7 @@ def plain(text: str) -> str:
 def pieces(text: str) -> Iterator[Piece]:
     """Paragraphs, items and cells of a page, each with its first line."""
     fence, start, held = "", 0, list[str]()
+    text = MADE.sub(lambda made: "\n" * made[0].count("\n"), text)
     for number, line in enumerate([*text.splitlines(), ""], 1):
         mark = re.match(r"\s*(```+|:::+|\$\$(?!.*\$\$))", line)
         inside = bool(fence)

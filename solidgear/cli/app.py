@@ -8,93 +8,116 @@ import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterator
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from importlib import import_module
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from solidgear.cli.options_alone import options_alone
 from solidgear.machine.memory import one_command
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
     from rich.status import Status
 
 R = TypeVar("R")
 HELP = ("-h", "--help")
+#: texts of commands and options that help prints
+HELP_TEXTS = ("help", "epilog", "short_help")
 
-#: line of the help of each command
-COMMANDS = {
-    "answer": (
-        "Numbers within a tolerance, each with its bar, from the cheapest model that can show it."
-    ),
-    "bearing": (
-        "Bearings of catalogue data: stiffness at load, load of every element, pressure, life; of "
-        "a train with an \\[operation] their lives over its points."
-    ),
-    "budget": (
-        "Which unknown is worth measuring: what every open input of a scene leaves open of its "
-        "numbers."
-    ),
-    "chart": (
-        "Chart error against cost: every model and element, uniform and graded, with the Pareto "
-        "front."
-    ),
-    "deflect": (
-        "Deflection of shafts under torque: displacements, misalignment of the gears, bearing "
-        "loads."
-    ),
-    "new": "Write a short, commented scene that runs, or a train, to change into one's own.",
-    "scenes": "List the scenes that come with solidgear, or copy them into a folder.",
-    "options": (
-        "List what --set takes: every builder option, its default, its limits and what it means."
-    ),
-    "correlate": (
-        "Measured resonances beside computed modes: which is which, how sure, and how far apart."
-    ),
-    "identify": "Entries of a scene from measured resonances, and how sure they are.",
-    "nonlinear": (
-        "Teeth with backlash: where they part, jumps over speed, and how far off the linear "
-        "answer is."
-    ),
-    "optimise": "The best design within ranges, as far as error bars tell designs apart.",
-    "system-modes": (
-        "Natural frequencies of a geared rotor system, each with its name and its proven bound."
-    ),
-    "response": (
-        "Steady response to the transmission error: mesh force, reactions, motions, and a chart."
-    ),
-    "receptance": (
-        "Receptance between any two ports of a train: table, chart, and peaks with their modes."
-    ),
-    "sensitivities": (
-        "What would move a number: its derivatives by every number of the file, from one solution."
-    ),
-    "compare": (
-        "Solve a scene with every model and write a report on which to trust; a train as well, or "
-        "two of a kind beside each other."
-    ),
-    "modes": "Natural frequencies on the bearings, with the evidence for them.",
-    "render": "Draw one mode shape off-screen, or all of them in a page where they can be turned.",
-    "check": (
-        "Say what will be modelled and what will not hold, of a scene or a train; a light mesh is "
-        "the heaviest solved."
-    ),
-    "stiffness": (
-        "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
-    ),
-    "stress": (
-        "Stress of shafts at rest: section forces, nominal stress, fillets by the solid, DIN 743."
-    ),
-    "sweep": (
-        "Thousands of bearing sets on one body, or variants of a shaft or train, as rows of a file."
-    ),
-    "judge-system": (
-        "Comparison of a train with further mixes and reductions, and no folder unless asked for."
-    ),
+#: commands by what they are for, in the order of the work, each with the line of its help
+GROUPS = {
+    "Start": {
+        "new": ("Write a short, commented scene that runs, or a train, to change into one's own."),
+        "scenes": ("List the scenes that come with solidgear, or copy them into a folder."),
+        "check": (
+            "Say what will be modelled and what will not hold, of a scene or a train; a "
+            "light mesh is the heaviest solved."
+        ),
+        "options": (
+            "List what --set takes: every builder option, its default, its limits and "
+            "what it means."
+        ),
+    },
+    "One shaft": {
+        "answer": (
+            "Numbers within a tolerance, each with its bar, from the cheapest model that "
+            "can show it."
+        ),
+        "stiffness": (
+            "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
+        ),
+        "modes": ("Natural frequencies on the bearings, with the evidence for them."),
+        "compare": (
+            "Solve a scene with every model and write a report on which to trust; a train "
+            "as well, or two of a kind beside each other."
+        ),
+        "chart": (
+            "Chart error against cost: every model and element, uniform and graded, with "
+            "the Pareto front."
+        ),
+        "render": (
+            "Draw one mode shape off-screen, or all of them in a page where they can be turned."
+        ),
+        "bearing": (
+            "Bearings of catalogue data: stiffness at load, load of every element, "
+            "pressure, life; of a train with an [operation] their lives over its points."
+        ),
+        "stress": (
+            "Stress of shafts at rest: section forces, nominal stress, fillets by the "
+            "solid, DIN 743."
+        ),
+    },
+    "Design": {
+        "sweep": (
+            "Thousands of bearing sets on one body, or variants of a shaft or train, as "
+            "rows of a file."
+        ),
+        "sensitivities": (
+            "What would move a number: its derivatives by every number of the file, from "
+            "one solution."
+        ),
+        "optimise": ("The best design within ranges, as far as error bars tell designs apart."),
+        "budget": (
+            "Which unknown is worth measuring: what every open input of a scene leaves "
+            "open of its numbers."
+        ),
+    },
+    "Measured": {
+        "correlate": (
+            "Measured resonances beside computed modes: which is which, how sure, and how "
+            "far apart."
+        ),
+        "identify": ("Entries of a scene from measured resonances, and how sure they are."),
+    },
+    "Trains": {
+        "system-modes": (
+            "Natural frequencies of a geared rotor system, each with its name and its proven bound."
+        ),
+        "response": (
+            "Steady response to the transmission error: mesh force, reactions, motions, "
+            "and a chart."
+        ),
+        "receptance": (
+            "Receptance between any two ports of a train: table, chart, and peaks with their modes."
+        ),
+        "nonlinear": (
+            "Teeth with backlash: where they part, jumps over speed, and how far off the "
+            "linear answer is."
+        ),
+        "deflect": (
+            "Deflection of shafts under torque: displacements, misalignment of the gears, "
+            "bearing loads."
+        ),
+        "judge-system": (
+            "Comparison of a train with further mixes and reductions, and no folder "
+            "unless asked for."
+        ),
+    },
 }
+COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
 #: modules of commands, where they have another name
 MODULES = {
     "new": "files",
@@ -108,8 +131,39 @@ MODULES = {
 }
 
 
+@contextmanager
+def _brackets(*parts: Any) -> Iterator[None]:
+    """While this lasts, the help of commands and options has its square brackets as typer prints them:
+    it takes them for markup, and leaves out what they hold.
+    """
+    from rich.markup import escape  # start-up: for help alone
+
+    plain = [(part, name, getattr(part, name, None)) for part in parts for name in HELP_TEXTS]
+    for part, name, text in plain:
+        if isinstance(text, str):
+            setattr(part, name, escape(text))
+    try:
+        yield
+    finally:
+        for part, name, text in plain:
+            if isinstance(text, str):
+                setattr(part, name, text)
+
+
+class Told(TyperCommand):
+    """A command whose help is printed as it is written."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params):
+            super().format_help(ctx, formatter)
+
+
 class Door(TyperGroup):
     """The commands: a module is imported when one of its commands runs or is asked for its help."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params, *self.commands.values()):
+            super().format_help(ctx, formatter)
 
     def resolve_command(self, ctx, args):
         """The command itself, in place of the one that has only name and help."""
@@ -133,7 +187,7 @@ def _imported(name: str) -> Any:
     """A command with its options."""
     module = import_module(f"solidgear.cli.{MODULES.get(name, name)}")
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    alone.command(name, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
+    alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
     return typer.main.get_command(alone)
 
 
@@ -149,8 +203,9 @@ app = typer.Typer(
     context_settings={"help_option_names": [*HELP]},
     pretty_exceptions_enable=False,
 )
-for _name, _words in COMMANDS.items():
-    app.command(_name, help=_words)(lambda: None)
+for _group, _commands in GROUPS.items():
+    for _name, _words in _commands.items():
+        app.command(_name, help=_words, rich_help_panel=_group)(lambda: None)
 
 
 def _version(asked: bool) -> None:
@@ -179,14 +234,19 @@ def everywhere(
 NOT_REACHED = 3
 
 
+def console(stderr: bool = False) -> Console:
+    """The terminal, which prints texts as they are: what stands in square brackets is no markup."""
+    from rich.console import Console  # start-up: not before a command prints
+
+    # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
+    return Console(highlight=False, markup=False, emoji=False, stderr=stderr)
+
+
 def say(*told: RenderableType, soft_wrap: bool = True) -> None:
     """Print tables, and texts as they stand: a line of any length each, or broken at the width of
     the terminal without `soft_wrap`.
     """
-    from rich.console import Console  # start-up: not before a command prints
-
-    # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
-    terminal = Console(highlight=False, markup=False, emoji=False)
+    terminal = console()
     for one in told:
         if isinstance(one, str) and not soft_wrap:
             # rich breaks lines at the spaces that hold the digits of a number together as well
@@ -223,9 +283,7 @@ class Progress:
     silent = False
 
     def __init__(self, quiet: bool = False):
-        from rich.console import Console  # start-up: as in `say`
-
-        self.console = Console(stderr=True, highlight=False)
+        self.console = console(stderr=True)
         self.quiet = quiet or self.silent
         self.start = time.perf_counter()
         self.status: Status | None = None
@@ -245,7 +303,9 @@ class Progress:
             return
         line = f"{time.perf_counter() - self.start:6.1f} s  {text}"
         if self.status:
-            self.status.update(line)
+            from rich.text import Text  # start-up: as in `console`
+
+            self.status.update(Text(line))  # a text alone would be read as markup
         else:
             print(line, file=sys.stderr, flush=True)
 

@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from solidgear.cli.app import Group
+from solidgear.cli.app import Group, console
 from solidgear.report.plot import FORMATS, check_ending
 from solidgear.report.sweep_chart import sweep_chart, sweep_table
 from solidgear.report.train_sheet import write_sheet
@@ -120,9 +119,9 @@ class Rows(Group):
     @contextmanager
     def counted(self, silent: bool) -> Iterator[tuple[Show, Tell]]:
         """A bar of the rows that are there, where there is a terminal; after Ctrl-C they are told."""
-        terminal = Console(stderr=True, highlight=False)
+        terminal = console(stderr=True)
         bar = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(),
             MofNCompleteColumn(),
             TimeRemainingColumn(),
@@ -132,7 +131,7 @@ class Rows(Group):
         reached = [0, 0]
 
         def tell(text: str) -> None:
-            terminal.print(f"solidgear: {text}", markup=False, emoji=False, soft_wrap=True)
+            terminal.print(f"solidgear: {text}", soft_wrap=True)
 
         try:
             with bar:

@@ -41,6 +41,11 @@ def pairs(found: Any) -> Table:
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
         "frequency and the bar of the computed one. Sure: probability of the pair."
     )
+    if found.measured.responses is not None:
+        note += (
+            f" A measured frequency deviates by {100 * found.measured.responses.repeats:.2g} % at least: so well do temperature, "
+            "cords and sensor repeat."
+        )
     if found.mac is not None:
         note += " MAC: share of the measured shape that is the mode's, on the measuring points."
     return Table("Measured and computed", columns, found.pairs, note, style="ruled")
@@ -140,10 +145,7 @@ def peaks(found: Any, overlay: Any = None) -> Table:
         Column("damping", lambda k: fit.damping[k], _unsigned),
         Column("deviation", lambda k: 100 * fit.deviations[1][k], "{:.2g} %".format),
     ]
-    note = (
-        "Deviation: one standard deviation, of the noise of these responses; another hanging, another "
-        "sensor or a mass on the part are not in it. Damping: the ratio."
-    )
+    note = "Deviation: one standard deviation, of the noise of these responses alone. Damping: the ratio."
     if overlay is not None:
         constants = overlay.constants
         size = Column("size", lambda k: constants.get(k + 1), "{:.2f}".format)

@@ -92,7 +92,13 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
         p.close()
         top, left = k // across * tile[1], k % across * tile[0]
         picture[top : top + tile[1], left : left + tile[0]] = drawn[..., :3]
-    Image.fromarray(np.concatenate([head, picture])).save(path)
+    _in_few_colours(Image.fromarray(np.concatenate([head, picture]))).save(path, optimize=True)
+
+
+def _in_few_colours(picture):
+    """The picture with a palette of its own, dithered so that no step is seen: half the bytes."""
+    palette = picture.quantize(kmeans=1)
+    return picture.quantize(palette=palette)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:

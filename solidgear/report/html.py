@@ -53,15 +53,18 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
 
     chosen = units_named(record.shown_in)
     drawn = drawn or drawn_charts(record, folder)
+    pictures = _pictures(record, folder)
+    shown = any(uri for several in pictures.values() for _, uri in several)
+    viewer = fragment_of(folder / TURNED, still=not shown) if TURNED in (record.files or ()) else ""
     return template("report.html").render(
         **_opening(record, chosen),
         **_tables(record, chosen),
-        **_pictures(record, folder),
+        **pictures,
         customer=Contents(),
         appendix=Contents("A{}"),
         charts={name: Markup(svg.decode()) if svg else None for name, svg in drawn.svg.items()},
         race=race_tables.section(folder, record.scene),
-        viewer=Markup(fragment_of(folder / TURNED) if TURNED in (record.files or ()) else ""),
+        viewer=Markup(viewer),
         warnings=[*record.warnings, *drawn.failed],
     )
 

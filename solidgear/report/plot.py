@@ -151,6 +151,8 @@ def _compact(svg: str, name: str) -> str:
         if text.startswith(('<path class="background"', '<path class="foreground"')):
             return ""
         text = re.sub(r' (?:aria-roledescription|role|opacity)="(?:[a-z -]*|1)"', "", text)
+        # a label of what has no role is read by nobody
+        text = re.sub(r' aria-label="[^"]*"', r'\g<0> role="img"', text)
         text = re.sub(r'(?<= id=")[^"]+|(?<="url\(#)[^)]+', number, text)
         return re.sub(r' (?:d|transform)="[^"]*"', short, text)
 

@@ -21,8 +21,18 @@ LINE = 0.17  # from one line of letters to the next
 HANDLE = 0.5
 
 
-def draw(scene: Mapping[str, Any], width: float = WIDTH) -> Any:
-    """The figure, or None when the scene has no segments.
+def extent(scene: Mapping[str, Any]) -> tuple[float, float]:
+    """Length and largest radius of the shaft of a scene, m; zero without segments."""
+    segments = scene.get("segments") or []
+    radii = [max(s["outer0"], s["outer1"]) for s in segments]
+    return max((s["y1"] for s in segments), default=0.0), max(radii, default=0.0)
+
+
+def draw(
+    scene: Mapping[str, Any], width: float = WIDTH, room: tuple[float, float] | None = None
+) -> Any:
+    """The figure, or None when the scene has no segments. It is as large as one of a shaft of the
+    length and largest radius of `room` would be, m; by default of its own.
 
     The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale
     as lengths, unless the shaft is so slender that they have to be enlarged; then the sketch says
@@ -33,13 +43,13 @@ def draw(scene: Mapping[str, Any], width: float = WIDTH) -> Any:
     segments = scene.get("segments") or []
     if not segments:
         return None
-    length = max(s["y1"] for s in segments)
-    radius = max(max(s["outer0"], s["outer1"]) for s in segments)
+    length, own = extent(scene)
+    longest, radius = room or (length, own)
     drawn = width - 2 * (BESIDE if width == WIDTH else NARROWLY)
-    inch = min(drawn / length, TALLEST / radius)  # inches per metre
+    inch = min(drawn / longest, TALLEST / radius)  # inches per metre
     enlarged = 1.0 if radius * inch >= FLATTEST else FLATTEST / (radius * inch)
-    top = radius * inch * enlarged
-    left = (width - length * inch) / 2
+    top = own * inch * enlarged
+    left = (width - longest * inch) / 2
 
     stations = [(b, False) for b in scene.get("bearings") or []]
     points = [port for port in (scene.get("port"), *(scene.get("further_ports") or [])) if port]

@@ -22,9 +22,12 @@ STYLE: Any = {
 WITHOUT = {"Date": None, "Creator": None, "Format": None, "Type": None}
 
 
-def sketch_svg(name: str, scene: Mapping[str, Any]) -> bytes | None:
+def sketch_svg(
+    name: str, scene: Mapping[str, Any], room: tuple[float, float] | None = None
+) -> bytes | None:
     """Both drawings of a scene, of which ``style.html`` shows either; None without segments. The
-    name has letters and underscores, and is of no other drawing of the page.
+    name has letters and underscores, and is of no other drawing of the page; `room` is that of
+    :func:`solidgear.report.sketch.draw`.
     """
     import matplotlib
 
@@ -33,7 +36,7 @@ def sketch_svg(name: str, scene: Mapping[str, Any]) -> bytes | None:
         with matplotlib.rc_context():
             matplotlib.rcdefaults()  # the user's own matplotlibrc must not change a report
             matplotlib.rcParams.update({**STYLE, "svg.hashsalt": f"solidgear {name}"})
-            figure = sketch.draw(scene, width)
+            figure = sketch.draw(scene, width, room)
             if figure is None:
                 return None
             target = io.BytesIO()

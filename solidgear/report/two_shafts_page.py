@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from solidgear.report import beside
+from solidgear.report.open_words import interval
 from solidgear.report.panel import GREY, Axis, Panel, Series, readout
 from solidgear.report.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.report.run_tables import pairs_of
+from solidgear.report.sketch import extent
 from solidgear.report.sketch_page import sketch_svg
 from solidgear.report.table import Cell, Column, Table, text, word
 from solidgear.report.train_chart import PAIR
@@ -21,12 +23,41 @@ from solidgear.report.train_sheet import Section
 from solidgear.report.units import ENGINEERING, Units, in_ascii
 from solidgear.report.words import hertz, is_number, percent
 
-SECTIONS = "Each drawn as wide as the page, and not to one scale."
+SECTIONS = "Both to one scale."
 
 
-def numbers(found: Any, units: Units = ENGINEERING) -> Table:
-    """Mass, compliances, stiffnesses and first frequencies side by side."""
-    columns = [
+def asked(found: Any, units: Units = ENGINEERING) -> Table:
+    """Numbers that are asked for: both, their bars, what data leave open, and which is better."""
+    columns = _columns(units)
+    for letter, numbers in zip("AB", found.open):
+        if numbers.inputs:
+            ranges = partial(_open, numbers)
+            columns.append(Column(f"open in {letter}", ranges))
+    columns.append(word("better", lambda one: one.better or "-"))
+    note = "Better: stiffer, or higher in frequency, by more than both bars; of a coupling neither."
+    if any(numbers.inputs for numbers in found.open):
+        note += (
+            " Open: what bearings and other data of the file leave open of that design, by the "
+            "Timoshenko beam, relative to its own number."
+        )
+    return Table(
+        "Numbers asked for" if found.asks else "Usual numbers",
+        columns,
+        found.asked,
+        note,
+        style="ruled",
+    )
+
+
+def _open(numbers: Any, one: Any) -> str | None:
+    """Range that data leave open of a number."""
+    record = numbers.of(one.name)
+    return None if record is None else interval(record.total)
+
+
+def _columns(units: Units) -> list[Column]:
+    """A number of both, with their bars."""
+    return [
         text("number", lambda one: one.name + (f" (B: {one.partner})" if one.partner else "")),
         Column("A", lambda one: _value(one, one.change.a, units)),
         Column("B", lambda one: _value(one, one.change.b, units)),
@@ -34,8 +65,12 @@ def numbers(found: Any, units: Units = ENGINEERING) -> Table:
         Column("difference", _apart),
         Column("bar of A", lambda one: _bar(one, one.change.bar_a, one.scale)),
         Column("bar of B", lambda one: _bar(one, one.change.bar_b, one.scale)),
-        word("", _verdict),
     ]
+
+
+def numbers(found: Any, units: Units = ENGINEERING) -> Table:
+    """Mass, compliances, stiffnesses and first frequencies side by side."""
+    columns = [*_columns(units), word("", _verdict)]
     note = (
         "Differences and bars are relative to A, of couplings to the geometric mean of both diagonal "
         "entries of A. Resolved: more than the sum of both bars; not resolved is not agreement. The "
@@ -75,8 +110,12 @@ def write_two_shafts(found: Any, out: str | os.PathLike, units: Units) -> Path:
 
 def _sections(found: Any, units: Units) -> list[Section]:
     shafts = zip(found.both, found.results["shafts"].items())
+    scenes = [shaft["scene"] for shaft in found.results["shafts"].values()]
+    longest, thickest = (max(sizes) for sizes in zip(*map(extent, scenes)))
     drawings = {
-        f"{one.label}, section through the axis.": sketch_svg(f"shaft_{key}", shaft["scene"])
+        f"{one.label}, section through the axis.": sketch_svg(
+            f"shaft_{key}", shaft["scene"], (longest, thickest)
+        )
         for one, (key, shaft) in shafts
     }
     solved = [pairs_of(_facts(one), f"Solution of {one.label}") for one in found.both]
@@ -84,6 +123,11 @@ def _sections(found: Any, units: Units) -> list[Section]:
     shapes = partial(shapes_chart, found, units)
     same = "" if found.inputs else beside.SAME
     return [
+        Section(
+            "asked",
+            "What was asked" if found.asks else "The usual numbers",
+            tables=[asked(found, units)],
+        ),
         Section("input", "Input", same, tables=[beside.inputs(found)]),
         Section("shafts", "Both shafts", SECTIONS, drawings=drawings),
         Section("numbers", "Numbers", tables=[numbers(found, units)]),
@@ -96,6 +140,7 @@ def printed(found: Any, units: Units) -> tuple[Any, ...]:
     """Sentences and tables for a terminal."""
     return (
         *map(in_ascii, found.told(units)),
+        *([asked(found, units)] if found.asks else []),
         beside.inputs(found, beside.SHORT),
         numbers(found, units),
         beside.modes(found),

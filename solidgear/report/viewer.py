@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,6 +36,8 @@ SWINGS = 1000
 #: the page of mode shapes that a comparison writes, which its report takes the viewer from
 TURNED = "modes.html"
 START, END = "<!-- solidgear viewer: start -->", "<!-- solidgear viewer: end -->"
+#: the still picture of a viewer in its page
+STILL = re.compile(r' has-still(?=")|<img src="data:[^"]*" alt="Mode shape, deformation enlarged">')
 #: colours that the displacement runs through, as many as `uRamp` in viewer.js has
 STOPS = 17
 
@@ -161,14 +164,17 @@ def viewer_page(
     )
 
 
-def fragment_of(page: str | os.PathLike) -> str:
-    """The viewer in a page that :func:`viewer_page` wrote; empty if there is none."""
+def fragment_of(page: str | os.PathLike, *, still: bool = True) -> str:
+    """The viewer in a page that :func:`viewer_page` wrote; empty if there is none. Without its `still`
+    picture where others follow in the page that takes it.
+    """
     try:
         text = Path(page).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError):
         return ""
     start, end = text.find(START), text.rfind(END)
-    return text[start : end + len(END)] if 0 <= start < end else ""
+    fragment = text[start : end + len(END)] if 0 <= start < end else ""
+    return fragment if still else STILL.sub("", fragment)
 
 
 def _within_budget(models: Sequence[Turned]) -> Iterator[dict[str, Any]]:

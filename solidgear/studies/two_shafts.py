@@ -20,15 +20,17 @@ import numpy as np
 from solidgear.display import Displayed
 from solidgear.judge.answer import LEAST_TOLERANCE
 from solidgear.judge.correlation import pair_modes
-from solidgear.judge.quantities import in_order, size
+from solidgear.judge.open_record import OpenNumbers
+from solidgear.judge.quantities import in_order, judged, size
 from solidgear.machine.threads import pinned
-from solidgear.quantity import QUANTITIES, Quantity
+from solidgear.quantity import COMPLIANCE, QUANTITIES, Quantity
 from solidgear.report.two_shafts_page import write_two_shafts
 from solidgear.report.units import ENGINEERING, Units, units_named
 from solidgear.scene.differences import Difference, scene_differences
 from solidgear.solve.modes import ModeSet
 from solidgear.studies import two_shafts_told as told
 from solidgear.studies.beside import Beside, all_pairs
+from solidgear.studies.budget import beside as left_open
 from solidgear.studies.change import BarredMode, Change, ModePair
 from solidgear.studies.one_shaft import OneShaft, Progress, one_shaft
 
@@ -80,6 +82,16 @@ class NumberChange:
         """``resolved``, ``not resolved`` or ``no band``."""
         return self.change.verdict
 
+    @property
+    def better(self) -> str:
+        """Letter of the one that is stiffer, or higher in frequency, by more than both bars; empty
+        where neither is.
+        """
+        name = Quantity(self.name)
+        if self.verdict != "resolved" or name.is_coupling:
+            return ""
+        return "B" if (self.change.difference > 0) != (name.kind == COMPLIANCE) else "A"
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
@@ -101,6 +113,8 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
         Mass, entries of C and K at the lumped points, first frequencies.
     alone : dict of str to tuple of str
         Numbers that one has and the other does not, by letter.
+    open : tuple of OpenNumbers
+        What the data of each leave open.
     """
 
     shown: ClassVar[str] = "two_shafts"
@@ -108,6 +122,24 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
     tolerance: float
     changes: tuple[NumberChange, ...]
     alone: dict[str, tuple[str, ...]]
+    open: tuple[OpenNumbers, OpenNumbers]
+
+    @property
+    def asks(self) -> bool:
+        """Tell whether a scene names the numbers that it is about."""
+        return any(one.scene.ask.quantities for one in self.both)
+
+    @property
+    def asked(self) -> list[NumberChange]:
+        """Numbers that either scene asks for; the usual ones where none does."""
+        names = [
+            name
+            for one in self.both
+            if one.scene.ask.quantities or not self.asks
+            for name in judged(one.scene)
+        ]
+        known = {one.name: one for one in self.changes}
+        return [known[name] for name in dict.fromkeys(names) if name in known]
 
     def __getitem__(self, name: str) -> NumberChange:
         return next(one for one in self.changes if one.name == name)
@@ -176,8 +208,10 @@ def two_shafts(
         one.letter: tuple(str(q) for q in in_order(one.values) if q not in second.values)
         for one, second in ((a, b), (b, a))
     }
+    progress("what the data leave open")
+    ranges = left_open(first), left_open(other)
     spent = perf_counter() - start
-    return TwoShafts(a, b, differ, tuple(pairs), pairing, spent, tol, changes, alone)
+    return TwoShafts(a, b, differ, tuple(pairs), pairing, spent, tol, changes, alone, ranges)
 
 
 def _settled(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.ladder.registry import LADDER
 from solidgear.machine.environment import environment
+from solidgear.report.open_words import interval
 from solidgear.report.units import ENGINEERING, Units
 from solidgear.report.words import is_number, percent
 from solidgear.studies import beside
@@ -22,14 +23,50 @@ NAMED = 4
 
 
 def sentences(found: TwoShafts, units: Units = ENGINEERING) -> list[str]:
-    """Conclusions: what differs, what that does, what of it is resolved, and how it was solved."""
+    """Conclusions: which is better in what is asked, what differs, what that does, what of it is
+    resolved, and how it was solved.
+    """
     return [
+        *_asked(found, units),
         beside.inputs(found.inputs),
         *_numbers(found, units),
         *beside.modes(found.modes, "among the modes solved of the other"),
         *_alone(found),
         *_solved(found),
     ]
+
+
+def _asked(found: TwoShafts, units: Units) -> Iterator[str]:
+    """The numbers that were asked for, one a sentence, and which design is better in how many."""
+    if not found.asks:
+        return
+    for one in found.asked:
+        verdict = f"{one.better} is better" if one.better else "neither is better"
+        yield f"{one.name}: {verdict}, {_told(one, units).removeprefix(f'{one.name}, ')}{_left_open(found, one)}."
+    if count := len(found.asked):
+        score = {letter: sum(one.better == letter for one in found.asked) for letter in "AB"}
+        first, last = sorted(score, key=lambda letter: -score[letter])
+        whole = {1: "the number", 2: "both numbers"}.get(count, f"all {count} numbers")
+        many = whole if score[first] == count else f"{score[first]} of {count} numbers"
+        other = f" and {last} in {score[last]}" if score[last] else ""
+        who = f"{first} is better in {many}" if score[first] else "Neither is better in the numbers"
+        yield f"{who} asked for{other}, if stiffer and higher in frequency is better."
+
+
+def _left_open(found: TwoShafts, one: NumberChange) -> str:
+    """What the data of both leave open of a number, and whether that may turn the order."""
+    records = [numbers.of(one.name) for numbers in found.open]
+    ranges = {
+        letter: interval(record.total)
+        for letter, record in zip("AB", records)
+        if record is not None
+    }
+    if not ranges:
+        return ""
+    words = " and ".join(f"{range_} in {letter}" for letter, range_ in ranges.items())
+    widest = max(abs(end or 0.0) for r in records if r for end in (r.total.low, r.total.high))
+    less = widest > _size(one)
+    return f"; data leave open {words}{', more than the difference' * less}"
 
 
 def _numbers(found: TwoShafts, units: Units) -> Iterator[str]:
@@ -105,6 +142,10 @@ def results(found: TwoShafts) -> dict[str, Any]:
         "differences": [asdict(one) for one in found.inputs],
         "sentences": sentences(found),
         "numbers": {one.name: _plain(one) for one in found.changes},
+        "asked": {one.name: one.better or None for one in found.asked},
+        "open": {
+            letter: numbers.model_dump(mode="json") for letter, numbers in zip("ab", found.open)
+        },
         "paired": found.pairing,
         "modes": [beside.plain_pair(pair) for pair in found.modes],
         "alone": {letter.lower(): list(names) for letter, names in found.alone.items()},

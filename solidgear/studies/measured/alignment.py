@@ -160,10 +160,13 @@ _Steps = dict[tuple[int, int, int], np.ndarray]
 
 
 def align(
-    measured: Sequence[Peak], computed: Sequence[Peak], seen: Seen | None = None
+    measured: Sequence[Peak],
+    computed: Sequence[Peak],
+    seen: Seen | None = None,
+    shifts: Sequence[float] = SHIFTS,
 ) -> Alignment:
     """Lay measured resonances beside computed modes, both by ascending frequency, and by shapes
-    where they were measured.
+    where they were measured; `shifts` of logarithms are begun with.
 
     Examples
     --------
@@ -174,7 +177,7 @@ def align(
     ([0, 1, 3], True)
     """
     starts = sorted(
-        SHIFTS, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, seen).total
+        shifts, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, seen).total
     )
     ends = [_settled(measured, computed, shift, seen) for shift in starts[:TRIED]]
     return max(ends, key=lambda lattice: lattice.total).alignment()

@@ -5,21 +5,22 @@ they are.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.special import chdtri, stdtrit
 
 from solidgear.body.mode_names import ModeName
 from solidgear.display import Displayed
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
+from solidgear.scene.shaft import without_axis
 from solidgear.studies.change import BarredMode
-from solidgear.studies.measured.alignment import Alignment, Peak, align
+from solidgear.studies.measured.alignment import Alignment, Peak
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.data import Measured, MeasuredMode
+from solidgear.studies.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
 from solidgear.studies.measured.shapes import OnPoints
 
 #: a pair is sure from this probability on; below the second it is not told as a possibility
@@ -31,8 +32,6 @@ UNTOLD = 1e-4
 #: of a bearing's stiffness of which [uncertain] of the scene says nothing: what a catalogue leaves open of
 #: the inside is +- 9 to 11 % of it, a class of clearance as much, and rigid rings and seats the rest
 SPRINGS = 0.2
-#: pairs from which on a shift and a scatter of all are told
-FEWEST = 3
 
 
 @dataclass(frozen=True)
@@ -93,52 +92,6 @@ class Pair:
         return ("agrees" if abs(self.relative) <= self.band else "differs") + doubt
 
 
-@dataclass(frozen=True)
-class Common:
-    """Differences of pairs as a shift that is common to all and a scatter beside it, relative.
-
-    Attributes
-    ----------
-    off, reach : float
-        Shift, computed over measured, and how far it may be off, of 95 % (Student).
-    scatter, low, high : float
-        Standard deviation, and the ends of its interval of 95 % (chi-square).
-    """
-
-    count: int
-    off: float
-    reach: float
-    scatter: float
-    low: float
-    high: float
-
-    @classmethod
-    def of(cls, relative: Sequence[float]) -> Common | None:
-        """Estimates from differences of independent pairs; None from too few."""
-        count, free = len(relative), len(relative) - 1
-        if count < FEWEST:
-            return None
-        scatter = float(np.std(relative, ddof=1))
-        reach = float(stdtrit(free, 0.975)) * scatter / math.sqrt(count)
-        low, high = (scatter * math.sqrt(free / float(chdtri(free, p))) for p in (0.025, 0.975))
-        return cls(count, float(np.mean(relative)), reach, scatter, low, high)
-
-    @property
-    def sentence(self) -> str:
-        """Conclusion."""
-        told = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
-        left = (
-            f"{100 * self.scatter:.2g} % is left beside it ({self.count} sure pairs; with 95 %, "
-            f"{100 * self.low:.2g} to {100 * self.high:.2g} %)"
-        )
-        if abs(self.off) <= self.reach:
-            return f"No shift is common to all ({told}); {left}."
-        return (
-            f"Common to all is {told}, as a modulus, a density or a length that is not right makes it; "
-            f"{left}."
-        )
-
-
 @dataclass(frozen=True, repr=False, eq=False)
 class Correlation(Displayed):
     """Measured resonances beside computed modes.
@@ -158,6 +111,8 @@ class Correlation(Displayed):
     measured : Measured
     computed : Computed
         What was held against each other.
+    likeness : Likeness
+        Whether the resonances can be those of this part.
     of_points : tuple of str
         Sentences on modes that the measuring points do not tell apart.
     """
@@ -172,6 +127,7 @@ class Correlation(Displayed):
     mac: np.ndarray | None
     measured: Measured
     computed: Computed
+    likeness: Likeness
     of_points: tuple[str, ...] = ()
 
     @property
@@ -214,6 +170,7 @@ class Correlation(Displayed):
             "mesh": self.mesh,
             "rms": None if self.worst is None else self.rms,
             "common": self.common and vars(self.common),
+            "other_part": self.likeness.results,
             "pairs": [
                 self._damping(pair.number)
                 | {
@@ -252,11 +209,21 @@ def correlate(
     `tol`, by default a tenth of the tolerance of the scene.
     """
     tol = scene.ask.tolerance / 10 if tol is None else tol
-    computed = computed_up_to(scene, measured.modes[-1].frequency, tol, progress)
-    on_points = on_points_of(measured, computed)
-    peaks = peaks_of(measured, computed, SPRINGS)
-    found = align(*peaks, on_points.seen if on_points else None)
-    return _correlation(scene, measured, computed, found, on_points)
+    highest = measured.modes[-1].frequency
+    correlation = _beside(measured, computed_up_to(scene, highest, tol, progress))
+    if correlation.likeness.sentence or correlation.likeness.condition:
+        # of a part that is much softer than the scene more modes lie below
+        highest *= math.exp(max(FAR_SHIFTS))
+        before = correlation.computed
+        wider = _beside(measured, computed_up_to(scene, highest, tol, progress, before))
+        if wider.likeness.believed:
+            return wider
+    return correlation
+
+
+def placed_in(measured: Measured, computed: Computed) -> Measured:
+    """Measured resonances with their points in the frame of the scene."""
+    return measured.placed(computed.body.surface({}), not without_axis(computed.scene))
 
 
 def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
@@ -291,6 +258,15 @@ def peaks_of(
         for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]
     return mine, its
+
+
+def _beside(measured: Measured, computed: Computed) -> Correlation:
+    """Measured resonances and modes that were computed."""
+    measured = placed_in(measured, computed)
+    on_points = on_points_of(measured, computed)
+    peaks = peaks_of(measured, computed, SPRINGS)
+    found = alignment_of(*peaks, on_points.seen if on_points else None)
+    return _correlation(computed.scene, measured, computed, found, on_points)
 
 
 def _correlation(
@@ -328,6 +304,7 @@ def _correlation(
         mac,
         measured,
         computed,
+        Likeness.of(found),
         () if on_points is None else on_points.sentences(below),
     )
 
@@ -335,9 +312,13 @@ def _correlation(
 def _sentences(found: Correlation) -> Iterator[str]:
     paired = [pair for pair in found.pairs if pair.computed is not None]
     sure = [pair for pair in paired if pair.sure]
+    doubt = found.likeness.sentence
+    if doubt:
+        yield doubt
     yield (
         f"{len(paired)} of {len(found.pairs)} measured resonances have a mode, {len(sure)} of them "
-        f"with a probability of {100 * SURE:.0f} % and no other in question."
+        f"with a probability of {100 * SURE:.0f} % and no other in question"
+        f"{', if they are of this part' * bool(doubt)}."
     )
     worst = found.worst
     if worst is not None and worst.computed is not None and worst.relative is not None:
@@ -345,8 +326,10 @@ def _sentences(found: Correlation) -> Iterator[str]:
             f"Computed frequencies are {100 * found.rms:.2g} % rms from the measured ones, at most "
             f"{100 * worst.relative:+.2g} %, of {worst.computed.name}."
         )
-    if found.common is not None:
+    if found.common is not None and not doubt:
         yield found.common.sentence
+    if found.likeness.condition:
+        yield found.likeness.condition
     if worst is not None and all(pair.measured.width_hz is None for pair in paired):
         yield (
             "No resonance says how sure it is, so that none has a band: write for example "
@@ -364,6 +347,7 @@ def _sentences(found: Correlation) -> Iterator[str]:
             yield f"{pair.measured.frequency:.6g} Hz is {own}" + (
                 f", or with it {names}." if names else "."
             )
+    yield from found.measured.remarks
     yield from found.of_points
     if found.missed:
         named = ", ".join(f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in found.missed)

@@ -2,7 +2,9 @@
 
 A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
 a universal file has shapes as well, which a TOML file may join to its resonances, or frequency
-responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``.
+responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``. A TOML
+file with ``file = "tap.uff"`` in place of a list says where the points of one lie and of what unit it
+is.
 
     title = "Tap test, hung on two cords"
     uncertainty = "0.1 %"           # of all modes that say nothing else
@@ -11,28 +13,32 @@ responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``.
         { frequency = "121.2 kHz", uncertainty = "0.2 kHz", name = "torsion 1", shape = 2 },
     ]
     shapes = "tap.unv"              # shape 2: its second mode by frequency
+    points = { unit = "mm", axis = "x", origin = "-80 mm" }     # of its points
     noise = "5 %"                   # of a component of a shape
     damping = "0.1 %"               # ratio: how near two modes are heard as one
 """
 
 from __future__ import annotations
 
-import csv
 import os
-import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
+from solidgear.body.surface import Surface
 from solidgear.errors import SceneError, show
 from solidgear.scene.toml_file import parse
 from solidgear.scene.typed import Model
 from solidgear.scene.units import Frequency, quantity
 from solidgear.studies.loading import explained
 from solidgear.studies.measured.alignment import BANDWIDTH
+from solidgear.studies.measured.axis_labels import response
+from solidgear.studies.measured.csv_file import read_csv
+from solidgear.studies.measured.placement import Places, PointsTable
 from solidgear.studies.measured.responses import ResponseFit
 from solidgear.studies.measured.universal import ENDINGS, Responses, Shapes, read_universal
 
@@ -41,8 +47,6 @@ MOST = 2000
 #: standard deviation of a component of a shape of which nothing is said, relative to the root mean
 #: square of the shape: of careful modal tests
 NOISE = (0.05, "relative")
-#: head of a column: a word, and its unit in brackets
-_HEAD = re.compile(r"\s*(?P<word>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
 
 
 def _uncertainty(value: Any) -> tuple[float, str]:
@@ -74,6 +78,21 @@ def _share(value: tuple[float, str]) -> tuple[float, str]:
 Uncertainty = Annotated[
     tuple[float, str], BeforeValidator(_uncertainty), AfterValidator(_above_zero)
 ]
+
+
+def _response_unit(value: Any) -> tuple[float, int] | None:
+    """A motion over a force such as ``m/s^2/N``: SI units in one, and derivatives of displacement."""
+    if not value:
+        return None
+    known = response(value) if isinstance(value, str) else None
+    if known is None:
+        raise SceneError(
+            'must be a motion over a force, such as "m/s^2/N" or "g/N"', value=show(value)
+        )
+    return known
+
+
+ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_unit)]
 
 
 class MeasuredMode(Model):
@@ -118,6 +137,12 @@ class Measured(Model):
         Of all that say nothing else.
     shapes : str
         Universal file of shapes, beside this one.
+    file : str
+        Universal file whose resonances are taken in place of a list.
+    response_unit : (float, int) or None
+        Of the responses of that file, ``m/s^2/N``: SI units in one, and derivatives of displacement.
+    points : PointsTable
+        Where the points of that file lie in the scene.
     noise : (float, 'relative')
         Standard deviation of a component of a shape, relative to the root mean square of the shape.
     damping : (float, 'relative')
@@ -130,11 +155,15 @@ class Measured(Model):
     source: str = ""
     uncertainty: Uncertainty | None = None
     shapes: str = ""
+    file: str = ""
+    response_unit: ResponseUnit = None
+    points: PointsTable = PointsTable()
     noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
     damping: Annotated[Uncertainty, AfterValidator(_share)] = (BANDWIDTH / 2, "relative")
-    mode: tuple[MeasuredMode, ...]
+    mode: tuple[MeasuredMode, ...] = ()
     _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)
+    _remarks: tuple[str, ...] = PrivateAttr(())
 
     @property
     def on_points(self) -> Shapes | None:
@@ -146,8 +175,41 @@ class Measured(Model):
         """Responses that the resonances were found in; None for a list of them."""
         return self._responses
 
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences on how the file was read."""
+        return self._remarks
+
+    def placed(self, still: Surface, revolved: bool) -> Measured:
+        """The same with its points in the frame of a scene, on the surface of its body."""
+        shapes = self._on_points
+        if shapes is None:
+            return self
+        frame, away = Places(shapes.points, shapes.length, still, revolved).frame(self.points)
+        placing = frame.placing
+        out = self.unjudged(points=PointsTable())
+        out._on_points = shapes.placed(placing)
+        out._responses = self._responses and self._responses.placed(placing)
+        if not self.points.states(frame, shapes.length):
+            out._remarks = (
+                *self._remarks,
+                f"Measuring points were placed on the surface, within {max(1e3 * away, 0.01):.2g} mm, by "
+                f"{frame.table}.",
+            )
+        return out
+
     @model_validator(mode="after")
     def _ascending(self) -> Measured:
+        if self.file and (self.mode or self.shapes):
+            raise SceneError(
+                "give either the file of all resonances, or a list mode with shapes", path=("file",)
+            )
+        if self.file:
+            return self
+        if self.response_unit:
+            raise SceneError(
+                'responses of what file? write file = "tap.uff"', path=("response_unit",)
+            )
         if not 1 <= len(self.mode) <= MOST:
             raise SceneError(f"holds {len(self.mode)} resonances; give 1 to {MOST}", path=("mode",))
         for k, (one, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
@@ -180,24 +242,54 @@ def load_measured(path: str | os.PathLike) -> Measured:
         read = read_universal(where)
         if isinstance(read, Responses):
             return of_responses(read, where)
-        frequencies, shapes = read
-        return _of_modes([{"frequency": one} for one in frequencies], where, shapes)
+        return _of_shapes(*read, where)
     tables: Mapping[str, Any] | Responses
     if where.lower().endswith(".csv"):
         with explained(where, {}):
-            tables = _of_csv(Path(path))
+            tables = read_csv(Path(path), tuple(MeasuredMode.model_fields))
     else:
         tables = parse(where)
     if isinstance(tables, Responses):
         return of_responses(tables, where)
     try:
         out = Measured(**tables)
+        if out.file:
+            return _named(out, Path(where).parent)
         if out.shapes or any(one.shape for one in out.mode):
             out._on_points = _joined(out, Path(where).parent)
     except SceneError as error:
         # what is wrong in the file of shapes is told with that
         raise error if error.where else error.located(tables, where=where) from None
     return out
+
+
+def _named(table: Measured, folder: Path) -> Measured:
+    """Resonances of the universal file that a table names, with what the table says of them."""
+    where = folder / table.file
+    if not table.file.lower().endswith(ENDINGS):
+        raise SceneError(
+            "must be a universal file, .unv or .uff", path=("file",), value=show(table.file)
+        )
+    read = read_universal(where)
+    if isinstance(read, Responses):
+        if table.response_unit:
+            read = read.in_unit(*table.response_unit)
+        out = of_responses(read, str(where))
+    elif table.response_unit:
+        raise SceneError(f"{table.file} holds no responses", path=("response_unit",))
+    else:
+        out = _of_shapes(*read, str(where))
+    listed = out.mode
+    if table.uncertainty is not None:
+        listed = tuple(m.model_copy(update={"uncertainty": table.uncertainty}) for m in listed)
+    return out.unjudged(
+        title=table.title or out.title,
+        source=table.source,
+        noise=table.noise,
+        damping=table.damping,
+        points=table.points,
+        mode=listed,
+    )
 
 
 def _joined(measured: Measured, folder: Path) -> Shapes:
@@ -210,6 +302,11 @@ def _joined(measured: Measured, folder: Path) -> Shapes:
             f"{measured.shapes} holds responses: give it in place of this file", path=("shapes",)
         )
     _, found = read
+    if found is None:
+        raise SceneError(
+            f"{measured.shapes} gives no places of its points (dataset 15 or 2411)",
+            path=("shapes",),
+        )
     values = np.zeros((len(measured.mode), *found.values.shape[1:]), found.values.dtype)
     for k, one in enumerate(measured.mode):
         if one.shape is not None and one.shape > len(found.values):
@@ -224,16 +321,28 @@ def _joined(measured: Measured, folder: Path) -> Shapes:
         raise SceneError(
             "no mode names one of its shapes; write for example shape = 1", path=("shapes",)
         )
-    return Shapes(found.numbers, found.points, values)
+    return replace(found, values=values)
 
 
 def of_responses(responses: Responses, where: str = "responses") -> Measured:
     """Resonances that are found in responses of a file; refused where none stands out of the noise."""
     with explained(where, {}):
         found = ResponseFit.of(responses)
-    told = zip(found.fit.frequencies.tolist(), found.fit.deviations[0].tolist())
-    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in told]
-    return _of_modes(modes, where, found.shapes, found)
+    both = zip(found.fit.frequencies.tolist(), found.widths_hz.tolist())
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in both]
+    out = _of_modes(modes, where, found.shapes, found)
+    out._remarks = tuple(found.remarks)
+    return out
+
+
+def _of_shapes(frequencies: Sequence[float], shapes: Shapes | None, where: str) -> Measured:
+    """Resonances of a file of shapes."""
+    out = _of_modes([{"frequency": hertz} for hertz in frequencies], where, shapes)
+    if shapes is None:
+        out._remarks = (
+            "The file gives no places of its points (dataset 15 or 2411), so its shapes take no part.",
+        )
+    return out
 
 
 def _of_modes(
@@ -243,64 +352,4 @@ def _of_modes(
     with explained(where, {"mode": modes}):
         out = Measured(title=Path(where).stem, mode=modes)
     out._on_points, out._responses = shapes, fit
-    return out
-
-
-def _of_csv(path: Path) -> dict[str, Any] | Responses:
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SceneError(f"cannot be read ({error})") from None
-    if len(rows) < 2:
-        raise SceneError(
-            'holds no resonances; write a head such as "frequency [Hz]" and one a line'
-        )
-    if any(head.split("[")[0].strip() == "real" for head in rows[0]):
-        return _columns(rows)
-    heads = [_head(head) for head in rows[0]]
-    if "frequency" not in [word for word, _ in heads]:
-        raise SceneError('has no column "frequency [Hz]"')
-    return {"mode": [_entry(heads, row) for row in rows[1:]]}
-
-
-def _columns(rows: Sequence[Sequence[str]]) -> Responses:
-    """Responses of columns: the frequency, then real and imaginary parts in turn."""
-    words = [head.split("[")[0].strip() for head in rows[0]]
-    unit = _HEAD.fullmatch(rows[0][0])
-    told = words == ["frequency"] + ["real", "imaginary"] * (len(words) // 2)
-    if not told or unit is None or not unit["unit"]:
-        raise SceneError(
-            'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
-            "pairs of real and imaginary as there are responses"
-        )
-    try:
-        numbers = np.array(rows[1:], float)
-    except ValueError:
-        raise SceneError("holds a line that is not all numbers") from None
-    hertz = numbers[:, 0] * quantity(f"1 {unit['unit']}", "frequency")
-    return Responses(hertz, (numbers[:, 1::2] + 1j * numbers[:, 2::2]).T)
-
-
-def _head(text: str) -> tuple[str, str]:
-    """Word and unit of a head."""
-    found = _HEAD.fullmatch(text)
-    known = tuple(MeasuredMode.model_fields)
-    if found is None or found["word"] not in known:
-        raise SceneError(
-            f"column {show(text)} is unknown; there are {', '.join(known)}, with a unit as in "
-            '"frequency [kHz]"'
-        )
-    if found["word"] in ("frequency", "uncertainty") and not found["unit"]:
-        raise SceneError(f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"')
-    return found["word"], found["unit"] or ""
-
-
-def _entry(heads: Sequence[tuple[str, str]], row: Sequence[str]) -> dict[str, Any]:
-    out: dict[str, Any] = {}
-    for (word, unit), cell in zip(heads, map(str.strip, row)):
-        if cell and unit:
-            out[word] = f"{cell} {unit}"
-        elif cell:
-            out[word] = int(cell) if cell.isdecimal() else cell
     return out

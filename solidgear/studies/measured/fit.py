@@ -12,10 +12,10 @@ from scipy.optimize import lsq_linear
 from scipy.special import stdtrit
 
 from solidgear.errors import SolidgearError
-from solidgear.studies.measured.alignment import align
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.correlate import DEVIATIONS, on_points_of, peaks_of
 from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.same_part import Likeness, alignment_of
 from solidgear.studies.measured.varied import Varied
 
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
@@ -51,7 +51,9 @@ class Fit:
         self.low = np.array([one.low for one in varied]) - x
         self.high = np.array([one.high for one in varied]) - x
         on_points = on_points_of(measured, computed)
-        found = align(*peaks_of(measured, computed), on_points.seen if on_points else None)
+        seen = on_points.seen if on_points else None
+        found = alignment_of(*peaks_of(measured, computed), seen)
+        self.likeness = Likeness.of(found)
         likely = found.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
         self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]

@@ -12,6 +12,7 @@ import numpy as np
 from solidgear.display import Displayed
 from solidgear.scene.paths import Tables
 from solidgear.studies.measured.correlate import SURE
+from solidgear.studies.measured.same_part import Likeness
 
 #: relative; at a bound
 EDGE = 1e-6
@@ -114,6 +115,10 @@ class Identification(Displayed):
     predicted : tuple of Predicted
     tables : mapping
         Of the scene file with the values put in.
+    likeness : Likeness
+        Whether the resonances can be those of this part.
+    remarks : tuple of str
+        On how the file of resonances was read.
     alike : tuple of tuple of float
         Other values of all entries, SI, that fit as well.
     """
@@ -131,6 +136,8 @@ class Identification(Displayed):
     predicted: tuple[Predicted, ...]
     mesh: str
     tables: Tables
+    likeness: Likeness
+    remarks: tuple[str, ...] = ()
     alike: tuple[tuple[float, ...], ...] = ()
 
     def __getitem__(self, path: str) -> Identified:
@@ -152,6 +159,7 @@ class Identification(Displayed):
             "entries": [vars(one) for one in self.entries],
             "fit_alike": [list(one) for one in self.alike],
             "correlations": self.correlations.tolist(),
+            "other_part": self.likeness.results,
             "fitted": [vars(one) for one in self.fitted],
             "unpaired_hz": list(self.unpaired),
             "rms": self.rms,
@@ -162,6 +170,8 @@ class Identification(Displayed):
 
 
 def _sentences(found: Identification) -> Iterator[str]:
+    if found.likeness.sentence:
+        yield found.likeness.sentence
     for one in found.entries:
         yield (
             f"{one.path} = {one.value:.6g} (SI), standard deviation {100 * one.deviation:.2g} %; "
@@ -195,6 +205,7 @@ def _sentences(found: Identification) -> Iterator[str]:
                 "So many left out may hide values that fit better: begin nearer, lower --tol, or "
                 "measure shapes."
             )
+    yield from found.remarks
     alike = np.abs(found.correlations - np.eye(len(found.entries)))
     if len(found.entries) > 1 and alike.max() > SURE:
         i, j = np.unravel_index(int(alike.argmax()), alike.shape)

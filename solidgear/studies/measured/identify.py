@@ -19,7 +19,7 @@ from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
-from solidgear.studies.measured.correlate import DEVIATIONS, SURE
+from solidgear.studies.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.studies.measured.data import Measured
 from solidgear.studies.measured.fit import ALIKE, SAME, End, Fit, best_of
 from solidgear.studies.measured.identified import Fitted, Identification, Identified, Predicted
@@ -150,6 +150,7 @@ class _Study:
             scene = self.scene_at(self.x)
             if computed is None:
                 computed = computed_up_to(scene, highest, self.tol, self.progress)
+                self.measured = placed_in(self.measured, computed)
             else:
                 self.progress(f"round {turn + 1}")
                 computed = computed_like(computed, scene)
@@ -250,6 +251,8 @@ class _Study:
             self._predicted(predict, fit, computed) if predict else (),
             computed.mesh,
             self.tables_at(self.x),
+            fit.likeness,
+            self.measured.remarks,
             alike,
         )
 

@@ -42,6 +42,8 @@ DAMPED = 0.1
 DEGREE, ROUNDS, WEIGHING, ENDS = 6, 25, 3, 1e-4
 #: power of a mode over that of the noise of as many unknowns from which on it is one
 SIGNIFICANT = 12.0
+#: standard deviation of a pole along the axis over its half width from which on no peak is located
+LOCATED = 0.5
 #: half widths (of the wider) within which a second pole must stand out more, and how much more
 NEAR, STEEP = 1.25, 5
 #: lines over which noise is alike
@@ -147,13 +149,14 @@ class _Band:
             apart = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
             stronger = np.where(power > power[:, None], apart, np.inf).min(axis=1)
             asked = SIGNIFICANT * np.maximum(1.0, NEAR / np.maximum(stronger, 1e-3)) ** STEEP
-            kept = mode & ((power > asked) | ~inside)
+            located = covariance[:, 1, 1] < (LOCATED * width) ** 2
+            kept = mode & ((power > asked) & located | ~inside)
             if kept.all():
                 at = np.flatnonzero(inside)
                 scaled = residues * self.scale[:, None]
                 return [(complex(poles[k]), covariance[k], scaled[:, k]) for k in at]
             # the weakest goes, and the others are fitted without it
-            worst = int(np.where(kept, np.inf, np.where(mode, power, -1.0)).argmin())
+            worst = int(np.where(kept, np.inf, np.where(mode & located, power, -1.0)).argmin())
             poles = np.delete(poles, worst)
         return []
 

@@ -100,7 +100,7 @@ def overlay(found: Correlation) -> Overlay | None:
     if fitted is None:
         return None
     responses, derivatives = fitted.responses, fitted.responses.derivatives
-    if not responses.places or derivatives is None:
+    if not responses.places or not responses.scaled or derivatives is None:
         return None
     ends = list(zip(responses.points, responses.references))
     kept = [

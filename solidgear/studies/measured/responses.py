@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
 from solidgear.errors import SolidgearError
+from solidgear.meshing.placing import Placing
 from solidgear.studies.measured.modal_fit import ModalFit, fit_modes
 from solidgear.studies.measured.universal import Responses, Shapes
+
+#: standard deviation to which a frequency repeats, relative, whatever the noise: the modulus of steel falls
+#: by 0.03 % a kelvin (EN 13480-3: 212 GPa at 20 degrees, 207 at 100), so that 1.3 K are as much, as are 0.4 g
+#: of accelerometer or cord that move with a kilogram
+REPEATS = 2e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +31,8 @@ class ResponseFit:
     shapes : Shapes or None
         None where the file gives no places of its points.
     """
+
+    repeats: ClassVar[float] = REPEATS
 
     responses: Responses
     fit: ModalFit
@@ -38,6 +48,27 @@ class ResponseFit:
         missing = 2 - (2 if responses.derivatives is None else responses.derivatives)
         fit = fit_modes(hertz, responses.values * (2j * np.pi * hertz) ** missing)
         return cls(responses, fit, _shapes(responses, fit) if responses.places else None)
+
+    @property
+    def widths_hz(self) -> np.ndarray:
+        """(n,) standard deviations of frequencies, of noise and of what repeats no better."""
+        return np.hypot(self.fit.deviations[0], self.repeats * self.fit.frequencies)
+
+    def placed(self, placing: Placing) -> ResponseFit:
+        """The same in the frame of a scene."""
+        shapes = self.shapes and self.shapes.placed(placing)
+        return replace(self, responses=self.responses.placed(placing), shapes=shapes)
+
+    @property
+    def remarks(self) -> Iterator[str]:
+        """Sentences on what of the file was read otherwise than it may be meant, and what it lacks."""
+        yield from self.responses.remarks
+        if self.responses.places and not self.responses.scaled:
+            yield (
+                "The file does not say the unit of its responses (dataset 164, or labels of axes), so "
+                "they are not laid over computed ones; a TOML file with file = and "
+                'response_unit = "m/s^2/N" says it.'
+            )
 
 
 def moving(responses: Responses) -> list[tuple[int, tuple[int, int]]]:
@@ -68,4 +99,4 @@ def _shapes(responses: Responses, fit: ModalFit) -> Shapes | None:
         along = abs(direction) - 1
         values[:, numbers.index(number), along] = np.sign(direction) * fit.residues[:, k]
     places = np.array([responses.places[number] for number in numbers])
-    return Shapes(np.array(numbers), places, values)
+    return Shapes(np.array(numbers), places, values, responses.length)

@@ -11,20 +11,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from solidgear.body import Body
-from solidgear.body.surface import Surface
-from solidgear.errors import SolidgearError
 from solidgear.solve.modes import Mode
 from solidgear.studies.measured.alignment import Seen
 from solidgear.studies.measured.computed import Computed
+from solidgear.studies.measured.placement import nearest, refuse_off
 from solidgear.studies.measured.universal import Shapes
 
-#: largest distance of a point from the surface, as a share of the largest radius
-OFF = 0.05
-#: nearest points of the surface whose triangles are tried
-NEAR = 4
 #: MAC of two computed modes on the measuring points from which on these do not tell them apart
 ALIKE = 0.1
 #: pairs of modes that are named which the measuring points do not tell apart
@@ -40,7 +34,8 @@ class SurfacePoints:
 
     def __init__(self, body: Body, numbers: Sequence[int], points: np.ndarray):
         self.body, self.still = body, body.surface({})
-        self.corners, self.weights = _places(self.still, numbers, points)
+        self.corners, self.weights, away = nearest(self.still, points)
+        refuse_off(self.still, numbers, points, away)
 
     def of(self, vector: Mapping[int, np.ndarray]) -> np.ndarray:
         """(p, 3) displacements by unknowns of blocks."""
@@ -172,38 +167,3 @@ def _like(one: np.ndarray, other: np.ndarray) -> float:
     """MAC of two spans, of a shape of either with all of the other: the larger of both."""
     least = min(one.shape[1], other.shape[1])
     return float(np.sum((one.T @ other) ** 2)) / least if least else 0.0
-
-
-def _places(
-    still: Surface, numbers: Sequence[int], points: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the triangle that is nearest to every point, and their weights."""
-    faces = still.faces
-    triangles = np.concatenate(
-        [np.reshape(part, (-1, 3)) for part in (faces[:, :3], faces[:, [0, 2, 3]], still.triangles)]
-    )
-    near = cKDTree(still.points).query(points, NEAR)[1]
-    radius = float(np.hypot(still.points[:, 0], still.points[:, 2]).max())
-    corners, weights = [], []
-    for number, point, around in zip(numbers, points, near):
-        tried = triangles[np.any(np.isin(triangles, around), axis=1)]
-        weight = np.array([_weights(still.points[one], point) for one in tried])
-        there = np.einsum("tc,tcx->tx", weight, still.points[tried])
-        away = np.linalg.norm(there - point, axis=1)
-        best = int(away.argmin())
-        if away[best] > OFF * radius:
-            raise SolidgearError(
-                f"measuring point {number} at x, y, z = {', '.join(f'{x:.6g}' for x in point)} m is "
-                f"{away[best]:.3g} m off the surface, more than {100 * OFF:.0f} % of the largest "
-                "radius; points are told in the scene's frame, y along the axis"
-            )
-        corners.append(tried[best])
-        weights.append(weight[best])
-    return np.array(corners), np.array(weights)
-
-
-def _weights(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Shares of a triangle's corners in the point of it that is near another."""
-    sides = (corners[1:] - corners[0]).T
-    s, t = np.clip(np.linalg.lstsq(sides, point - corners[0], rcond=None)[0], 0.0, 1.0)
-    return np.array([max(1 - s - t, 0.0), s, t]) / (max(1 - s - t, 0.0) + s + t)

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from solidgear.errors import SceneError, SolidgearError
+from solidgear.meshing.placing import Placing
 from solidgear.scene.universal_units import units_of
 from solidgear.studies.loading import explained
+from solidgear.studies.measured.axis_labels import force, frequency, motion
 
 #: endings of their names
 ENDINGS = (".unv", ".uff")
 #: dataset 58's kinds of data that carry a length (displacement, velocity, acceleration) or a force
 LENGTHS, FORCES = (8, 11, 12), (9, 13)
+#: and one of which it says nothing
+UNKNOWN = 0
 #: its function that is a frequency response
 RESPONSE = 4
 #: dataset 55's analyses: normal modes; complex ones
@@ -35,15 +40,26 @@ class Shapes:
     numbers : (p,) ndarray of int
         Of the points in the file.
     points : (p, 3) ndarray
-        x, y, z in the scene's frame, m.
+        x, y, z, m.
     values : (n, p, 3) ndarray
         A shape for every resonance, real or complex, to a factor; what no shape moves was not
         measured.
+    length : float or None
+        m that a unit of the file was taken for; None where nothing tells it, and places are in units
+        of the file.
     """
 
     numbers: np.ndarray
     points: np.ndarray
     values: np.ndarray
+    length: float | None = 1.0
+
+    def placed(self, placing: Placing) -> Shapes:
+        """The same in the frame of a scene."""
+        points = placing.of(self.points.T / (self.length or 1.0)).T
+        return replace(
+            self, points=points, values=self.values @ np.array(placing.turn).T, length=1.0
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +71,7 @@ class Responses:
     frequencies : (k,) ndarray
         Hz.
     values : (n, k) ndarray of complex
-        SI.
+        SI, or to a factor where nothing tells their unit.
     points, references : tuple of (int, int)
         Number and direction of the point of each, and of where it was driven: 1, 2, 3 for x, y, z,
         negative backwards; empty where nothing tells them.
@@ -64,6 +80,12 @@ class Responses:
     derivatives : int or None
         Times that the displacement is differentiated in what is over a force: 2 for an
         acceleration; None where nothing tells it.
+    length : float or None
+        m that a unit of the places was taken for, as of shapes.
+    scaled : bool
+        False where nothing tells the unit of the values.
+    remarks : tuple of str
+        Sentences on what of the file was read otherwise than it may be meant.
     """
 
     frequencies: np.ndarray
@@ -72,17 +94,52 @@ class Responses:
     references: tuple[tuple[int, int], ...] = ()
     places: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
     derivatives: int | None = None
+    length: float | None = 1.0
+    scaled: bool = True
+    remarks: tuple[str, ...] = ()
+
+    def in_unit(self, size: float, derivatives: int) -> Responses:
+        """The same with values of a unit of so many in SI, whatever the file says of it."""
+        if not self.scaled:
+            return replace(
+                self, values=size * self.values, derivatives=derivatives, scaled=True, remarks=()
+            )
+        return self
+
+    def placed(self, placing: Placing) -> Responses:
+        """The same in the frame of a scene."""
+        numbers = list(self.places)
+        points = np.reshape([self.places[number] for number in numbers], (-1, 3))
+        moved = placing.of(points.T / (self.length or 1.0)).T.tolist()
+        turn = np.array(placing.turn)
+
+        def turned(end: tuple[int, int]) -> tuple[int, int]:
+            number, way = end
+            if not 1 <= abs(way) <= 3:
+                return end
+            along = np.sign(way) * turn[:, abs(way) - 1]
+            axis = int(np.abs(along).argmax())
+            return number, int(np.sign(along[axis])) * (axis + 1)
+
+        return replace(
+            self,
+            points=tuple(map(turned, self.points)),
+            references=tuple(map(turned, self.references)),
+            places={number: tuple(place) for number, place in zip(numbers, moved)},
+            length=1.0,
+        )
 
 
-def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes] | Responses:
+def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes | None] | Responses:
     """Frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset 55), or its
-    frequency responses (dataset 58) where it has no modes.
+    frequency responses (dataset 58) where it has no modes. Where it gives no places of its points,
+    there are no shapes.
 
     Raises
     ------
     SceneError
-        For a file cut short, without units, with neither, with modes without points, and with
-        responses over more than one axis.
+        For a file cut short, with neither, with places of some points alone, and with responses over
+        more than one axis.
     """
     try:
         from pyuff import UFF
@@ -107,7 +164,7 @@ def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes] | Resp
 
 def _shapes(
     sets: Sequence[Mapping[str, Any]], modes: Sequence[Mapping[str, Any]]
-) -> tuple[list[float], Shapes]:
+) -> tuple[list[float], Shapes | None]:
     places = _points(sets)
     numbers = modes[0]["node_nums"]
     for one in modes:
@@ -117,7 +174,7 @@ def _shapes(
         if not np.array_equal(one["node_nums"], numbers):
             raise SceneError(f"has other points in mode {one['mode_n']} than in the first")
     missing = [int(k) for k in numbers if int(k) not in places]
-    if missing:
+    if missing and places:
         raise SceneError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
     hertz = [_hertz(one) for one in modes]
     order = np.argsort(hertz, kind="stable")
@@ -126,12 +183,14 @@ def _shapes(
     )
     if not np.all(np.isfinite(values)) or not np.all(np.any(values, axis=(1, 2))):
         raise SceneError("has a mode shape that is zero or no number")
+    hertz = [hertz[k] for k in order]
+    if not places:
+        return hertz, None
     points = np.array([places[int(k)] for k in numbers])
-    return [hertz[k] for k in order], Shapes(np.asarray(numbers, int), points, values)
+    return hertz, Shapes(np.asarray(numbers, int), points, values, _length(sets))
 
 
 def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Any]]) -> Responses:
-    length, force = _units(sets)
     axis = found[0]["x"]
     kinds = found[0]["ordinate_spec_data_type"], found[0]["orddenom_spec_data_type"]
     for k, one in enumerate(found, start=1):
@@ -143,21 +202,69 @@ def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, A
             raise SceneError(f"has other frequencies in response {k} than in the first")
         if (one["ordinate_spec_data_type"], one["orddenom_spec_data_type"]) != kinds:
             raise SceneError(f"has another kind of data in response {k} than in the first")
-
-    def unit(kind: int) -> float:
-        if kind in LENGTHS:
-            return length
-        return force if kind in FORCES else 1.0
-
-    told = kinds[0] in LENGTHS and kinds[1] in FORCES
+    labels = [_labels(one) for one in found]
+    hertz = frequency(labels[0][0]) or 1.0
+    derivatives = LENGTHS.index(kinds[0]) if kinds[0] in LENGTHS and kinds[1] in FORCES else None
+    if kinds == (UNKNOWN, UNKNOWN) and (shown := motion(labels[0][1])):
+        derivatives = shown[1]
+    scales = [_scale(sets, kinds, words) for words in labels]
+    scaled = derivatives is not None and None not in scales
+    remarks = list(_remarks(labels, scales))
+    if hertz != 1:
+        remarks.append(f"Frequencies are in {labels[0][0]}, as the label of their axis says.")
     return Responses(
-        axis,
-        np.array([one["data"] for one in found], complex) * (unit(kinds[0]) / unit(kinds[1])),
+        np.asarray(axis) * hertz,
+        np.array(
+            [np.multiply(one["data"], scale or 1.0) for one, scale in zip(found, scales)], complex
+        ),
         tuple((one["rsp_node"], one["rsp_dir"]) for one in found),
         tuple((one["ref_node"], one["ref_dir"]) for one in found),
-        _points(sets) if any(one["type"] in (15, 2411) for one in sets) else {},
-        LENGTHS.index(kinds[0]) if told else None,
+        _points(sets),
+        derivatives,
+        _length(sets),
+        scaled,
+        tuple(remarks),
     )
+
+
+def _labels(one: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Units on the axes of a response: of the frequency, the motion and the force."""
+    axes = ("abscissa", "ordinate", "orddenom")
+    words = (str(one.get(f"{axis}_axis_units_lab") or "").strip() for axis in axes)
+    return tuple("" if word.upper() == "NONE" else word for word in words)
+
+
+def _labelled(labels: tuple[str, str, str]) -> float | None:
+    """SI units in one of a response, by the labels of its axes."""
+    over, under = motion(labels[1]), force(labels[2])
+    return None if over is None or under is None else over[0] / under
+
+
+def _scale(
+    sets: Sequence[Mapping[str, Any]], kinds: tuple[int, int], labels: tuple[str, str, str]
+) -> float | None:
+    """SI units in one of a response: by dataset 164, and by the labels of its axes without one."""
+    units = _units(sets)
+    if units is None:
+        return _labelled(labels)
+    length, newton = units
+    factors = dict.fromkeys(LENGTHS, length) | dict.fromkeys(FORCES, newton)
+    return factors.get(kinds[0], 1.0) / factors.get(kinds[1], 1.0)
+
+
+def _remarks(
+    labels: Sequence[tuple[str, str, str]], scales: Sequence[float | None]
+) -> Iterator[str]:
+    """Labels of axes that contradict dataset 164."""
+    for words, scale in zip(labels, scales):
+        shown = _labelled(words)
+        if shown is None or scale is None or math.isclose(scale, shown, rel_tol=1e-3):
+            continue
+        yield (
+            f"Responses are scaled by dataset 164, {scale:.4g} in SI; the labels of their axes say "
+            f"{words[1]} over {words[2]}, {shown:.4g}: one of both is wrong."
+        )
+        return
 
 
 def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
@@ -178,21 +285,27 @@ def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
     return found if isinstance(found, list) else [found]
 
 
-def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float]:
-    """Units of length and force, m and N."""
+def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float] | None:
+    """Units of length and force, m and N; None where dataset 164 is not there."""
     found = [one for one in sets if one["type"] == 164]
     if not found:
-        raise SceneError("does not tell its units (dataset 164)")
+        return None
     one = found[0]
     return units_of(one["units_code"], one["length"], one["force"])
 
 
+def _length(sets: Sequence[Mapping[str, Any]]) -> float | None:
+    """The unit of length, m."""
+    units = _units(sets)
+    return None if units is None else units[0]
+
+
 def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, float]]:
-    """Number of a point -> x, y, z, m."""
+    """Number of a point -> x, y, z, m, or in units of the file where it does not tell them; empty
+    where it gives no places.
+    """
     nodes = [one for one in sets if one["type"] in (15, 2411)]
-    if not nodes:
-        raise SceneError("gives no places of its points (dataset 15 or 2411)")
-    length, _ = _units(sets)
+    length = _length(sets) or 1.0
     systems = {int(s) for one in nodes for s in (*one["def_cs"], *one["disp_cs"])}
     if len(systems) > 1:
         raise SceneError("has points in more than one coordinate system; write x, y, z of all")
