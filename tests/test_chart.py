@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from copy import deepcopy
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -82,7 +82,7 @@ def marks(panel, shape):
 def test_what_is_written_is_what_is_read(raced, tmp_path):
     write_rows(raced, tmp_path)
     again = read_race(tmp_path)
-    assert [asdict(r) for r in again.rows] == [asdict(r) for r in raced.rows]
+    assert again.rows == raced.rows
     assert again == raced
     machine = json.loads((tmp_path / MACHINE).read_text())
     assert machine["environment"]["numpy"] and machine["environment"]["cores"]
