@@ -379,6 +379,7 @@ def test_the_shipped_scene():
     assert [row["edge"] for row in scene.as_dict()["blends"]] == ["root", "rim"]
 
 
+@pytest.mark.long
 def test_check_tells_of_the_mesh_that_holds_a_chamfer():
     """Of tetrahedra, and not of the hexahedra whose blocks the end of a seat would fall into: that was
     no matter of memory, and the solid asked for by default is meshed without them.

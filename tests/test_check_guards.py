@@ -527,7 +527,13 @@ def matching(records, case: Case) -> list[dict]:
     ]
 
 
-@pytest.mark.parametrize("name", CASES)
+#: on a pinion of many cells what others tell on plain shafts, or the same of another beam
+DEAR = ("Euler beam, pinion", "lumped pinion", "seats as in the scene")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long if n in DEAR else ()) for n in CASES]
+)
 def test_guard(name, monkeypatch):
     case = CASES[name]
     # every other guard is taken out for speed; a guard never needs another
@@ -756,6 +762,7 @@ def test_two_waves_in_closed_form_are_never_far_above_the_solution(here):
     assert probe.ovalising[2] / 2 < models._two_waves(probe) < models.SUSPECT * probe.ovalising[2]
 
 
+@pytest.mark.long
 def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked(monkeypatch):
     scene = head(1.6)
     plain, soft = (
@@ -771,7 +778,7 @@ def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked(m
 @pytest.mark.parametrize(
     ("name", "solids"),
     [
-        ("pinion_keyed", {"corrected", "solid"}),
+        pytest.param("pinion_keyed", {"corrected", "solid"}, marks=pytest.mark.long),
         ("pinion_toothed", {"sector", "solid"}),
     ],
 )

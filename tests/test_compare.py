@@ -627,6 +627,7 @@ def test_no_sentence_calls_a_model_by_its_key(lumped):
     assert any("Timoshenko beam" in s for s in told)
 
 
+@pytest.mark.long
 def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
     """Its stiffness is that of the solid: what beams leave out at a shoulder is in it."""
     said = {}

@@ -59,7 +59,18 @@ def mesh_of(scene, refinement=0.6, around=16, seats=True):
     return wanted, meshed(scene, tetrahedra_plan(scene, wanted, **sizes), refinement, True)
 
 
-@pytest.mark.parametrize("feature", [KEY, KEY.with_changes(ends="square"), FLAT, OBLIQUE], ids=str)
+@pytest.mark.parametrize(
+    "feature",
+    [
+        KEY,
+        FLAT,
+        *(
+            pytest.param(f, marks=pytest.mark.long)
+            for f in (KEY.with_changes(ends="square"), OBLIQUE)
+        ),
+    ],
+    ids=str,
+)
 def test_volume_against_closed_form(feature):
     """OCC's own volume to 1e-5, the mesh to what its curved elements leave of an arc."""
     scene = shaft(feature)
@@ -324,6 +335,7 @@ def test_bearings_of_catalogue_data_settle_on_the_plain_part(tmp_path):
         assert np.array_equal(a.stiffness, b.stiffness)
 
 
+@pytest.mark.long
 def test_a_sweep_over_a_shaft_with_features_ends_well(tmp_path, run):
     """Rows are written, cautions are those of the plain part, and the exit code is that of success."""
     file = tmp_path / "keyed.toml"

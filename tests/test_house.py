@@ -88,6 +88,12 @@ def arrows():
 FACES = {"__init__", "__main__", "cli"}
 
 
+@functools.cache
+def tree_of(path):
+    """A file as Python reads it, once for all that look at it."""
+    return ast.parse(path.read_text())
+
+
 def test_a_room_imports_only_what_lies_below():
     wrong = {
         name: {there: str(p) for there, p in arrows().get(name, {}).items() if there not in below}
@@ -117,7 +123,7 @@ def test_a_file_is_one_thing():
 
 
 def test_docstrings_begin_with_a_noun_or_a_verb():
-    trees = {p: ast.parse(p.read_text()) for p in PACKAGE.rglob("*.py")}
+    trees = {p: tree_of(p) for p in PACKAGE.rglob("*.py")}
     found = {f"{p}:{d.lineno}" for p, t in trees.items() for d in documented(t) if asks(d)}
     assert found == set()
 
@@ -135,9 +141,8 @@ def unexplained(path):
     """Imports inside functions without a comment on their line or above their run: of the command
     line all, elsewhere those of this package.
     """
-    text = path.read_text()
-    lines = [line.strip() for line in text.splitlines()]
-    functions = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.FunctionDef)]
+    lines = [line.strip() for line in path.read_text().splitlines()]
+    functions = [n for n in ast.walk(tree_of(path)) if isinstance(n, ast.FunctionDef)]
     late = [
         node
         for function in functions

@@ -80,7 +80,10 @@ def whole(found):
 
 @pytest.mark.parametrize(
     "name, quantity, count",
-    [("pinion_overhung", "axial 1", 2), ("shaft_stepped", "C_zz", 2)],
+    [
+        ("pinion_overhung", "axial 1", 2),
+        pytest.param("shaft_stepped", "C_zz", 2, marks=pytest.mark.long),
+    ],
 )
 def test_cells_cut_at_a_place_take_its_share_of_the_bar_away(scenes, name, quantity, count):
     scene = scenes[name]
