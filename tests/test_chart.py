@@ -179,6 +179,7 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
     assert heights == [row.errors["C_zz"], row.like_for_like["C_zz"]]
 
 
+@pytest.mark.long
 def test_the_automatic_choice_is_charted_at_its_largest_system():
     # the finest mesh is solved for bending and last for torsion alone, which has a fifth of it
     scene = sg.load("geometry/shaft_stepped.toml")

@@ -826,6 +826,7 @@ def test_check_says_in_a_dozen_lines_what_it_says_of_an_ordinary_shaft():
     assert "mesh looked at" not in "".join(printed)  # the proof of a sound mesh is in --json
 
 
+@pytest.mark.long
 def test_the_light_solid_gets_a_second_mesh_only_where_the_first_leaves_a_beam_open(monkeypatch):
     solved = []
     whole = probe_module.study

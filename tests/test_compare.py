@@ -329,6 +329,7 @@ def test_unknown_models_are_refused_before_any_work(overhung, models, word):
         compare(overhung, models, progress=lambda text: pytest.fail(text))
 
 
+@pytest.mark.long
 def test_settings_reach_the_builder_and_its_relatives(overhung):
     found = compare(
         overhung, ("harmonic",), settings={"harmonic": {"order": 4, "layers": 0}}

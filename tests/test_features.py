@@ -183,6 +183,7 @@ def test_a_cross_hole_and_a_bore():
     assert body.mesh["volume"] < math.pi * (0.03**2 - 0.01**2) * 0.2
 
 
+@pytest.mark.long
 def test_a_hole_beside_the_axis_takes_its_mass_where_it_is():
     """All moments of what an oblique hole beside the axis takes, through a bore, against points that
     know nothing of meshes: some 1e-3 of it, and elements of eight to a circle 4e-3.

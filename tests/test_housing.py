@@ -265,6 +265,7 @@ def test_a_sweep_over_the_housing(shaft, tmp_path):
         sweep(shaft, ["housing.kthz=1e6,2e6"], tmp_path / "b.csv", fidelity="timoshenko")
 
 
+@pytest.mark.long
 def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
     """Its entries, a coupling that the file leaves out, all of it together, and the box beside it."""
     out = tmp_path / "rows.csv"

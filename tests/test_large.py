@@ -130,6 +130,7 @@ def test_files_of_a_factor_go_with_it():
     assert not folder.exists()
 
 
+@pytest.mark.long
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
     def sizes(scene):

@@ -248,6 +248,7 @@ def test_a_patch_is_one_pitch_of_the_seat(train):
     assert patch.axes[:, 1] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)  # from z towards x
 
 
+@pytest.mark.long
 def test_two_gears_of_a_shaft_squeeze_it_together():
     """A disc between both gears gives at each by the push on the other, as one solve of the whole
     mesh of the harmonic says: turning the push of one by t turns its n waves by n t.

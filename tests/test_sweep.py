@@ -329,6 +329,7 @@ def test_the_command(finished, tmp_path):
     assert "36 of them there before" in again.stdout
 
 
+@pytest.mark.long
 def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
     appended = runner.RowFile.append
 

@@ -268,6 +268,7 @@ def test_command_line(tmp_path):
     assert run(scene, "--picture", tmp_path / "error.gif").exit_code != 0
 
 
+@pytest.mark.long
 def test_a_study_keeps_where_its_widest_bar_sits(scenes):
     scene = scenes["shaft_stepped"]
     solution = study(scene, "harmonic", share=2.0, evidence=False)

@@ -12,8 +12,8 @@ from solidgear.machine.memory import resident_mb
 
 
 def processor_seconds() -> float:
-    """What this process and those it has waited for have taken of processors, s: the same on a busy
-    machine as on an idle one.
+    """Processor time of this process and of those it has waited for, s: the same on a busy machine as
+    on an idle one.
     """
     return sum(os.times()[:4])
 

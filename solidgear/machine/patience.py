@@ -1,4 +1,4 @@
-"""How long another process is waited for: by what it takes of the processor, while it works.
+"""Patience with another process: counted by what it takes of the processor, while it works.
 
 A clock on the wall would end on a busy machine what it allows on an idle one.
 """
@@ -74,7 +74,7 @@ class Patience:
 
 
 def _processor_seconds(pid: int) -> float | None:
-    """What a process and the children it has waited for have taken; None where that is not shown."""
+    """Taken by a process and by the children it has waited for; None where that is not shown."""
     told = text_of(Path(f"/proc/{pid}/stat")).rpartition(")")[2].split()
     if len(told) < 15:
         return None
