@@ -3,8 +3,10 @@ Ctrl-C is heard.
 """
 
 import ctypes
+import functools
 import gc
 import hashlib
+import json
 import os
 import pickle
 import signal
@@ -32,8 +34,26 @@ def pytest_collection_finish():
     gc.enable()
 
 
-def pytest_collection_modifyitems(items):
-    """A test is `long` or `slow`: otherwise `-m long`, which CI runs, would run slow ones as well."""
+#: cases of wide grids, each of a test that has others in the default run
+LONG_CASES = Path(__file__).with_name("long_cases.txt")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """A test is `long` or `slow`: otherwise `-m long`, which CI runs, would run slow ones as well.
+    Of a test with long cases one is in the default run.
+    """
+    long = set(LONG_CASES.read_text(encoding="utf-8").splitlines()[1:])
+    left, marked = set(), set()
+    for item in items:
+        test = item.nodeid.partition("[")[0]
+        if item.nodeid in long:
+            item.add_marker(pytest.mark.long)
+            marked.add(test)
+        elif not any(map(item.get_closest_marker, ("long", "slow"))):
+            left.add(test)
+    if marked - left and not any("::" in argument for argument in config.args):
+        raise pytest.UsageError(f"{sorted(marked - left)}: no case is left for the default run")
     for item in items:
         if item.get_closest_marker("long") and item.get_closest_marker("slow"):
             raise pytest.UsageError(f"{item.nodeid} is marked long and slow; one of them is right")
@@ -95,19 +115,26 @@ def made_up_charts():
     return drawn_charts(fixture_results())
 
 
-@pytest.fixture(scope="module", autouse=True)
+#: light solids that are kept
+KEPT = 24
+
+
+@pytest.fixture(scope="session", autouse=True)
 def solved_once():
-    """Light solids by which guards judge a scene, which every command on a beam asks for: of one
-    scene once a file.
+    """Light solids by which guards judge a scene, which every command on a beam asks for: the last
+    scenes of a process once.
     """
+    from solidgear.judge import refinement as loop
     from solidgear.studies.guards import probe
 
     solve, known = probe.study, {}
 
     def once(*asked, **more):
-        key = pickle.dumps((asked, more, [v for k, v in os.environ.items() if "SOLIDGEAR" in k]))
-        if key not in known:
-            known[key] = solve(*asked, **more)
+        how = [loop.MOST_MESHES, *(v for k, v in os.environ.items() if "SOLIDGEAR" in k)]
+        key = pickle.dumps((asked, more, how))
+        known[key] = known.pop(key, None) or solve(*asked, **more)
+        if len(known) > KEPT:
+            del known[next(iter(known))]
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
@@ -141,6 +168,37 @@ def read_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(part_file, "isolated", once)
         patch.setattr("solidgear.models.solid.part.isolated", once)
+        yield
+
+
+class Drawn:
+    """The drawing library, which draws a chart once; of its pictures in pixels, which no test looks
+    into, the first stands for all: a fifth of a second each.
+    """
+
+    def __init__(self, library):
+        self._library, self._known, self._pixels = library, {}, b""
+
+    def vegalite_to_svg(self, spec):
+        key = hashlib.sha256(json.dumps(spec).encode()).digest()
+        if key not in self._known:
+            self._known[key] = self._library.vegalite_to_svg(spec)
+        return self._known[key]
+
+    def svg_to_png(self, svg, **how):
+        self._pixels = self._pixels or self._library.svg_to_png(svg, **how)
+        return self._pixels
+
+
+@pytest.fixture(scope="session", autouse=True)
+def drawn_once():
+    """Charts that several tests write, drawn once."""
+    from solidgear.report import plot
+
+    library = functools.cache(lambda: Drawn(make()))
+    make = plot._drawing_library
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plot, "_drawing_library", library)
         yield
 
 

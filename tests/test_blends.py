@@ -188,6 +188,7 @@ def test_hexahedra_have_it_within_the_gate_and_are_counted():
     assert body.size == LADDER["solid"].size(scene, options).unknowns
 
 
+@pytest.mark.long
 def test_tetrahedra_fold_nowhere_and_have_it_within_the_gate():
     scene = everywhere()
     body = sg.build(scene, "solid", element="tet10", refinement=0.35)
@@ -379,6 +380,7 @@ def test_the_shipped_scene():
     assert [row["edge"] for row in scene.as_dict()["blends"]] == ["root", "rim"]
 
 
+@pytest.mark.long
 def test_check_tells_of_the_mesh_that_holds_a_chamfer():
     """Of tetrahedra, and not of the hexahedra whose blocks the end of a seat would fall into: that was
     no matter of memory, and the solid asked for by default is meshed without them.

@@ -139,7 +139,8 @@ def bracket(path, around, between):
     write(path, [ARM * two, ARM * two, ARM * one], patches, hollow)
 
 
-@pytest.mark.parametrize("attachment", ["average", pytest.param("rigid", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("attachment", ["average", "rigid"])
 def test_bars_of_a_bracket_hold_what_a_graded_mesh_says(tmp_path, attachment):
     bracket(tmp_path / "coarse.msh", 0, 1)
     bracket(tmp_path / "fine.msh", 0, 2)

@@ -147,7 +147,10 @@ def within(low, high, scale):
 #: a step of the bore is one of the surface from inside; a cone's corners are blunter than a step's,
 #: and a tube has none
 MILD = ("bore step", "cone", "tube")
-MOST = [pytest.param(s, marks=pytest.mark.slow if s in MILD else ()) for s in SHAFTS]
+#: a step, a fillet and seats that average tell what these do
+DEAR = ("rigid seat at a shoulder", "thin disc", "steel on aluminium")
+MARKS = dict.fromkeys(DEAR, pytest.mark.long) | dict.fromkeys(MILD, pytest.mark.slow)
+MOST = [pytest.param(s, marks=MARKS.get(s, ())) for s in SHAFTS]
 
 
 @pytest.mark.parametrize("one", MOST, indirect=True)

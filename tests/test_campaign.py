@@ -385,6 +385,7 @@ def test_random_shafts_end_to_end(tmp_path):
     assert not found.wrong and not found.problems
 
 
+@pytest.mark.long
 def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
     rows = pairs.judged(2).rows
     assert {row.quantity for row in rows} >= {"C_zz", "K_zz", "bending 1"}

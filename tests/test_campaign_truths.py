@@ -99,7 +99,11 @@ def test_spectral_elements_twist_a_bar_exactly():
 
 
 @pytest.mark.parametrize(
-    "tie", ["rigid", *(pytest.param(t, marks=pytest.mark.slow) for t in ("average", "section"))]
+    "tie",
+    [
+        pytest.param("rigid", marks=pytest.mark.long),
+        *(pytest.param(t, marks=pytest.mark.slow) for t in ("average", "section")),
+    ],
 )
 def test_spectral_elements_agree_with_the_product(tie):
     scene = stepped(tie, bore=0.01)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from copy import deepcopy
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -82,7 +82,7 @@ def marks(panel, shape):
 def test_what_is_written_is_what_is_read(raced, tmp_path):
     write_rows(raced, tmp_path)
     again = read_race(tmp_path)
-    assert [asdict(r) for r in again.rows] == [asdict(r) for r in raced.rows]
+    assert again.rows == raced.rows
     assert again == raced
     machine = json.loads((tmp_path / MACHINE).read_text())
     assert machine["environment"]["numpy"] and machine["environment"]["cores"]
@@ -179,6 +179,7 @@ def test_beams_show_like_for_like_beside_their_own_error(raced):
     assert heights == [row.errors["C_zz"], row.like_for_like["C_zz"]]
 
 
+@pytest.mark.long
 def test_the_automatic_choice_is_charted_at_its_largest_system():
     # the finest mesh is solved for bending and last for torsion alone, which has a fifth of it
     scene = sg.load("geometry/shaft_stepped.toml")

@@ -548,7 +548,13 @@ def matching(records, case: Case) -> list[dict]:
     ]
 
 
-@pytest.mark.parametrize("name", CASES)
+#: on a pinion of many cells what others tell on plain shafts, or the same of another beam
+DEAR = ("Euler beam, pinion", "lumped pinion", "seats as in the scene")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.long if n in DEAR else ()) for n in CASES]
+)
 def test_guard(name, monkeypatch):
     case = CASES[name]
     # every other guard is taken out for speed; a guard never needs another
@@ -784,6 +790,7 @@ def test_two_waves_in_closed_form_are_never_far_above_the_solution(here):
     assert probe.ovalising[2] / 2 < models._two_waves(probe) < models.SUSPECT * probe.ovalising[2]
 
 
+@pytest.mark.long
 def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked(monkeypatch):
     scene = head(1.6)
     plain, soft = (
@@ -799,7 +806,7 @@ def test_a_beam_with_soft_shoulders_is_not_told_of_them_and_is_judged_as_asked(m
 @pytest.mark.parametrize(
     ("name", "solids"),
     [
-        ("pinion_keyed", {"corrected", "solid"}),
+        pytest.param("pinion_keyed", {"corrected", "solid"}, marks=pytest.mark.long),
         ("pinion_toothed", {"sector", "solid"}),
     ],
 )
@@ -848,6 +855,7 @@ def test_check_says_in_a_dozen_lines_what_it_says_of_an_ordinary_shaft():
     assert "mesh looked at" not in "".join(printed)  # the proof of a sound mesh is in --json
 
 
+@pytest.mark.long
 def test_the_light_solid_gets_a_second_mesh_only_where_the_first_leaves_a_beam_open(monkeypatch):
     solved = []
     whole = probe_module.study

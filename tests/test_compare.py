@@ -329,6 +329,7 @@ def test_unknown_models_are_refused_before_any_work(overhung, models, word):
         compare(overhung, models, progress=lambda text: pytest.fail(text))
 
 
+@pytest.mark.long
 def test_settings_reach_the_builder_and_its_relatives(overhung):
     found = compare(
         overhung, ("harmonic",), settings={"harmonic": {"order": 4, "layers": 0}}
@@ -627,6 +628,7 @@ def test_no_sentence_calls_a_model_by_its_key(lumped):
     assert any("Timoshenko beam" in s for s in told)
 
 
+@pytest.mark.long
 def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
     """Its stiffness is that of the solid: what beams leave out at a shoulder is in it."""
     said = {}

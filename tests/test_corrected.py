@@ -137,6 +137,7 @@ def test_what_a_coarse_mesh_may_add_to_frequencies(plain):
         recognised(exact, too_high)
 
 
+@pytest.mark.long
 def test_a_stub_is_corrected_on_its_coarsest_mesh():
     """A step from 98 to 62 mm on 105 mm of length: on some hundred elements its free modes are 5 %
     too high, and of those with the flat fewer are bending in its plane than of those without. What

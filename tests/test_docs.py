@@ -94,7 +94,9 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/compare.md", "guide/points.md", "guide/uncertainty.md"}
+SECONDS = {"guide/compare.md", "guide/points.md", "guide/uncertainty.md", "guide/stress.md"}
+#: code that takes a second and more
+SLOW_CODE = {"guide/sweeps.md", "theory/stress.md", "guide/stiffness.md"}
 
 
 @pytest.mark.parametrize(
@@ -126,7 +128,14 @@ def test_the_tutorial_has_eight_steps_each_with_something_to_do():
     assert all("```" in s for s in steps)
 
 
-@pytest.mark.parametrize("page", [p for p in PAGES if "pycon" in kinds(p)])
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(p, marks=pytest.mark.long if p in SLOW_CODE else ())
+        for p in PAGES
+        if "pycon" in kinds(p)
+    ],
+)
 def test_code_on_a_page_runs(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "geometry", tmp_path / "geometry")
     monkeypatch.chdir(tmp_path)

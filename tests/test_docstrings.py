@@ -13,8 +13,21 @@ import solidgear as sg
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
-#: some seconds; the tests of trains and of sweeps do the same by default
-DEAR = {PACKAGE / "studies" / "train" / "check.py", PACKAGE / "studies" / "sweep" / "choice.py"}
+#: a second and more; the tests of their rooms do the same by default
+DEAR = {
+    PACKAGE / "scene" / "body_file.py",
+    *(
+        PACKAGE / "studies" / name
+        for name in (
+            "comparison.py",
+            "stress/shaft.py",
+            "sweep/choice.py",
+            "sweep/file_task.py",
+            "train/check.py",
+            "train/nonlinear.py",
+        )
+    ),
+}
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 

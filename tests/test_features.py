@@ -59,7 +59,18 @@ def mesh_of(scene, refinement=0.6, around=16, seats=True):
     return wanted, meshed(scene, tetrahedra_plan(scene, wanted, **sizes), refinement, True)
 
 
-@pytest.mark.parametrize("feature", [KEY, KEY.with_changes(ends="square"), FLAT, OBLIQUE], ids=str)
+@pytest.mark.parametrize(
+    "feature",
+    [
+        KEY,
+        FLAT,
+        *(
+            pytest.param(f, marks=pytest.mark.long)
+            for f in (KEY.with_changes(ends="square"), OBLIQUE)
+        ),
+    ],
+    ids=str,
+)
 def test_volume_against_closed_form(feature):
     """OCC's own volume to 1e-5, the mesh to what its curved elements leave of an arc."""
     scene = shaft(feature)
@@ -172,6 +183,7 @@ def test_a_cross_hole_and_a_bore():
     assert body.mesh["volume"] < math.pi * (0.03**2 - 0.01**2) * 0.2
 
 
+@pytest.mark.long
 def test_a_hole_beside_the_axis_takes_its_mass_where_it_is():
     """All moments of what an oblique hole beside the axis takes, through a bore, against points that
     know nothing of meshes: some 1e-3 of it, and elements of eight to a circle 4e-3.
@@ -324,6 +336,7 @@ def test_bearings_of_catalogue_data_settle_on_the_plain_part(tmp_path):
         assert np.array_equal(a.stiffness, b.stiffness)
 
 
+@pytest.mark.long
 def test_a_sweep_over_a_shaft_with_features_ends_well(tmp_path, run):
     """Rows are written, cautions are those of the plain part, and the exit code is that of success."""
     file = tmp_path / "keyed.toml"

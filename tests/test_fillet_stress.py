@@ -125,7 +125,10 @@ def test_amplitude_does_not_depend_on_the_direction_of_the_load(loaded):
         assert getattr(loaded.local, name) == pytest.approx(getattr(turned, name), rel=1e-9)
 
 
-@pytest.mark.parametrize("turned", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "turned",
+    [pytest.param(False, marks=pytest.mark.long), pytest.param(True, marks=pytest.mark.slow)],
+)
 def test_the_piece_has_the_stress_of_the_whole_shaft(turned):
     """Loads on the seats of the whole shaft, without section forces, pieces or superposition: the
     same stress on the fillet, by both meshes' bars; leaving the shear out would be off by 2 %.

@@ -57,6 +57,12 @@ def arrows():
 FACES = {"__init__", "__main__", "cli"}
 
 
+@functools.cache
+def tree_of(path):
+    """A file as Python reads it, once for all that look at it."""
+    return ast.parse(path.read_text())
+
+
 def test_a_room_imports_only_what_lies_below():
     wrong = {
         name: {there: str(p) for there, p in arrows().get(name, {}).items() if there not in below}
@@ -98,9 +104,8 @@ def unexplained(path):
     """Imports inside functions without a comment on their line or above their run: of the command
     line all, elsewhere those of this package.
     """
-    text = path.read_text()
-    lines = [line.strip() for line in text.splitlines()]
-    functions = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.FunctionDef)]
+    lines = [line.strip() for line in path.read_text().splitlines()]
+    functions = [n for n in ast.walk(tree_of(path)) if isinstance(n, ast.FunctionDef)]
     late = [
         node
         for function in functions

@@ -264,6 +264,7 @@ def test_a_sweep_over_the_housing(shaft, tmp_path):
         assert float(row["C_zz"]) == pytest.approx(c, rel=1e-9)  # the same formulas
 
 
+@pytest.mark.long
 def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
     """Its entries, a coupling that the file leaves out, all of it together, and the box beside it."""
     out = tmp_path / "rows.csv"

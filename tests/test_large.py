@@ -49,7 +49,7 @@ def usual():
 @pytest.mark.parametrize(
     "options, backend",
     [
-        pytest.param({"precision": "single"}, "superlu"),
+        pytest.param({"precision": "single"}, "superlu", marks=pytest.mark.long),
         pytest.param({"precision": "single"}, "pardiso", marks=PARDISO),
         pytest.param({"out_of_core": True}, "pardiso", marks=PARDISO),
         pytest.param(
@@ -79,6 +79,7 @@ def test_equal_to_a_double_factor_in_memory(usual, options, backend, monkeypatch
         assert f"{refining.steps} refinements in double" in modes.evidence["backend"]
 
 
+@pytest.mark.long
 def test_a_border_of_rigid_seats_is_refined_as_well(usual):
     scene = scene_of("pinion_overhung").with_attachment("rigid")
     double, one = (solved(scene, **SMALL, **more) for more in ({}, {"precision": "single"}))
@@ -129,6 +130,7 @@ def test_files_of_a_factor_go_with_it():
     assert not folder.exists()
 
 
+@pytest.mark.long
 @PARDISO
 def test_what_is_counted_of_memory_falls_as_asked():
     def sizes(scene):
@@ -213,7 +215,10 @@ OFFERED = (
         ["--set half=true", "-f corrected", "--set refinement=", *SMALLER],
         (),
     ),
-    ("pinion_toothed", {"refinement": 0.35}, ["-f sector", "--set refinement=", *SMALLER], ()),
+    pytest.param(
+        *("pinion_toothed", {"refinement": 0.35}, ["-f sector", "--set refinement=", *SMALLER], ()),
+        marks=pytest.mark.long,
+    ),
     pytest.param(
         *("shaft_step", {"refinement": 0.45}, ["--set refinement=", *SMALLER], ["-f "]),
         marks=pytest.mark.slow,
@@ -233,6 +238,7 @@ def test_a_refusal_offers_what_fits(scene, options, wanted, no, monkeypatch):
     assert places == sorted(places) and len(places) >= 1
 
 
+@pytest.mark.long
 @PARDISO
 def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
     given = {"element": "tet10", "refinement": 0.5}
@@ -244,6 +250,7 @@ def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
     assert 0.5 * room < needed_mb(body, body.factoring) + of_body(body).matrices_mb < room
 
 
+@pytest.mark.long
 @PARDISO
 def test_what_is_offered_is_what_the_analysis_says(monkeypatch):
     given = {"element": "tet10", "refinement": 0.7}

@@ -125,6 +125,7 @@ def squeezed(train, gear, patched, layers):
     return full / float((moved**2 / (level + w2)).sum()), solid
 
 
+@pytest.mark.long
 def test_a_patch_gives_way_as_on_a_full_3d_gear(train, gear, patched):
     """A displacement mesh is too stiff, this one by 1.3 % (0.6 % with a layer at its edges)."""
     ratio, _ = squeezed(train, gear, patched, layers=0)
@@ -198,6 +199,7 @@ def difference(train, usual, harmonics):
     return hz, 20 * np.log10(np.abs(one.mesh(hz)[1] / other.mesh(hz)[1])), one.system
 
 
+@pytest.mark.long
 def test_two_nodal_diameters_add_less_than_a_decibel(train, usual):
     """0.2 dB rms and 0.8 at most (measured on a prototype); the most beside their own mode."""
     hz, decibels, system = difference(train, usual, (2,))
@@ -246,6 +248,7 @@ def test_a_patch_is_one_pitch_of_the_seat(train):
     assert patch.axes[:, 1] == pytest.approx([0.0, 0.0, 1.0], abs=1e-12)  # from z towards x
 
 
+@pytest.mark.long
 def test_two_gears_of_a_shaft_squeeze_it_together():
     """A disc between both gears gives at each by the push on the other, as one solve of the whole
     mesh of the harmonic says: turning the push of one by t turns its n waves by n t.

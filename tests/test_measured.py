@@ -66,7 +66,15 @@ def told(measured, computed, truth):
 
 
 @pytest.mark.parametrize(
-    "slip", ["none", "missing", "spurious", "split", "swapped", "unknown multiplicity"]
+    "slip",
+    [
+        "none",
+        "swapped",
+        *(
+            pytest.param(s, marks=pytest.mark.long)
+            for s in ("missing", "spurious", "split", "unknown multiplicity")
+        ),
+    ],
 )
 def test_pairs_that_are_told_as_sure_are_right(slip):
     rng = np.random.default_rng(7)
@@ -324,6 +332,7 @@ def test_a_body_that_is_not_solved_again_knows_its_frequencies_on_other_springs(
     assert max(moved) > 0.02 and motions.any()
 
 
+@pytest.mark.long
 def test_a_modulus_is_found_and_its_deviation_is_that_of_the_data(rod):
     scene = sg.load(rod)
     body = sg.build(scene, "harmonic", order=5)
@@ -517,6 +526,7 @@ def test_a_mode_has_one_name_whatever_solid_finds_it():
     assert found[0] == found[1] == ["torsion 1", "axial 1", "breathing 1", "axial 2", "breathing 2"]
 
 
+@pytest.mark.long
 def test_the_default_solid_lies_above_the_harmonic_one_by_what_its_cells_around_leave():
     """Both are Ritz methods on the same body: frequencies come from above, the coarser mesh's more.
     Twelve cells around are three to a wave of n = 4, twenty-four are six.

@@ -102,6 +102,7 @@ def test_a_run_through_contacts_is_the_same_by_exact_pieces_and_integrated(branc
     np.testing.assert_allclose(exact.swing, other.swing, rtol=1e-3)  # looks at other instants
 
 
+@pytest.mark.long
 def test_a_run_of_two_links_is_that_of_the_equations_written_out():
     """Two masses in a row on teeth that both part, by a general integrator that knows none of this."""
     half, mean, begin, end, ramp = (1.0, 0.5), 0.06, 0.4, 1.8, 3e-3

@@ -255,6 +255,7 @@ def test_first_order_tetrahedra_of_a_file_are_solved_as_second_order_ones(steppe
     assert soft > 1.02 * stiff  # 8 % on a rod
 
 
+@pytest.mark.long
 def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
     """On a mesh that knows nothing of the seats: integrals that stop at their ends agree with
     faces cut there to what two meshes differ by, whole faces miss by more.

@@ -179,6 +179,7 @@ def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
 
 
 # --------------------------------------------------------------------------- where they are told
+@pytest.mark.long
 def test_the_command_tells_the_bar_of_every_block(settled):
     told = command("stiffness", PATH, "--port", "pinion,wheel", "--tol", "0.05")
     assert told.exit_code == 0

@@ -395,6 +395,7 @@ def test_refined_beams_converge_from_above(scene, theory):
     never_falls(frequencies(fine, scene), frequencies(coarse, scene), floor(fine), told(fine))
 
 
+@pytest.mark.long
 @HARMONICS
 @given(scenes(most_segments=2, least_bearings=1))
 def test_refined_harmonic_solids_converge_from_above(scene):

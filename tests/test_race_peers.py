@@ -339,6 +339,7 @@ def test_bearings_hold_one_node_of_the_beam_as_in_ross():
             assert np.all(rows[first : first + len(block.components)].sum(axis=1) == 1)
 
 
+@pytest.mark.long
 def test_straight_tetrahedra_are_stiffer_by_the_volume_they_miss():
     scene = held(SCENE, "average")
     body = solve(scene, "solid", TET, free=True).body

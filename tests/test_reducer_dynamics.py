@@ -154,6 +154,7 @@ def test_a_law_with_corners_has_no_balance_of_two_tones():
         TwoTone(fast, slow, TONES, (2, 2))
 
 
+@pytest.mark.long
 def test_sidebands_by_two_tones_are_those_in_time():
     # twice the speed of the source: half as many steps a turn
     stage = Stage(Reducer(Design(), rpm=16000.0))
@@ -178,6 +179,7 @@ def turned():
     return reducer, run(reducer.bodies, 4096, turns=2, settling=0, every=4)
 
 
+@pytest.mark.long
 def test_steps_and_an_adaptive_integrator_have_one_envelope(turned):
     reducer, motion = turned
     there = 64  # a sixteenth of a turn: directions of the planets have turned by 22 degrees

@@ -117,6 +117,7 @@ def test_slender_cells_at_a_corner_are_cut_across_before_they_are_cut_towards_it
     assert slender_at(name, options[-1], corner) < 20
 
 
+@pytest.mark.long
 def test_a_disc_of_a_two_hundredth_of_its_diameter_takes_four_meshes_at_most():
     _, options, _ = climbed("disc of 0.005 diameters")
     assert len(options) <= 4

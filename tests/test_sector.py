@@ -91,6 +91,7 @@ MARKS = {
     "two teeth in a sector": pytest.mark.slow,
     "straight": pytest.mark.slow,
     "rigid seats in a bore": pytest.mark.slow,
+    "bolts": pytest.mark.long,
 }
 
 
@@ -406,6 +407,7 @@ def test_a_spline_is_a_cylinder_with_teeth():
     assert body.mesh["volume"] == pytest.approx(exact, rel=1e-4)
 
 
+@pytest.mark.long
 def test_check_says_what_smearing_costs():
     """Bounds of the rule hold for what the sector says of one pinion, and the tolerance decides."""
     from solidgear.studies.check import check_scene

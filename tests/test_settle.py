@@ -99,6 +99,7 @@ def test_bars_of_a_body_hold_its_own_couplings(scene):
     assert all(10 * REFERENCE < error <= found.bars[q] for q, error in off.items()), off
 
 
+@pytest.mark.long
 def test_the_plane_that_rests_on_the_mesh_decides(scene):
     """Soft bearings hide the mesh in one plane, stiff ones show it in the other."""
     bearings = []
@@ -175,6 +176,7 @@ def test_the_highest_mode_of_a_family_has_no_bar(scene):
 
 
 # --------------------------------------------------------------------------- not reached
+@pytest.mark.long
 def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes):
     code, out, err = run("modes", STEPPED, "-n", "4", "--tol", "1e-5", "--json")
     found = json.loads(out)
@@ -231,6 +233,7 @@ def test_refused_in_one_sentence(run, tmp_path, kind):
 
 
 # --------------------------------------------------------------------------- sweep
+@pytest.mark.long
 def test_a_sweep_settles_on_the_scene_and_at_the_ends_of_what_varies(run, scene, tmp_path):
     words = ["sweep", SCENE, "--tol", "0.02", "-n", "3", "-o", "rows.csv"]
     words += ["--vary", "bearing.1.scale=0.5,1"]

@@ -40,11 +40,16 @@ COUNTED = (
     ("shaft_hollow", "solid", {"element": "tet10", "refinement": 0.5}),
     ("cylinder_free", "solid", {"element": "tet4", "refinement": 0.6}),
     ("pinion_keyed", "solid", {"refinement": 0.3}),
-    ("pinion_keyed", "solid", {"refinement": 0.3, "half": False}),
-    ("pinion_toothed", "solid", {"refinement": 0.3}),
     ("pinion_toothed", "sector", {"refinement": 0.5}),
-    ("pinion_toothed", "sector", {"refinement": 0.5, "half": False}),
-    ("pinion_spiral", "sector", {"refinement": 0.5}),
+    *(
+        pytest.param(*case, marks=pytest.mark.long)
+        for case in (
+            ("pinion_keyed", "solid", {"refinement": 0.3, "half": False}),
+            ("pinion_toothed", "solid", {"refinement": 0.3}),
+            ("pinion_toothed", "sector", {"refinement": 0.5, "half": False}),
+            ("pinion_spiral", "sector", {"refinement": 0.5}),
+        )
+    ),
 )
 
 
@@ -80,7 +85,9 @@ def test_small_elements_at_edges_make_many():
     "scene, options",
     [
         ("pinion_overhung", {"refinement": 0.5}),
-        ("shaft_hollow", {"element": "tet10", "refinement": 0.7}),
+        pytest.param(
+            "shaft_hollow", {"element": "tet10", "refinement": 0.7}, marks=pytest.mark.long
+        ),
     ],
 )
 def test_the_law_is_near_the_analysis(scene, options):
@@ -91,7 +98,10 @@ def test_the_law_is_near_the_analysis(scene, options):
 
 
 # ------------------------------------------------------------------------------------------------- refusals
-@pytest.mark.parametrize("model, options", [("harmonic", {}), ("solid", {"refinement": 0.5})])
+@pytest.mark.parametrize(
+    "model, options",
+    [("harmonic", {}), pytest.param("solid", {"refinement": 0.5}, marks=pytest.mark.long)],
+)
 def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, options):
     scene = SCENES["pinion_overhung"]
     body = sg.build(scene, model, **options)
@@ -117,6 +127,7 @@ def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, opt
         assert "MB are free; lower " in message and "\n" not in message
 
 
+@pytest.mark.long
 def test_all_factors_of_a_body_are_refused_together(monkeypatch):
     """Each half of a keyed part would fit by itself."""
     body = sg.build(SCENES["pinion_keyed"], "solid", refinement=0.35)

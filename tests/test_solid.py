@@ -136,6 +136,7 @@ def test_light_hexahedra_bend_near_the_reference(overhung, light):
     assert 0 < f / FIRST_BENDING - 1 < 2e-3
 
 
+@pytest.mark.long
 def test_hexahedra_approach_the_reference_from_above(overhung):
     coarse, fine = (
         sg.condense(

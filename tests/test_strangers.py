@@ -96,6 +96,7 @@ def test_no_twin_is_lost_on_a_small_solid():
     assert np.allclose(few[:8], many[:8], rtol=1e-7)
 
 
+@pytest.mark.long
 def test_modes_of_other_shapes_are_not_compared():
     light = {"harmonic": COARSE}
     found = compare(scene_of("mispaired_axial"), ("euler", "harmonic"), settings=light)
@@ -193,6 +194,7 @@ def test_both_solids_meet_the_tolerance_and_each_other(name):
         assert gap <= bar <= 2 * scene.ask.tolerance, q
 
 
+@pytest.mark.long
 def test_a_lumped_model_without_the_first_bending_is_not_valid():
     """Bearings softer in x than in z: the shaft's first bending lies in x, the lumped model's in z."""
     soft, stiff = (np.diag([kx, 1e7, 4e7, 0.0, 0.0, 0.0]) for kx in (2e7, 2e7))

@@ -332,6 +332,7 @@ def test_the_command(finished, tmp_path):
     assert "all 36 rows were there already" in again.stdout
 
 
+@pytest.mark.long
 def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
     appended = runner.RowFile.append
 

@@ -109,6 +109,7 @@ def test_options_of_one_shaft_are_refused():
     assert "--set is for one shaft" in str(done.exception) + done.output
 
 
+@pytest.mark.long
 def test_commands_tell_a_slip_above_their_table_in_the_words_of_check(tmp_path):
     text = open(AXLE, encoding="utf-8").read().replace('"2.5e8 N/m"', '"2.5e8 N/mm"')
     for name in ("pinion_overhung", "gear_shaft"):

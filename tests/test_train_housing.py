@@ -390,6 +390,7 @@ def test_a_shaft_that_stands_in_a_housing_of_its_own_and_in_that_of_the_train_is
     assert train.with_changes(housing=housing(carries=["pinion"])).housed == ("pinion",)
 
 
+@pytest.mark.long
 def test_the_shipped_train_tells_its_housing_by_name(tmp_path):
     path = str(GEOMETRY / "gearbox_housed.toml")
     mix = ["--pinion", "rigid/timoshenko", "--gear", "rigid/timoshenko"]

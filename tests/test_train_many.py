@@ -447,6 +447,7 @@ def test_mixes_of_many_shafts_do_not_explode():
     assert mixes_of(2) == [(p, g) for p in MIXED for g in MIXED if (p, g) != (JUDGE, JUDGE)]
 
 
+@pytest.mark.long
 def test_commands_take_the_shipped_gearbox_of_two_stages(tmp_path):
     file = "geometry/gearbox_two_stage.toml"
     beams = [a for s in SHAFTS for a in ("--shaft", f"{s}=euler")]

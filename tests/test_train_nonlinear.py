@@ -74,6 +74,7 @@ def test_the_upper_motion_loses_its_stability_before_it_turns(solids):
     assert where.low == pytest.approx(654.9, abs=0.3) and 656.5 < where.high < 658.5
 
 
+@pytest.mark.long
 def test_in_time_the_speed_rises_over_the_jump_that_the_branch_foretells(solids):
     hz = np.array([684.4, 685.0])
     begin = solids.branch.at(2 * np.pi * hz[0])[0]
@@ -124,6 +125,7 @@ def test_without_backlash_the_answer_is_the_linear_one(shop, teeth, highest):
     np.testing.assert_allclose(size, expected, rtol=1e-8 if highest == np.inf else 2e-2)
 
 
+@pytest.mark.long
 def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
     arguments = ["nonlinear", str(OVERHUNG), "--pinion", "timoshenko", "--gear", "timoshenko"]
     arguments += ["--backlash", "100 um", "--mean-force", "5 kN", "--error", "10 um"]

@@ -380,6 +380,7 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
 
 
 # ----------------------------------------------------------------------- bars and verdict
+@pytest.mark.long
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
     coarse = Workshop(helical, settings={"harmonic": {"order": 2, "layers": 1}})
@@ -519,6 +520,7 @@ def test_deflect_writes_what_it_says(tmp_path, run):
     assert written["standings"] == data["standings"] and written.keys() == data.keys()
 
 
+@pytest.mark.long
 def test_every_point_of_a_train_is_told_as_it_is_alone(run):
     """Points are settled one after the other, and no answer hangs on the one before."""
     both = json.loads(run("deflect", GEARBOX, "-f", "timoshenko", "--json")[1])["points"]

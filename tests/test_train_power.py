@@ -224,6 +224,7 @@ def test_what_cannot_divide_is_refused_by_the_keys_of_the_file(tmp_path, change,
         sg.load_train(written(tmp_path, change))
 
 
+@pytest.mark.long
 def test_teeth_of_a_loop_part_as_in_motion_in_time(tmp_path):
     """Both paths carry their share of the mean; only the laws and the modes are shared with what
     integrates.  Harmonics are followed to 1e-4 of the largest stretch, which is more of a small force.

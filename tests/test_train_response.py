@@ -137,6 +137,7 @@ def test_a_force_on_a_port_instead_of_the_transmission_error(shop):
     assert moved == pytest.approx(row @ u, rel=1e-5)
 
 
+@pytest.mark.long
 def test_a_force_of_rounding_alone_is_refused():
     mesh = TRAIN.mesh.with_changes(stiffness=1e24)
     stiff = Workshop(TRAIN.with_changes(mesh=mesh), kept=4, settings=COARSE)

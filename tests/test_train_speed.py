@@ -245,6 +245,7 @@ def test_an_outline_keeps_every_top_of_a_curve():
 BEAMS = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "euler", "--out"]
 
 
+@pytest.mark.long
 def test_the_command_tells_orders_and_lays_a_spectrum_over_the_response(tmp_path):
     made = spectrum({14 * 25.0: 1.0, 333.3: 0.3}, high=1000.0)
     rows = zip(made.frequency_hz, made.amplitude)

@@ -104,6 +104,7 @@ def test_a_row_is_what_the_same_files_edited_by_hand_give(tmp_path):
             np.testing.assert_allclose(told, own, rtol=1e-6, atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_row_of_three_shafts_is_what_the_same_files_edited_by_hand_give(tmp_path):
     mix = {"input": "euler", "middle": "timoshenko", "output": "lumped/euler"}
     how = {"mesh": "middle-output", "models": mix, "pinion": None, "gear": None}

@@ -133,6 +133,7 @@ def test_a_shaft_beside_itself_differs_nowhere_and_nothing_is_resolved():
     assert not any("Moves most" in one for one in found.sentences)
 
 
+@pytest.mark.long
 def test_a_diameter_changed_by_1e_7_moves_nothing_beyond_the_bars(tmp_path):
     path = copied(tmp_path, new='diameter = "90.000009 mm"')
     both = [loose(sg.load(file)) for file in (SCENE, path)]
@@ -145,6 +146,7 @@ def test_a_diameter_changed_by_1e_7_moves_nothing_beyond_the_bars(tmp_path):
     assert any("Not resolved, for both bars hold" in one for one in found.sentences)
 
 
+@pytest.mark.long
 def test_springs_of_the_other_plane_alone_are_seen():
     scene = sg.Scene.from_parts(
         [sg.Segment.cylinder("rod", length=0.2, diameter=0.05)],

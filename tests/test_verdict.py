@@ -390,6 +390,7 @@ def test_a_plain_symmetric_shaft_is_within_every_models_reach():
     assert abs(gaps[(SCENE, "C_thx")]) < 0.005 and abs(gaps[(SECTION, "C_thx")]) < 0.015
 
 
+@pytest.mark.long
 def test_like_for_like_means_every_station():
     # the port is tied by its section and a bearing rigidly: ties of the port alone would leave
     # nothing to compare

@@ -80,7 +80,10 @@ def whole(found):
 
 @pytest.mark.parametrize(
     "name, quantity, count",
-    [("pinion_overhung", "axial 1", 2), ("shaft_stepped", "C_zz", 2)],
+    [
+        ("pinion_overhung", "axial 1", 2),
+        pytest.param("shaft_stepped", "C_zz", 2, marks=pytest.mark.long),
+    ],
 )
 def test_cells_cut_at_a_place_take_its_share_of_the_bar_away(scenes, name, quantity, count):
     scene = scenes[name]
@@ -265,6 +268,7 @@ def test_command_line(tmp_path):
     assert run(scene, "--picture", tmp_path / "error.gif").exit_code != 0
 
 
+@pytest.mark.long
 def test_a_study_keeps_where_its_widest_bar_sits(scenes):
     scene = scenes["shaft_stepped"]
     solution = study(scene, "harmonic", share=2.0, evidence=False)

@@ -52,7 +52,7 @@ def chart(
         float | None,
         typer.Option(
             "--budget",
-            help="Seconds for the points, those of the reference not counted; levels that would not "
+            help="Seconds of processor time for the points, those of the reference not counted; levels that would not "
             "fit are left out and named. 120, or 3600 with --full.",
         ),
     ] = None,
@@ -78,7 +78,7 @@ def chart(
         say(*told, soft_wrap=False)
         if left_out(found):
             say(
-                f"left out ({found.budget:g} s allowed for the points; reasons in {out / 'rows.csv'}): {left_out(found)}"
+                f"left out ({found.budget:g} s of processor time for the points; reasons in {out / 'rows.csv'}): {left_out(found)}"
             )
         say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
     if not found.complete:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.csgraph import connected_components, min_weight_full_bipartite_matching
+from scipy.sparse.csgraph import connected_components
 
 from solidgear.judge.record import MacTable, PartnerRecord
 from solidgear.solve.modes import Mode, ModeSet
+from solidgear.solve.neighbours import best_assignment
 
 #: A partner is certain from this similarity on, if the next one is less alike by this much.
 SURE, LEAD = 0.75, 0.25
@@ -121,19 +121,6 @@ def _by_rank(mine: list[Mode], theirs: list[Mode]) -> list[Pairing]:
         near = all(abs(m.frequency_hz / mode.frequency_hz - 1) < RANKED for m in members)
         out.append(Pairing(mode, members[0], 0.0, near, tuple(members[1:])))
     return out
-
-
-def best_assignment(gain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns of a matrix in pairs of the largest sum, as many as there can be.
-
-    Examples
-    --------
-    >>> rows, columns = best_assignment(np.array([[0.9, 0.8, 0.0], [0.9, 0.0, 0.0]]))
-    >>> [(int(r), int(c)) for r, c in zip(rows, columns)]
-    [(0, 1), (1, 0)]
-    """
-    # the graph knows no pairs of nothing; scipy.optimize, which does, takes long to import
-    return min_weight_full_bipartite_matching(sp.csr_matrix(gain - gain.min() + 1), maximize=True)
 
 
 def _by_shape(mine: list[Mode], theirs: list[Mode], gram) -> list[Pairing]:

@@ -14,6 +14,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from solidgear.machine.patience import Patience
+
 _ROOT = str(Path(__file__).resolve().parents[2])
 _CODE = "from solidgear.machine.isolated import _serve; _serve()"
 
@@ -30,7 +32,7 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
     Raises
     ------
     IsolatedError
-        If the process ended without a result, or was killed after so many seconds.
+        If the process ended without a result, or was killed after so many seconds of processor time.
 
     Examples
     --------
@@ -42,20 +44,23 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
     with tempfile.TemporaryDirectory(prefix="solidgear") as folder:
         given, made = Path(folder) / "given", Path(folder) / "made"
         given.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
+        # what the library prints is no message of ours
+        child = subprocess.Popen(
+            [sys.executable, "-c", _CODE, str(given), str(made)],
+            env={**os.environ, "PYTHONPATH": place},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        patience = Patience(seconds)
         try:
-            # what the library prints is no message of ours
-            done = subprocess.run(
-                [sys.executable, "-c", _CODE, str(given), str(made)],
-                env={**os.environ, "PYTHONPATH": place},
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                timeout=seconds,
-            )
-        except subprocess.TimeoutExpired:
-            raise IsolatedError(f"took longer than {seconds:g} s") from None
+            code = patience.wait(child)
+        finally:
+            child.kill()
+        if patience.why:
+            raise IsolatedError(patience.why)
         if not made.exists():
-            how = f"signal {-done.returncode}" if done.returncode < 0 else f"code {done.returncode}"
+            how = f"signal {-code}" if code < 0 else f"code {code}"
             raise IsolatedError(f"ended by itself ({how})")
         succeeded, value = pickle.loads(made.read_bytes())
     if not succeeded:

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from solidgear.machine.memory import resident_mb
+
+
+def processor_seconds() -> float:
+    """Processor time of this process and of those it has waited for, s: the same on a busy machine as
+    on an idle one.
+    """
+    return sum(os.times()[:4])
 
 
 class Meter:

@@ -19,7 +19,7 @@ from solidgear.meshing.step import look
 from solidgear.scene.body_file import BodyTable, CoarseMesh, PartGroup
 from solidgear.scene.patches import Patch
 
-#: seconds after which a file is given up
+#: s of processor time after which a file is given up
 LOOK_SECONDS = 25.0
 #: largest STEP or mesh file, bytes
 LARGEST = 500_000_000

@@ -87,7 +87,7 @@ def footer(race: Race) -> str:
     ]
     if left_out(race):
         lines.append(
-            f"Left out ({race.budget:g} s allowed for the points): {left_out(race)}; reasons in rows.csv."
+            f"Left out ({race.budget:g} s of processor time for the points): {left_out(race)}; reasons in rows.csv."
         )
     return "\n".join(lines)
 

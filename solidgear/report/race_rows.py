@@ -19,7 +19,7 @@ log = logging.getLogger(__name__)
 ROWS, MACHINE, PICTURE = "rows.csv", "machine.json", "speed_accuracy.png"
 COSTS = {"seconds": "wall time from scene to both answers, s (median)", "unknowns": "unknowns"}
 #: fields of a row that are spread over several columns, or written as text
-FOLDED = ("options", "samples", "values", "errors", "like_for_like")
+FOLDED = ("options", "samples", "taken", "values", "errors", "like_for_like")
 #: kinds of error in rows.csv besides those charted
 WHOLE = "C 6x6"
 

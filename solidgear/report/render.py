@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.machine.patience import Patience
 from solidgear.machine.whole_file import whole
 from solidgear.report.drawing import ARRAYS
 
@@ -84,8 +84,8 @@ class RenderResult:
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
     """Draw deformed shafts, coloured by displacement, over their shape at rest, within so many
-    seconds for all of them; a result a job. Nothing is raised for a picture that could not be drawn
-    or written.
+    seconds of processor time for all of them; a result a job. Nothing is raised for a picture that
+    could not be drawn or written.
     """
     with Drawing(jobs, timeout=timeout) as drawing:
         return drawing.results()
@@ -94,16 +94,14 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
 class Drawing:
     """Pictures being drawn by a child, while the caller does something else.
 
-    As a context manager: the child starts where it is entered, from when the time runs, and is gone
-    where it is left.
+    As a context manager: the child starts where it is entered and is gone where it is left.
     """
 
     def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
-        self.jobs, self.timeout = list(jobs), timeout
+        self.jobs, self._patience = list(jobs), Patience(timeout)
         self._child: subprocess.Popen | None = None
 
     def __enter__(self) -> Drawing:
-        self._deadline = time.monotonic() + self.timeout
         self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
         self._windows = _windows()
         try:
@@ -127,19 +125,16 @@ class Drawing:
             return []
         end = self._end or self._wait()
         # A child that reached the end of its list has said all there is to say.
-        while end and self._windows and self._left() > 0:
+        while end and self._windows and self._patience.left > 0:
             end = self._start() or self._wait()
         return [
-            RenderResult(job.path, _collect(self._room, i, job.path, end, self.timeout))
+            RenderResult(job.path, _collect(self._room, i, job.path, end))
             for i, job in enumerate(self.jobs)
         ]
 
     @property
     def _room(self) -> Path:
         return Path(self._folder.name)
-
-    def _left(self) -> float:
-        return self._deadline - time.monotonic()
 
     def _hand_over(self) -> None:
         """The jobs as files, for the child to read."""
@@ -180,19 +175,16 @@ class Drawing:
         """Wait for the child; how it died, or nothing."""
         child = self._child
         assert child is not None
-        try:
-            child.wait(max(self._left(), 0.1))
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.wait()
-            return "timeout"
-        if child.returncode == 0:
+        code = self._patience.wait(child)
+        if self._patience.why:
+            return self._patience.why
+        if code == 0:
             return ""
-        if child.returncode < 0:
-            return f"was ended by signal {-child.returncode}"
+        if code < 0:
+            return f"was ended by signal {-code}"
         text = (self._room / SAID).read_text(encoding="utf-8", errors="replace")
         last = next((line.strip() for line in reversed(text.splitlines()) if line.strip()), "")
-        return f"ended with status {child.returncode}" + (f" ({last[:200]})" if last else "")
+        return f"ended with status {code}" + (f" ({last[:200]})" if last else "")
 
 
 def _windows() -> list[str | None]:
@@ -206,7 +198,7 @@ def _windows() -> list[str | None]:
     ]
 
 
-def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> str:
+def _collect(room: Path, index: int, path: Path, end: str) -> str:
     """Move a finished picture to its place; else the reason why there is none, and what mends it."""
     drawn, said = room / f"{index}.png", room / f"{index}.txt"
     if said.exists():
@@ -219,10 +211,5 @@ def _collect(room: Path, index: int, path: Path, end: str, timeout: float) -> st
         except OSError as error:
             return f"the picture {path} could not be written: {error.strerror or error}"
         return ""
-    if end == "timeout":
-        return (
-            f"the picture {path.name} was not drawn within {timeout:g} s; allow more time, "
-            f"or on Debian and Ubuntu mend OpenGL by `{PACKAGES}`"
-        )
     what = end or "left no picture"
     return f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`"

@@ -24,6 +24,7 @@ from solidgear.body.sections import signed
 from solidgear.frames import rotation
 from solidgear.solve.circumference import Circumference, Displacements, of_body
 from solidgear.solve.families import FAMILIES, family_of, repeats, several, waves_of
+from solidgear.solve.neighbours import shared_out
 from solidgear.solve.quarter_turn import alike
 
 #: Bearings that a quarter turn changes by no more than this, relative, split a pair by half of it
@@ -136,6 +137,11 @@ def _section_loads(block: Block, stations: np.ndarray, found: list[_Loads]) -> _
     return loaded, gram, component_rows(range(len(stations)), block.components)
 
 
+def _waving(n: int) -> str:
+    """Family of shapes of one wave around the axis, or more."""
+    return "bending" if n == 1 else f"ovalising n={n}"
+
+
 class Names:
     """Families, twins and numbers of the shapes of one body, whose blocks they refer to, on its
     bearings.
@@ -154,6 +160,8 @@ class Names:
         self._moving_axially: dict[int, np.ndarray] = {}
         # momenta of shapes by the identity of their profile, which is kept alive beside them
         self._momenta: dict[int, tuple[dict, dict[int, np.ndarray]]] = {}
+        # what shapes do around the axis, in the same way
+        self._fitted: dict[int, tuple[dict, np.ndarray, np.ndarray]] = {}
 
     def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
         """Family, waves around, section motions and profile of one shape, by block index."""
@@ -189,20 +197,27 @@ class Names:
         share = at[0] / sum(at)
         return "z" if share > 0.99 else "x" if share < 0.01 else ""
 
+    def _waves(
+        self, fit: Circumference, displacements: Displacements, vectors: dict[int, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Profile of a shape by waves around the axis, and its shares, once a shape."""
+        if id(vectors) not in self._fitted:
+            self._fitted[id(vectors)] = vectors, *fit(displacements(vectors))
+        return self._fitted[id(vectors)][1:]
+
     def _around(
         self,
         fit: Circumference,
         displacements: Displacements,
         vectors: dict[int, np.ndarray],
     ) -> tuple[dict[tuple[int, str], float], np.ndarray]:
-        profile, share = fit(displacements(vectors))
+        profile, share = self._waves(fit, displacements, vectors)
         radial, tangential, axial = share[0]
         energy = {
             (0, "torsion"): tangential,
             (0, self._along_or_across(vectors)): axial + radial,
-            (1, "bending"): share[1].sum(),
         }
-        energy |= {(n, f"ovalising n={n}"): share[n].sum() for n in range(2, fit.waves + 1)}
+        energy |= {(n, _waving(n)): share[n].sum() for n in range(1, fit.waves + 1)}
         return energy, profile
 
     def _along_or_across(self, vectors: dict[int, np.ndarray]) -> str:
@@ -213,26 +228,44 @@ class Names:
     def unmixed(
         self, shapes: list[Shape], vectors: list[dict[int, np.ndarray]], value: np.ndarray
     ) -> list[Shape]:
-        """Shapes of n = 0 named by what is of n = 0 in them: a mesh that is not quite round mixes
-        neighbours that lie nearer than it splits twins, and any mixture of them is as good a solution.
+        """Shapes named by the families that they hold together with their neighbours (values ascending):
+        a mesh that is not quite round mixes those that lie nearer than it splits twins, and any
+        mixture of them is as good a solution.
         """
-        if self._round is None:
+        if self._round is None or self.without_axis:
             return shapes
-        fit, displacements = self._round
         out, tolerance = list(shapes), 2 * self.body.mesh.get("pair_tolerance", 0.0)
-        for i, shape in enumerate(shapes):
-            apart = np.abs(value - value[i]) <= tolerance * value[i]
-            near = [
-                j for j in range(len(value)) if apart[j] and vectors[j].keys() == vectors[i].keys()
-            ]
-            if shape.family not in ("axial", "breathing") or len(near) < 2:
-                continue
-            rows = np.array([fit(displacements(vectors[j]))[0][0] for j in near])
-            content, turn = np.linalg.eigh((rows @ rows.conj().T).real)
-            own = turn[:, content > content[-1] / 2]
-            weight = own @ own[near.index(i)]
-            alone = {b: sum(w * vectors[j][b] for w, j in zip(weight, near)) for b in vectors[i]}
-            out[i] = replace(shape, family=self._along_or_across(alone))
+        for held in dict.fromkeys(frozenset(v) for v in vectors):
+            alike = np.array([i for i, v in enumerate(vectors) if v.keys() == held])
+            apart = np.flatnonzero(np.diff(value[alike]) > tolerance * value[alike][1:]) + 1
+            for near in np.split(alike, apart):
+                if len(near) > 1:
+                    named = self._by_family([shapes[i] for i in near], [vectors[i] for i in near])
+                    for i, shape in zip(near, named):
+                        out[i] = shape
+        return out
+
+    def _by_family(self, shapes: list[Shape], vectors: list[dict[int, np.ndarray]]) -> list[Shape]:
+        """Neighbours, each named by a family that their space holds, as often as it holds it."""
+        assert self._round is not None
+        fitted = [self._waves(*self._round, v) for v in vectors]
+        around = np.array([profile for profile, _ in fitted])
+        level = around[:, 0].reshape(len(shapes), -1, 3)
+        rows = {(0, "torsion"): level[:, :, 1], (0, ""): level[:, :, ::2].reshape(len(shapes), -1)}
+        rows |= {(n, _waving(n)): around[:, n] for n in range(1, around.shape[1])}
+        out = list(shapes)
+        for i, (waves, family), weight in shared_out(rows, [share.sum() for _, share in fitted]):
+            if not family:
+                family = self._along_or_across(
+                    {b: sum(w * v[b] for w, v in zip(weight, vectors)) for b in vectors[i]}
+                )
+            out[i] = replace(
+                shapes[i],
+                family=family,
+                waves=waves,
+                profile=around[i, waves],
+                plane=self._plane(shapes[i].motion, family),
+            )
         return out
 
     def _by_block(self, vectors) -> dict[tuple[int, str], float]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.judge.race.pareto import AUTOMATIC, Row
 from solidgear.ladder.registry import LADDER
+from solidgear.machine.patience import Patience
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -21,6 +22,8 @@ log = logging.getLogger(__name__)
 #: name of the automatic choice among models in rows of a chart, and its tolerances
 AUTO = "auto"
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+#: s of processor time that a fresh interpreter may take for its imports
+SETUP = 120.0
 
 
 def plan(scene: Scene, full: bool = False) -> list[Row]:
@@ -80,10 +83,15 @@ def setup_seconds() -> dict[str, float]:
     none can be started.
     """
     try:
-        done = subprocess.run(
-            [sys.executable, "-c", _SETUP], capture_output=True, text=True, timeout=120, check=True
-        )
-        return json.loads(done.stdout.splitlines()[-1])
-    except (OSError, subprocess.SubprocessError, ValueError, IndexError) as error:
+        with subprocess.Popen(
+            [sys.executable, "-c", _SETUP],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        ) as child:
+            assert child.stdout is not None
+            Patience(SETUP).wait(child)
+            return json.loads(child.stdout.read().splitlines()[-1])
+    except (OSError, ValueError, IndexError) as error:
         log.info("set-up costs: %s", error)
         return {}

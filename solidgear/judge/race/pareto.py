@@ -47,6 +47,8 @@ class Row:
         By quantity: SI value; ``|value / reference - 1|``; for beams and lumped models the same
         against the reference with section ties. ``errors`` also has ``C 6x6``: the largest
         ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists.
+    taken : list of float
+        Processor seconds of every run, which a budget counts; not written.
     """
 
     family: str
@@ -61,6 +63,7 @@ class Row:
     values: dict[str, float] = field(default_factory=dict)
     errors: dict[str, float] = field(default_factory=dict)
     like_for_like: dict[str, float] = field(default_factory=dict)
+    taken: list[float] = field(default_factory=list, compare=False)
 
     @property
     def seconds(self) -> float | None:
@@ -82,7 +85,7 @@ class Race:
     runs, modes : int
         Runs asked for; elastic shapes that every model is asked for.
     budget : float
-        Allowed for the rows, s.
+        Allowed for the rows, s of processor time.
     seconds : float
         Used for all, the reference included.
     complete : bool

@@ -22,15 +22,17 @@ from solidgear.judge.race.pareto import CHARTED, Race, Row
 from solidgear.judge.settle import settle
 from solidgear.ladder.model import BEAM, LUMPED
 from solidgear.ladder.registry import LADDER
+from solidgear.machine.meter import processor_seconds
 from solidgear.quantity import Quantity
 
 log = logging.getLogger(__name__)
 #: relative error bar of the reference, below what tells models apart; one of a millionth
 #: takes minutes on a shaft of ten edges
 SURE, FULL_SURE = 3e-4, 1e-6
-#: s for the points; with the reference a chart of a common shaft is there in four minutes
+#: s of processor time for the points, the same number of them on a busy machine as on an idle one;
+#: with the reference a chart of a common shaft is there in four minutes
 BUDGET, FULL_BUDGET = 120.0, 3600.0
-#: a case above these seconds gets no more runs than that
+#: a case above these s of processor time gets no more runs than that
 FEWER_RUNS = ((20.0, 1), (8.0, 3))
 #: families that run once whatever the budget
 CHEAP = (LUMPED, BEAM)
@@ -57,10 +59,11 @@ def race(
     rows : list of Row
         Such as :func:`solidgear.judge.race.cases.plan` makes; they are filled in.
     runs : int
-        Of each case; cases above 8 s get at most three, above 20 s one.
+        Of each case; cases above 8 s of processor time get at most three, above 20 s one.
     budget : float
-        Seconds for the rows; the reference takes what it takes.  A level that would not fit in with
-        all its runs, the first of a series with one, is left out, but for beams and lumped models.
+        Seconds of processor time for the rows; the reference takes what it takes.  A level that would
+        not fit in with all its runs, the first of a series with one, is left out, but for beams and
+        lumped models, and the cheapest case where none else has an answer.
     sure : float, optional
         Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
@@ -81,12 +84,11 @@ def race(
         json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget
     )
 
-    began = time.perf_counter()
+    began = processor_seconds()
 
     def spent() -> float:
-        now = time.perf_counter()
-        found.seconds = now - start
-        return now - began
+        found.seconds = time.perf_counter() - start
+        return processor_seconds() - began
 
     def timed(row: Row, turn: int) -> None:
         progress(f"run {turn + 1} of {runs}: {row.series}, level {row.level}")
@@ -112,9 +114,9 @@ def race(
                 timed(row, 0)
         for turn in range(1, runs):
             for row in found.rows:
-                if row.status != "ok" or len(row.samples) >= _most_runs(row.samples[0], runs):
+                if row.status != "ok" or len(row.taken) >= _most_runs(row.taken[0], runs):
                     continue
-                if spent() + row.samples[0] > budget:
+                if spent() + row.taken[0] > budget:
                     _note(row, f"the budget of {budget:g} s ended after run {len(row.samples)}")
                 else:
                     timed(row, turn)
@@ -179,7 +181,7 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
 def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None:
     """One more run of a row; the first fills in its numbers."""
     gc.collect()
-    start = time.perf_counter()
+    start, began = time.perf_counter(), processor_seconds()
     try:
         found = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
@@ -194,6 +196,7 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
         )
         return
     row.samples.append(time.perf_counter() - start)
+    row.taken.append(processor_seconds() - began)
     if row.status == "ok":
         return
     row.status, values = "ok", found.quantities
@@ -236,7 +239,7 @@ def _warm_up(
     scene, found: Race, n: int, progress, spent: Callable[[], float]
 ) -> dict[tuple, float]:
     """The first case of every kind once, outside the rows: first calls pay for imports and caches;
-    seconds by kind, infinite for those that half the budget does not reach.
+    processor seconds by kind, infinite for those that half the budget does not reach.
     """
     first: dict[tuple, float] = {}
     for row in found.rows:
@@ -246,21 +249,21 @@ def _warm_up(
             first[_kind(row)] = math.inf
             continue
         progress(f"warm-up: {row.series}")
-        start = time.perf_counter()
+        began = processor_seconds()
         try:
             answer(scene, row.model, row.options, n)
         except Exception as error:  # reported when its own turn comes
             log.debug("warm-up of %s: %s", row.series, error)
-        first[_kind(row)] = time.perf_counter() - start
+        first[_kind(row)] = processor_seconds() - began
     return first
 
 
 def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
-    """Seconds of one run of a row, from the levels before it in its series; the first level costs
+    """Processor seconds of one run of a row, from the levels before it in its series; the first level costs
     what the warm-up of its kind did.
     """
     times = [
-        r.samples[0]
+        r.taken[0]
         for r in found.rows
         if r.series == row.series and r.level < row.level and r.status == "ok"
     ]
@@ -269,17 +272,20 @@ def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
 
 
 def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> None:
-    """Leave a row out if the budget would not hold it beside all runs of all admitted rows."""
+    """Leave a row out if the budget would not hold it beside all runs of all admitted rows; the
+    cheapest is kept where none else has an answer.
+    """
     if any(
         r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level
     ):
         row.status, row.reason = "left out", "the level before it was left out"
         return
-    if row.family in CHEAP:
+    cheap = any(r.family in CHEAP and r.status == "waiting" for r in found.rows)
+    if row.family in CHEAP or not (cheap or any(r.status == "ok" for r in found.rows)):
         return
     guess = _guess(row, found, first)
     owed = sum(
-        r.samples[0] * (_most_runs(r.samples[0], found.runs) - len(r.samples))
+        r.taken[0] * (_most_runs(r.taken[0], found.runs) - len(r.taken))
         for r in found.rows
         if r.status == "ok"
     )

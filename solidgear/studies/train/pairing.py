@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.judge.correlation import best_assignment
 from solidgear.scene.train_housing import HOUSING
+from solidgear.solve.neighbours import best_assignment
 from solidgear.studies.beside import all_pairs
 from solidgear.studies.change import BarredMode, ModePair
 from solidgear.studies.train.housing import BOX

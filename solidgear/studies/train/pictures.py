@@ -27,7 +27,7 @@ from solidgear.system.system import System
 
 #: phases of a vibration that a picture shows, degrees
 PHASES = (0, 60, 120, 180)
-#: seconds that a picture of four frames may take
+#: s of processor time that a picture of four frames may take
 PATIENCE = 60.0
 
 

@@ -1,0 +1,73 @@
+"""A process is waited for by what it takes of the processor, whatever else the machine does."""
+
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from solidgear.machine import patience
+from solidgear.machine.isolated import IsolatedError, isolated
+from solidgear.machine.patience import Patience
+
+
+class Child:
+    """A process on a clock of our own, which takes some part of a processor."""
+
+    def __init__(self, monkeypatch, share, needs=1e9):
+        self.now, self.share, self.needs, self.pid = 0.0, share, needs, 1
+        monkeypatch.setattr(patience, "time", SimpleNamespace(monotonic=lambda: self.now))
+        monkeypatch.setattr(patience, "_processor_seconds", lambda pid: self.now * self.share)
+        self.killed = False
+
+    def wait(self, seconds=None):
+        if self.killed:
+            return -9
+        self.now += seconds
+        if self.now * self.share >= self.needs:
+            return 0
+        raise subprocess.TimeoutExpired("", seconds)
+
+    def kill(self):
+        self.killed = True
+
+
+def test_a_process_that_has_a_twentieth_of_a_processor_ends_its_work(monkeypatch):
+    child, waiting = Child(monkeypatch, 0.05, needs=20.0), Patience(25.0)
+    assert waiting.wait(child) == 0 and not waiting.why
+    assert child.now == pytest.approx(400.0, abs=1.0)  # on the wall, 16 times its patience
+    # what is left is for the next process: 5 s
+    assert waiting.left == pytest.approx(5.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "share, after, says",
+    [(0.5, 50.0, "took more than 25 s of processor time"), (0.001, 25.0, "stood still for 25 s")],
+)
+def test_patience_ends_with_processor_time_or_where_nothing_is_done(
+    monkeypatch, share, after, says
+):
+    child, waiting = Child(monkeypatch, share), Patience(25.0)
+    assert waiting.wait(child) == -9
+    assert waiting.why == says and child.now == pytest.approx(after, abs=1.0)
+
+
+def test_a_function_that_never_returns_is_ended():
+    """One that works and one that sleeps."""
+    with pytest.raises(IsolatedError, match="took more than 0.5 s of processor time|stood still"):
+        isolated(eval, "[None for _ in iter(int, 1)]", seconds=0.5)
+    begin = time.process_time()
+    with pytest.raises(IsolatedError, match="stood still for 1 s"):
+        isolated(time.sleep, 600, seconds=1.0)
+    assert time.process_time() - begin < 1.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux shows it")
+def test_what_a_process_takes_is_seen():
+    code = "import time\nwhile time.process_time() < 0.3: pass\nprint(flush=True)\ntime.sleep(60)"
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE) as child:
+        child.stdout.readline()
+        seen = patience._processor_seconds(child.pid)
+        child.kill()
+    assert 0.25 < seen < 3.0
