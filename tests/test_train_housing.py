@@ -159,7 +159,8 @@ def test_a_housing_of_matrices_moves_like_them(tmp_path):
     found = shop.system(RIGID).modes(len(exact) - 1)
     assert found.rigid == 1
     assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
-    assert "'middle.b1' of the housing lies 2 mm from that bearing" in shop.cautions[1]
+    moved = "'middle.b1' of the housing lies 2 mm from that bearing"
+    assert any(moved in text for text in shop.cautions)
     modes = train_modes(shop, RIGID, max_frequency=1500.0).modes
     assert any("housing elastic" in mode.name for mode in modes)
 
