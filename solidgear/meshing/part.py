@@ -319,8 +319,8 @@ def _not_round(table: BodyTable, place: Placing, points, triangles, found: Round
 
 
 def _other_axis(table: BodyTable, place: Placing, points, foot, along, share: float) -> str:
-    """What to write for an axis in the scene, a point (3,) and a direction (3,), about which so much of
-    the surface is round.
+    """Words on an axis in the scene, a point (3,) and a direction (3,), about which so much of the surface
+    is round: how to write it.
     """
     direction = np.array(place.turn).T @ along
     sign = np.sign(direction[np.abs(direction).argmax()])

@@ -81,8 +81,8 @@ def _cones(y, r, near) -> Arc | None:
     if not (np.diff(along) > 0).all():
         return None
     chords = np.hypot((along[1:] + along[:-1]) / 2 - yc, (across[1:] + across[:-1]) / 2 - rc)
-    off = float(np.abs(chords - radius).max())
-    return Arc(along, across, off, (float(yc), float(rc)), radius, side)
+    beside = float(np.abs(chords - radius).max())
+    return Arc(along, across, beside, (float(yc), float(rc)), radius, side)
 
 
 def _under(angle, rc, radius, side) -> float:

@@ -29,7 +29,7 @@ def shared_axis(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, 
     >>> here, there = np.arange(24), (np.arange(24) + 1) % 24
     >>> sides = np.hstack([[here, there, 24 + here], [there, 24 + there, 24 + here]])
     >>> foot, along = shared_axis(points, sides)
-    >>> abs(along).round(9).tolist(), foot[[0, 2]].round(9).tolist()
+    >>> abs(along).round(9).tolist(), abs(foot[[0, 2]]).round(9).tolist()
     ([0.0, 1.0, 0.0], [2.0, 0.0])
     """
     middle = points.mean(axis=1, keepdims=True)

@@ -67,7 +67,7 @@ def _units_of(context: bytes, content: bytes) -> Iterator[bytes]:
 
 
 def _text(name: bytes, content: bytes) -> bytes:
-    """What a file says that an entity is, such as ``#12``; nothing where it says nothing."""
+    """Text of an entity such as ``#12``; empty where the file has none."""
     found = re.search(rb"(?<![\d#])" + name + rb"\s*=([^;]*);", content)
     return found[1] if found else b""
 

@@ -84,9 +84,7 @@ class Seats:
         return self.mesh.boundary[on]
 
     def _why(self) -> str:
-        """What nodes off the surface come of, and what helps: in a mesh of one's own, or of a drawn
-        part.
-        """
+        """Reason why nodes lie off a surface and what helps, in a mesh of one's own or of a drawn part."""
         if self.clipped:
             return (
                 f"the digits of a mesh file explain ({ON_SURFACE:g} of the radius); write the mesh "

@@ -231,8 +231,10 @@ def stress_of_train(
     """
     progress(model)
     files = {side: own.scene.body for side, own in train.shafts.items()}
-    shafts = {k: own.with_changes(scene=filleted(own.scene)) for k, own in train.shafts.items()}
-    train = train.with_changes(shafts=shafts)
+    round_parts = {
+        side: own.with_changes(scene=filleted(own.scene)) for side, own in train.shafts.items()
+    }
+    train = train.with_changes(shafts=round_parts)
     shop = Workshop(_settling_train(train, model))
     usual = Operating(shop, model).at(point)
 
@@ -277,12 +279,12 @@ def _without_torque(train: Train) -> Iterator[str]:
 
 
 def _settling(scene: Scene, model: str) -> Scene:
-    """What settles of a shaft on a model: its plain part, or all of it."""
+    """The plain part of a shaft, or all of it on a model that is made for features."""
     return scene if LADDER[model].for_features else scene.plain
 
 
 def _settling_train(train: Train, model: str) -> Train:
-    """What settles of a train on a model, its teeth acting at their ports."""
+    """A train of such shafts, whose teeth act at their ports."""
     shafts = {
         side: own.with_changes(scene=_settling(own.scene, model))
         for side, own in train.shafts.items()
