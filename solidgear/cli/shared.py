@@ -193,7 +193,7 @@ class Solved(Chosen):
         """True where error bars come from a second mesh."""
         return self.second and self.name in SECOND
 
-    def without_bars(self, bars: Mapping[str, float], settled: Settled | None) -> str:
+    def without_bars(self, bars: Mapping[Any, float], settled: Settled | None) -> str:
         """Reason why numbers have no error bar; empty where they have one."""
         if bars or settled is not None:
             return ""
