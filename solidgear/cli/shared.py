@@ -200,7 +200,7 @@ class Solved(Chosen):
         return self.second and self.name in SECOND
 
     def without_bars(
-        self, bars: Mapping[str, float], settled: Settled | None, scene: Scene, body: Body
+        self, bars: Mapping[Any, float], settled: Settled | None, scene: Scene, body: Body
     ) -> str:
         """Reason why numbers have no error bar; empty where they have one."""
         if bars or settled is not None:

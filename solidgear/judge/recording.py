@@ -98,7 +98,7 @@ def recorded(
         _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
-        own = {q: bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
+        own = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
         out.warnings += spin_caution(scene, listed.body, listed.modes.modes, own)
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
