@@ -54,7 +54,7 @@ def _asked(found: TwoShafts, units: Units) -> Iterator[str]:
 
 
 def _left_open(found: TwoShafts, one: NumberChange) -> str:
-    """What the data of both leave open of a number, and whether that may turn the order."""
+    """Ranges that the data of both leave open of a number, and whether they may turn the order."""
     records = [numbers.of(one.name) for numbers in found.open]
     ranges = {
         letter: interval(record.total)

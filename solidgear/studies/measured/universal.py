@@ -229,9 +229,12 @@ def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, A
 
 def _labels(one: Mapping[str, Any]) -> tuple[str, str, str]:
     """Units on the axes of a response: of the frequency, the motion and the force."""
-    axes = ("abscissa", "ordinate", "orddenom")
-    words = (str(one.get(f"{axis}_axis_units_lab") or "").strip() for axis in axes)
-    return tuple("" if word.upper() == "NONE" else word for word in words)
+
+    def word(axis: str) -> str:
+        text = str(one.get(f"{axis}_axis_units_lab") or "").strip()
+        return "" if text.upper() == "NONE" else text
+
+    return word("abscissa"), word("ordinate"), word("orddenom")
 
 
 def _labelled(labels: tuple[str, str, str]) -> float | None:
