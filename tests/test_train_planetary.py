@@ -239,6 +239,7 @@ def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_p
         np.testing.assert_allclose(planet_forces(state), [turn.force[k]] * 2, rtol=1e-7)
 
 
+@pytest.mark.long
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
     train = sg.load_train(written(train_text(0.3)))
     at = [
