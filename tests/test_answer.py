@@ -197,6 +197,7 @@ def test_a_coupling_stands_in_the_middle_of_its_bar(scenes, truth):
     assert abs(value.value - exact) < abs(bar.values[-1] - exact)
 
 
+@pytest.mark.long
 def test_what_holds_a_bar_back_is_named(two_meshes):
     """A rigid seat that ends at a shoulder: at 1e-8 the corner is what is left after two meshes."""
     parts = [
@@ -228,6 +229,7 @@ def test_what_a_finer_mesh_finds_less_sure_again_is_solved_on(scenes):
     assert level(1.1, 1.0) == ["C_zz"]
 
 
+@pytest.mark.long
 def test_bearings_that_couple_families_keep_them_together(scenes):
     scene = scenes["shaft_stepped"]
     stiffness = {"kxx": 4e8, "kyy": 3e8, "kzz": 4e8, "kyz": 2e8}

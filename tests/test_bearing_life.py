@@ -177,6 +177,7 @@ def lives_at_rating(text, share):
     return np.array(found)
 
 
+@pytest.mark.long
 def test_life_at_the_rated_load_is_a_million_turns():
     assert lives_at_rating(DEEP_GROOVE, 1.0) == pytest.approx(1, abs=0.02)
     # at C itself contact angles of 40 degrees have turned, which takes load off the balls

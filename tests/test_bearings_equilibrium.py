@@ -66,6 +66,7 @@ def by_hand(body, bearings, port, load):
     return {name: row @ u for name, row in rows.items()}
 
 
+@pytest.mark.long
 def test_three_bearings_against_springs_iterated_by_hand(three):
     body = sg.build(three, "euler")
     load = np.array([300.0, 500.0, 2500.0, 20.0, 0, -5.0])

@@ -249,6 +249,7 @@ def test_stiffness_between_two_held_points_lies_between_that_of_both_bodies(two_
 
 
 # --------------------------------------------------------------------------- modes
+@pytest.mark.long
 @pytest.mark.parametrize("one", ["step"], indirect=True)
 def test_frequencies_of_a_body_that_nothing_holds_lie_within_bounds(one):
     free = [searched(body, as_supports(()), 8, MODES, spare=True) for body in (one.body, one.fine)]

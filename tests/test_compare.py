@@ -537,6 +537,7 @@ def test_file_in_place_of_the_folder(found, tmp_path, below):
 BEAMS_AND_HARMONIC = ("euler", "timoshenko", "harmonic")
 
 
+@pytest.mark.long
 def test_free_cylinder(tmp_path):
     found = compare(scene_of("cylinder_free"), BEAMS_AND_HARMONIC, settings=LIGHT)
     results = strict(json.dumps(found.results, allow_nan=False))

@@ -12,6 +12,7 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.body import Supports, as_supports
 from solidgear.scene import Bearing, Port, Scene, Segment
+from solidgear.solve.condensed import Condensed
 from solidgear.solve.statics import flexibility
 from tests.dense import bearing_by_hand, relative, whole
 
@@ -316,6 +317,17 @@ def test_a_free_direction_between_the_axes_is_named_as_one():
     found = sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
     assert found.free_names == ()
     np.testing.assert_allclose(np.abs(found.oblique.T), [[1, 0, 1, 0, 0, 0]], atol=1e-9)
+
+
+def test_a_free_motion_is_told_with_one_sign_whatever_the_solver_gives():
+    """A shear of two equal entries, and one whose largest entry a solver may give as -1."""
+    free = np.array([[0.3, 0.0, -0.3, 0.0, 0.0, 0.0], [0.0, 1e-3, 0.0, 0.0, 0.0, -0.9]]).T
+    wanted = np.array([[1.0, 0.0, -1.0, 0.0, 0.0, 0.0], [0.0, -1e-3 / 0.9, 0.0, 0.0, 0.0, 1.0]]).T
+    stiffness = np.eye(6)
+    for signs in ((1, 1), (-1, 1), (1, -1)):
+        found = Condensed("p", "average", stiffness, stiffness, free * signs)
+        np.testing.assert_allclose(found.oblique, wanted, rtol=1e-14, atol=0)
+    assert Condensed("p", "average", stiffness, stiffness, free[:, :0]).oblique.shape == (6, 0)
 
 
 def test_one_free_motion_more_takes_only_its_own_compliances():

@@ -74,6 +74,7 @@ def test_it_is_a_free_body_with_the_mass_of_the_part(scene, plain, body):
     assert body.size < 60
 
 
+@pytest.mark.long
 def test_without_a_difference_it_is_the_harmonic_solid(scene, plain):
     """The same 3D solid with and without: nothing is corrected, and what is left is what Rubin's
     representation leaves out, 1e-6 in the first modes.

@@ -57,6 +57,7 @@ def test_shares_are_of_every_number_in_both_planes_and_larger_where_a_motion_is_
     assert not moves_freely(Quantity("C_yy@tip")) and not moves_freely(Quantity("bending 2"))
 
 
+@pytest.mark.long
 def test_what_features_change_is_told_by_the_nearest_bending_mode_of_the_plain_part():
     scene = sg.load("geometry/pinion_keyed.toml")
     plain = solve(scene.plain, "harmonic", order=4).quantities

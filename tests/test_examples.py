@@ -114,6 +114,7 @@ def test_way_back():
     assert found["sensor"] > 0
 
 
+@pytest.mark.long
 def test_geared_train():
     first, force = run("geared_train")
     # a plate kept flat: some 14 % in the frequency

@@ -89,6 +89,7 @@ def test_ends_of_the_piece_do_not_matter(found):
     assert abs(short["tension"].value / usual["tension"].value - 1) > 1e-3
 
 
+@pytest.mark.long
 def test_a_shaft_that_is_turned_around_has_the_same_factors(found):
     turned = fillet_factors(shoulder(turned=True), "fillet").factors
     for load in UNIT_LOADS:
@@ -117,6 +118,7 @@ def loads_on(scene, turn=0.0):
     return {name: rotation(1, turn) @ load for name, load in given.items()}
 
 
+@pytest.mark.long
 def test_amplitude_does_not_depend_on_the_direction_of_the_load(loaded):
     """Both planes are one; shear counts with the sign that it has beside bending."""
     scene = shoulder()

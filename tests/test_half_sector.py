@@ -219,6 +219,7 @@ def test_a_node_on_the_axis_of_a_half():
         assert turn @ (np.cos(angle) * a - np.sin(angle) * b) == pytest.approx([0, 0, 1], abs=1e-15)
 
 
+@pytest.mark.long
 def test_half_the_memory():
     """Of the matrices and of the factors of a half, a half that a part which has none does not know."""
     scene = PARTS["bolts"]

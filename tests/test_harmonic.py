@@ -66,6 +66,7 @@ def test_mass_matrix_of_shipped_scenes(path):
 
 
 # --------------------------------------------------------------------------- Pochhammer-Chree
+@pytest.mark.long
 def test_bending_wave_of_a_cylinder_between_sliding_ends():
     # u_y = 0 and no shear at the end faces: the travelling wave of wave number pi / L fits exactly
     length = 0.12

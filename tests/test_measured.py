@@ -293,6 +293,7 @@ def test_a_resonance_far_below_all_modes_has_none_and_data_without_a_number_say_
 
 
 # ---------------------------------------------------------------------------------- identification
+@pytest.mark.long
 def test_derivatives_are_those_of_solutions_on_either_side():
     tables, step = parse(SHAFT), 1e-3
 
@@ -453,6 +454,7 @@ def test_a_mode_without_a_resonance_may_take_one_that_was_left_out(rod):
     assert len(moved) == 1 and moved[0][1] == pytest.approx(math.log(1.2) / 0.4)
 
 
+@pytest.mark.long
 def test_bars_of_a_list_that_is_cut_rest_on_what_was_solved_above_it(rod):
     scene = sg.load(rod)
     body = sg.build(scene, "harmonic", order=3)

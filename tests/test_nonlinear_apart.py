@@ -34,6 +34,7 @@ def axle():
     return shop, found
 
 
+@pytest.mark.long
 def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(axle):
     _, found = axle
     one, two = found.apart
@@ -49,6 +50,7 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
         assert np.ptp(time.force) / 2 == pytest.approx(force, rel=1e-3)
 
 
+@pytest.mark.long
 def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     shop, found = axle
     told = " ".join(BacklashTold(shop.train, (found,), 0.044).sentences())

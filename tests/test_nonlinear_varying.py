@@ -113,6 +113,7 @@ def rotor(clearance):
     )
 
 
+@pytest.mark.long
 def test_a_rotor_that_rubs_moves_alike_by_balance_and_in_time():
     own = rotor(20e-6)
     branch = follow(own, 500.0, 1080.0, step=0.1)

@@ -122,6 +122,7 @@ def test_the_page_shows_what_was_found(files, tmp_path):
     assert data["pairs"][1]["damping"] == pytest.approx(DAMPING, rel=0.01)
 
 
+@pytest.mark.long
 def test_what_a_list_of_modes_lacks_is_what_a_direct_solution_has_beside_it():
     """``(K + springs - omega^2 M) u = f`` of a 3D mesh that turns and slides freely, against its modes up
     to 20 kHz: at 4 kHz the rest acts all but statically, by (4 / 20)^2 at most.

@@ -131,6 +131,7 @@ def test_plan_has_every_family_uniform_and_graded_level_by_level(scene, full):
     assert len(plan(scene, True)) > len(plan(scene))
 
 
+@pytest.mark.long
 def test_uniform_means_no_grading(scene):
     """Cells next to a shoulder are as large as the others, to the rounding of whole numbers of
     cells.

@@ -328,6 +328,7 @@ def said(scene):
     return [n.sentence for n in described(scene)]
 
 
+@pytest.mark.long
 def test_check_tells_materials(tmp_path):
     """Nothing of two materials goes for one in silence."""
     scene = series(tmp_path, "inp", STEEL, LIGHT)

@@ -228,6 +228,7 @@ def test_judged_and_reported(shaft):
     assert bars[0] == "bar" and bars[2].startswith("± ")
 
 
+@pytest.mark.long
 def test_a_pair_that_only_the_housing_splits_is_told(shaft):
     alike = shaft.with_changes(
         housing=None, bearings=tuple(b.with_changes(housing=None) for b in shaft.bearings)

@@ -224,6 +224,7 @@ def test_an_offset_mass_couples_what_a_centred_one_does_not(bodies, scene):
     assert max(found.multiplicity) == 1  # no plane is like the other: nothing is a pair
 
 
+@pytest.mark.long
 def test_the_sweep_carries_masses(scene, tmp_path):
     out = tmp_path / "rows.csv"
     options = LIGHT["harmonic"]

@@ -177,6 +177,7 @@ def test_mirrored_points_see_mirrored_shafts():
         assert abs(cross[2, 3]) > 1e-3 * size[2, 3]  # which is odd
 
 
+@pytest.mark.long
 def test_models_agree_on_what_is_between(shaft):
     solid = sg.condense(sg.build(shaft, "solid", refinement=0.7), shaft, port=("wheel", "pinion"))
     harmonic = sg.condense(

@@ -38,6 +38,7 @@ def part(folder, features=()):
     return sg.load(folder / "scene.toml")
 
 
+@pytest.mark.long
 def test_a_filleted_shaft_from_a_file_is_the_one_written_down(tmp_path):
     """Two roots and a rim: the same mass, and the same bending by the harmonic solid, within bars."""
     scene = part(tmp_path)

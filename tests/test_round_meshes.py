@@ -97,6 +97,7 @@ def test_a_wide_facet_among_narrow_ones_is_a_flat():
     assert share_of_facets(np.delete(turn, [4, 5, 6])) < 0.1 * whole
 
 
+@pytest.mark.long
 def test_an_axis_beside_the_origin_is_told_as_it_can_be_written(tmp_path):
     """The point leaves places along the shaft where they count from without one: the lower end."""
     points, cells = rod((0.0, 10.0), (0, 20, 40, 60, 80, 100), 24)

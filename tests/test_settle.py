@@ -82,6 +82,7 @@ def test_stiffness_is_that_of_the_mesh_it_names_and_the_truth_is_within_its_bars
         assert abs(change(again.quantities, truth.quantities, name)) <= bar + REFERENCE, name
 
 
+@pytest.mark.long
 def test_a_tighter_tolerance_takes_a_finer_mesh_and_the_scene_has_one_of_its_own(scene):
     loose, tight = settle(scene, None, "stiffness"), settle(scene, 1e-3, "stiffness")
     assert loose.tolerance == scene.ask.tolerance
@@ -89,6 +90,7 @@ def test_a_tighter_tolerance_takes_a_finer_mesh_and_the_scene_has_one_of_its_own
     assert max(tight.bars.values()) <= 1e-3 < max(loose.bars.values())
 
 
+@pytest.mark.long
 def test_bars_of_a_body_hold_its_own_couplings(scene):
     """A coarse body errs by all that its bars hold, and a coupling by as much as its diagonal does."""
     found = settle(scene, 0.1, "stiffness")
@@ -271,6 +273,7 @@ def test_a_sweep_takes_the_mesh_that_its_hardest_bearings_need(scene):
     assert hard.largest[1] > base.largest[1] or hard.body.size > base.body.size
 
 
+@pytest.mark.long
 def test_features_are_held_against_the_plane_that_a_number_is_of():
     """Two meshes that say of a keyed part what its plain part is: nothing is changed by features, in
     neither plane, at neither point and not between them, and also where bearings are softer across.

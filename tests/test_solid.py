@@ -101,6 +101,7 @@ def test_free_cylinder_has_six_rigid_modes_and_no_spurious_one(element):
         assert np.all(ratio < 1.005)
 
 
+@pytest.mark.long
 def test_smallest_eigenvalues_of_one_stiffness():
     # the raw matrix of a short cylinder: six zeros, then a gap; hourglass modes of an
     # under-integrated element would fill it

@@ -61,6 +61,7 @@ def test_a_flange_warps_below_the_range_asked_for():
     )
 
 
+@pytest.mark.long
 def test_two_materials_in_a_slender_thin_tube():
     scene = scene_of("inaccurate_thin_tube")
     modes = sg.modes(sg.build(scene, "harmonic", **COARSE), scene, 10, ovalising=False)
@@ -139,6 +140,7 @@ def test_euler_is_not_valid_behind_ties_that_differ(compared):
     assert {g["attachment"] for g in results["deviations"]} == {"as scene", "section"}
 
 
+@pytest.mark.long
 def test_check_does_not_condemn_a_rigid_seat(checked):
     verdicts = checked("check_rigid_seat")
     assert all(not verdicts[m]["verdict"].startswith("will not") for m in ("harmonic", "solid"))

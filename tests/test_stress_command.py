@@ -120,6 +120,7 @@ def test_what_is_cut_into_a_shaft_is_left_out_and_told():
     assert one.found.forces.largest_moment > 0
 
 
+@pytest.mark.long
 def test_what_bearings_leave_open_moves_moment_and_stress(file):
     scene = sg.load(file)
     found = stress_of_scene(scene, "timoshenko", asked=Asked(0.05))
@@ -199,6 +200,7 @@ def test_weights_stand_in_no_table():
 
 
 # ----------------------------------------------------------------------- page and files
+@pytest.mark.long
 def test_the_page_holds_every_number_of_the_worst_fillet(run, file, tmp_path):
     out = tmp_path / "out"
     code, said, _ = run(

@@ -280,6 +280,7 @@ def test_two_processes_give_the_rows_of_one(finished, tmp_path):
     assert (tmp_path / "rows.csv").read_text() == finished[0].read_text()
 
 
+@pytest.mark.long
 def test_workers_get_the_small_operators_only(monkeypatch):
     import pickle
 

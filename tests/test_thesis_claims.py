@@ -45,6 +45,7 @@ def test_every_verdict_leads_to_the_curve_it_rests_on():
         assert f"](claim_{k}.png)" in text and claims.PAGE.with_name(f"claim_{k}.png").is_file()
 
 
+@pytest.mark.long
 def test_a_curve_shows_the_numbers_of_its_verdict(judged):
     told = judged["bending_leaves"].numbers
     for case, key in (("A: 2-bearing", "identified 2"), ("B: 3-bearing", "identified 3")):

@@ -26,6 +26,7 @@ def compared(tmp_path_factory):
     return json.loads(done.stdout), out
 
 
+@pytest.mark.long
 def test_the_page_says_what_is_stored_and_needs_no_other_file(compared):
     found, out = compared
     verdict = found["verdict"]
@@ -46,6 +47,7 @@ def test_the_page_says_what_is_stored_and_needs_no_other_file(compared):
     assert 'aria-label="' in page and "mesh force: " in page
 
 
+@pytest.mark.long
 def test_the_table_of_the_folder_is_the_judges_response(compared):
     found, out = compared
     rows = table(out / "response.csv")

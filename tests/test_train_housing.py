@@ -335,6 +335,7 @@ def test_a_force_on_the_cover_moves_a_gear_as_one_on_the_gear_moves_the_cover(ba
     assert there == pytest.approx(back, rel=1e-9) and np.abs(there).min() > 0
 
 
+@pytest.mark.long
 def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
     """Beams of the other shafts are what they are, so that the pinion's solid alone may fall."""
     models = {"input": "harmonic", "middle": "euler", "output": "euler"}

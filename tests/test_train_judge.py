@@ -77,6 +77,7 @@ def test_the_cheapest_mix_holds_up_to_the_frequency_asked(verdict):
     )
 
 
+@pytest.mark.long
 def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
     """Against meshes of order 4, which are good to 1e-5: the bar holds what each frequency errs by,
     and is no more than three times as wide. Measured: 1.4 to 2.1.

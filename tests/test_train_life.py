@@ -73,6 +73,7 @@ def test_a_train_without_a_torque_or_without_catalogue_bearings_has_no_lives():
         train_lives(operated(plain, {"torque": 100.0}))
 
 
+@pytest.mark.long
 def test_the_command_tells_lives_of_a_train_over_its_duty_table():
     words = " ".join(command("bearing", GEARBOX).output.split())
     assert "most damage at" in words and "115 N m on the" in words

@@ -104,6 +104,7 @@ def test_a_range_that_ends_below_the_speeds_is_told():
     assert "does not cover the speeds" in told[-1] and "733 Hz" in told[-1]
 
 
+@pytest.mark.long
 def test_without_speeds_the_largest_peak_of_the_range_is_told(tmp_path):
     words = ("--pinion", "timoshenko", "--gear", "timoshenko", "--out", tmp_path)
     done = command("response", "geometry/axle_overhung.toml", *words)

@@ -287,6 +287,7 @@ def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_ev
         np.testing.assert_allclose(found, [turn.force[k]] * 2, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
     train = sg.load_train(written(train_text(0.3)))
     at = [

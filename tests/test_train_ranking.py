@@ -46,6 +46,7 @@ def test_where_teeth_push_matters_less_than_every_model(rows):
     assert rows["the same, compliance of the mesh held"]["rms dB"] < 0.6 * local["rms dB"]
 
 
+@pytest.mark.long
 def test_residual_fields_are_what_makes_free_modes_converge():
     kinds = {"rubin": (8, 24), "craig_bampton": (8, 24), "no residuals": (8, 24)}
     train = sg.load_train("geometry/axle_overhung.toml")

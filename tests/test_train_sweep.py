@@ -423,6 +423,7 @@ def call(tmp_path, *words):
     return command("sweep", *words, *beams, "--out", tmp_path / "rows.csv")
 
 
+@pytest.mark.long
 def test_the_command_draws_curves_over_one_number(tmp_path):
     vary = ("--vary", "operation.full.torque=20 N*m:100 N*m:3")
     for ending, said in (

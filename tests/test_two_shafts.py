@@ -164,6 +164,7 @@ def test_springs_of_the_other_plane_alone_are_seen():
     assert abs(found["C_zz"].relative) < 1e-6 and found["C_zz"].verdict == "not resolved"
 
 
+@pytest.mark.long
 def test_shafts_of_other_lengths_have_their_modes_paired_by_name_and_it_is_told():
     rods = [sg.Segment.cylinder("rod", length=x, diameter=0.02) for x in (0.6, 0.3)]
     found = sg.compare(*(sg.Scene.from_parts([rod]) for rod in rods))

@@ -66,6 +66,7 @@ def mountings():
 
 
 # --------------------------------------------------------------------------- what differs
+@pytest.mark.long
 def test_twice_the_mesh_stiffness_is_all_that_the_table_of_inputs_shows(stiffer):
     told, _, _ = stiffer
     assert told["differences"] == [{"path": "mesh.stiffness", "a": "2.5e8 N/m", "b": "5e8 N/m"}]
@@ -106,6 +107,7 @@ def test_two_tables_of_one_name_differ_by_what_is_in_them(tmp_path):
 
 
 # --------------------------------------------------------------------------- numbers
+@pytest.mark.long
 def test_every_number_is_that_of_the_file_alone(stiffer):
     told, _, alone = stiffer
     peaks = [pair["b"] for pair in told["peaks"] if pair["b"] is not None]
@@ -118,6 +120,7 @@ def test_every_number_is_that_of_the_file_alone(stiffer):
     assert largest["size"] == pytest.approx(own.max())
 
 
+@pytest.mark.long
 def test_modes_that_both_share_are_pairs_and_what_the_mesh_strains_rises(stiffer):
     told, _, _ = stiffer
     pairs = told["modes"]
@@ -297,6 +300,7 @@ def test_shafts_and_meshes_that_one_train_does_not_have_are_refused(three):
 
 
 # --------------------------------------------------------------------------- page and files
+@pytest.mark.long
 def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(stiffer):
     told, out, _ = stiffer
     page, text = page_of(out, told, told["sentences"])
@@ -315,6 +319,7 @@ def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(stiffer)
     assert {"A: axle_overhung", "B: b"} <= set(re.findall(r'aria-label="([^"&]*)&#xA;', page))
 
 
+@pytest.mark.long
 def test_the_tables_of_the_folder_are_both_responses(stiffer):
     told, out, _ = stiffer
     for key in "ab":

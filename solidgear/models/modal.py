@@ -162,7 +162,7 @@ def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.
 
     Examples
     --------
-    >>> alike_turn(np.eye(2), -np.eye(2)[:, ::-1], np.eye(2)).round(12)
+    >>> alike_turn(np.eye(2), -np.eye(2)[:, ::-1], np.eye(2)).round(12) + 0.0
     array([[ 0., -1.],
            [-1.,  0.]])
     """

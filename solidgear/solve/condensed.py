@@ -48,7 +48,10 @@ class Condensed(Displayed):
         largest = np.abs(self.free).max(axis=0, initial=0.0)
         others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
         rest = self.free[:, others > 1e-9 * largest]
-        return rest / np.abs(rest).max(axis=0, initial=0.0)
+        size = np.abs(rest)
+        # the first of several that are as large: a solver gives any sign
+        first = np.argmax(size > (1 - 1e-9) * size.max(axis=0, initial=0.0), axis=0)
+        return rest / rest[first, np.arange(rest.shape[1])]
 
     def _alone(self) -> np.ndarray:
         """Mask of the components whose unit motion nothing resists."""
