@@ -125,7 +125,7 @@ CASES = (
         "back end: not installed, not asked for",
         (*SOLID, "--set", "refinement=0.7", "-n", "4"),
         (0,),
-        "Residual",
+        "bending 1",
         env=(NO_MKL,),
         hide=NO_PARDISO,
     ),
