@@ -158,6 +158,12 @@ def test_a_table_says_what_the_file_does_not(tmp_path, stepped):
     assert placed.on_points.points == pytest.approx(LINE, abs=1e-12)
     responses = placed.responses.responses
     assert responses.values == pytest.approx(1e-3 * accelerances(9), rel=1e-6)
+    # also where the file says otherwise
+    tap(tmp_path / "tap.uff", units(1, 1.0, 1.0), places=LINE, labels=("Hz", "g", "N"))
+    path.write_text('file = "tap.uff"\nresponse_unit = "mm/s^2/N"\n')
+    again = load_measured(path)
+    assert again.responses.responses.values == pytest.approx(responses.values)
+    assert again.remarks == ()
     # nothing is left to be told
     assert placed.remarks == ()
     path.write_text('file = "tap.uff"\nresponse_unit = "bar"\n')

@@ -211,7 +211,10 @@ class Measured(Model):
                 'responses of what file? write file = "tap.uff"', path=("response_unit",)
             )
         if not 1 <= len(self.mode) <= MOST:
-            raise SceneError(f"holds {len(self.mode)} resonances; give 1 to {MOST}", path=("mode",))
+            raise SceneError(
+                f"holds {len(self.mode)} resonances; give 1 to {MOST}, or the file of them, file =",
+                path=("mode",),
+            )
         for k, (one, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
             if following.frequency < one.frequency:
                 raise SceneError(
@@ -270,10 +273,8 @@ def _named(table: Measured, folder: Path) -> Measured:
         raise SceneError(
             "must be a universal file, .unv or .uff", path=("file",), value=show(table.file)
         )
-    read = read_universal(where)
+    read = read_universal(where, table.response_unit)
     if isinstance(read, Responses):
-        if table.response_unit:
-            read = read.in_unit(*table.response_unit)
         out = of_responses(read, str(where))
     elif table.response_unit:
         raise SceneError(f"{table.file} holds no responses", path=("response_unit",))

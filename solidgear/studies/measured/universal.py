@@ -98,14 +98,6 @@ class Responses:
     scaled: bool = True
     remarks: tuple[str, ...] = ()
 
-    def in_unit(self, size: float, derivatives: int) -> Responses:
-        """The same with values of a unit of so many in SI, whatever the file says of it."""
-        if not self.scaled:
-            return replace(
-                self, values=size * self.values, derivatives=derivatives, scaled=True, remarks=()
-            )
-        return self
-
     def placed(self, placing: Placing) -> Responses:
         """The same in the frame of a scene."""
         numbers = list(self.places)
@@ -130,10 +122,13 @@ class Responses:
         )
 
 
-def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes | None] | Responses:
+def read_universal(
+    path: str | os.PathLike, response_unit: tuple[float, int] | None = None
+) -> tuple[list[float], Shapes | None] | Responses:
     """Frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset 55), or its
     frequency responses (dataset 58) where it has no modes. Where it gives no places of its points,
-    there are no shapes.
+    there are no shapes. `response_unit`, SI units in one of the responses and derivatives of the
+    displacement, holds whatever the file says of them.
 
     Raises
     ------
@@ -155,7 +150,7 @@ def read_universal(path: str | os.PathLike) -> tuple[list[float], Shapes | None]
             return _shapes(sets, modes)
         found = [one for one in sets if one["type"] == 58 and one["func_type"] == RESPONSE]
         if found:
-            return _responses(sets, found)
+            return _responses(sets, found, response_unit)
         raise SceneError(
             "holds no mode shapes (dataset 55 of normal or complex modes) and no frequency responses "
             "(dataset 58, function 4)"
@@ -190,7 +185,11 @@ def _shapes(
     return hertz, Shapes(np.asarray(numbers, int), points, values, _length(sets))
 
 
-def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, Any]]) -> Responses:
+def _responses(
+    sets: Sequence[Mapping[str, Any]],
+    found: Sequence[Mapping[str, Any]],
+    stated: tuple[float, int] | None,
+) -> Responses:
     axis = found[0]["x"]
     kinds = found[0]["ordinate_spec_data_type"], found[0]["orddenom_spec_data_type"]
     for k, one in enumerate(found, start=1):
@@ -208,8 +207,10 @@ def _responses(sets: Sequence[Mapping[str, Any]], found: Sequence[Mapping[str, A
     if kinds == (UNKNOWN, UNKNOWN) and (shown := motion(labels[0][1])):
         derivatives = shown[1]
     scales = [_scale(sets, kinds, words) for words in labels]
-    scaled = derivatives is not None and None not in scales
     remarks = list(_remarks(labels, scales))
+    if stated is not None:
+        scales, derivatives, remarks = [stated[0]] * len(found), stated[1], []
+    scaled = derivatives is not None and None not in scales
     if hertz != 1:
         remarks.append(f"Frequencies are in {labels[0][0]}, as the label of their axis says.")
     return Responses(

@@ -19,10 +19,11 @@ from solidgear.body.surface import Surface
 from solidgear.scene.file import scene_of
 from solidgear.scene.paths import Tables
 from solidgear.studies.measured import correlate
-from solidgear.studies.measured.alignment import BANDWIDTH, align
+from solidgear.studies.measured.alignment import BANDWIDTH
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.correlate import POSSIBLE, SURE, peaks_of
 from solidgear.studies.measured.data import Measured
+from solidgear.studies.measured.same_part import alignment_of
 from solidgear.studies.measured.shapes import OnPoints
 from solidgear.studies.measured.universal import Shapes
 from validation.campaign.case import Case, Run
@@ -187,7 +188,7 @@ def _told(
     if shapes is not None:
         values = np.array([peak.shape for peak in peaks])
         seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
-    found = align(*peaks_of(measured, computed, correlate.SPRINGS), seen)
+    found = alignment_of(*peaks_of(measured, computed, correlate.SPRINGS), seen)
     for peak, row in zip(peaks, found.pairs):
         told = np.flatnonzero(row > POSSIBLE)
         for j in told if peak.right is not MIXED else ():
