@@ -491,7 +491,7 @@ def test_two_bearings_that_may_have_changed_places_are_told(tmp_path):
         (["material.E=180 GPa"], "must be two ends"),
         (["material.E=1 : 2"], "bounds must hold what the file says"),
         (["material.E=± 200 %"], "must be two ends above zero"),
-        (["material.e"], "the file holds null"),
+        (["material.e"], "is not in the file"),
         (["material.E", "material.E"], "given twice"),
         (["port.at"], "the file holds .rod.middle"),
     ],

@@ -15,8 +15,8 @@ from solidgear.studies.measured.modal_fit import ModalFit, fit_modes
 from solidgear.studies.measured.universal import Responses, Shapes
 
 #: standard deviation to which a frequency repeats, relative, whatever the noise: the modulus of steel falls
-#: by 0.03 % a kelvin (EN 13480-3: 212 GPa at 20 degrees, 207 at 100), so that 1.3 K are as much, as are 0.4 g
-#: of accelerometer or cord that move with a kilogram
+#: by some 0.03 % a kelvin, so that 1.3 K are as much, as are 0.4 g of accelerometer or cord that move with a
+#: kilogram
 REPEATS = 2e-4
 
 
