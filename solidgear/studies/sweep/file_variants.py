@@ -109,7 +109,14 @@ class FileVariants(Generic[T]):
             except SolidgearError as error:
                 refusal = refusal or self.located(error, index)
         self.refuse_hopeless()
+        if isinstance(refusal, SceneError) and not self._touched(refusal):
+            raise refusal
         raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
+
+    def _touched(self, refusal: SceneError) -> bool:
+        """True where what varies has a part in a refusal, which else is of the file as it is."""
+        paths = [problem.path for problem in refusal.problems]
+        return any(_meets(path, entry.keys) for path in paths for entry in self.entries)
 
     def refuse_hopeless(self) -> None:
         """Refuse an entry that no file may have, whatever its value.
