@@ -186,7 +186,7 @@ def test_back_ends_that_cannot_are_told():
 
 def test_no_back_end_for_files(monkeypatch):
     monkeypatch.setattr("solidgear.solve.choice.missing", lambda name: f"{name} is not usable")
-    with pytest.raises(FactorError, match="no back end here .*pardiso is not usable: install"):
+    with pytest.raises(FactorError, match="no back end here .*pardiso is not usable: pip install"):
         factorise(sp.identity(9, format="csr"), factoring=Factoring(out_of_core=True))
 
 
