@@ -22,7 +22,7 @@ STEPPED, GEARBOX = "geometry/shaft_stepped.toml", "geometry/gearbox_catalogue.to
 def gearbox():
     # modes as high as the seventh bending may pass the points that were solved, by 1e-4 of themselves
     scene = sg.load(GEARBOX).with_changes(ask=sg.Ask(modes=4))
-    return budget(scene, samples=8, seed=3)
+    return budget(scene, samples=20, seed=3)
 
 
 def test_a_modulus_and_a_density_move_a_free_shaft_by_their_roots():
