@@ -165,7 +165,11 @@ def test_the_other_plane_is_what_the_first_is_with_bearings_turned():
 
 
 @pytest.mark.parametrize(
-    "ask", [["K_zz"], pytest.param(["bending 1", "axial 1"], marks=pytest.mark.slow)]
+    "ask",
+    [
+        pytest.param(["K_zz"], marks=pytest.mark.long),
+        pytest.param(["bending 1", "axial 1"], marks=pytest.mark.slow),
+    ],
 )
 def test_bars_hold_in_a_narrow_notch(ask):
     # between a cone of 83 degrees and the face of a disc

@@ -351,6 +351,7 @@ def failing(monkeypatch, model, error):
     monkeypatch.setattr("solidgear.judge.tied.build", broken)
 
 
+@pytest.mark.long
 def test_a_model_that_fails_is_reported_and_the_others_go_on(overhung, monkeypatch, tmp_path):
     why = "12 of 420 elements are inverted"
     failing(monkeypatch, "solid", MeshError(why))

@@ -238,6 +238,7 @@ def test_a_list_of_elements_that_ends_early_is_told(tmp_path):
         assert "as large as an element" in said and "line" in said, said
 
 
+@pytest.mark.long
 def test_sound_parts_have_no_pits():
     """A keyway, whose corners are pockets, and a hollow shaft, whose bore is hollow everywhere; and
     with an element less at the surface they have.

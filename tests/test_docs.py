@@ -94,7 +94,13 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
-SECONDS = {"guide/compare.md", "guide/points.md", "guide/uncertainty.md", "guide/stress.md"}
+SECONDS = {
+    "guide/compare.md",
+    "guide/points.md",
+    "guide/uncertainty.md",
+    "guide/nonlinear.md",
+    "guide/stress.md",
+}
 #: code that takes a second and more
 SLOW_CODE = {"guide/sweeps.md", "theory/stress.md", "guide/stiffness.md"}
 

@@ -17,6 +17,7 @@ def run(name):
     return module.main()
 
 
+@pytest.mark.long
 def test_first_answer():
     found = run("first_answer")
     # converged values of the overhung pinion, tests/baselines

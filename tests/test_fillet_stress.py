@@ -78,6 +78,7 @@ def test_coefficients_of_charts_are_typed_as_they_are_printed(key):
     assert total == pytest.approx([1.0, 0.0, 0.0], abs=0.06)
 
 
+@pytest.mark.long
 def test_ends_of_the_piece_do_not_matter(found):
     """At four radii they change nothing, at half a radius what Saint-Venant's principle leaves."""
     same = {"orders": (4, 5), "tolerance": 1e-9}

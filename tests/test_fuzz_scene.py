@@ -46,6 +46,7 @@ def nothing_found(case, kind, cases, seed=1):
     return stages, {outcome.detail for outcome in outcomes if outcome.kind == "refused"}
 
 
+@pytest.mark.long
 def test_spoilt_scenes_are_refused_or_solved(fuzz):
     case, _, scenes = fuzz
     cases, kind = 20, case.Fuzz("scenes", partial(scenes.scene, harmonic=0.7, command=0.35))

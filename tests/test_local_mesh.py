@@ -225,6 +225,7 @@ def test_on_rigid_shafts_they_add_nothing(train, usual):
 SIDES = ("pinion", "gear")
 
 
+@pytest.mark.long
 def test_modes_say_what_is_driven(train, usual):
     found = train_modes(usual, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(found.undriven) == ["gear"] and list(found.undriven["gear"]) == [2, 3]

@@ -51,6 +51,7 @@ def test_any_mixture_of_an_axial_mode_with_a_pair_of_three_waves_is_named_by_wha
             assert names.unmixed(shapes, mixed, np.array([1.0, 1.1, 1.2])) == shapes
 
 
+@pytest.mark.long
 def test_no_mode_of_a_keyed_shaft_bends_whose_sections_stand_still():
     scene = sg.load("geometry/pinion_keyed.toml")
     found = sg.modes(sg.build(scene, "solid", refinement=0.4), scene, n=22).modes

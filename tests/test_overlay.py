@@ -77,6 +77,7 @@ def found(files):
     return correlate(load(files / "rod.toml"), load_measured(files / "rod.unv"), 1e-3)
 
 
+@pytest.mark.long
 def test_a_rod_answers_as_the_theory_of_rods_says(found):
     """Shapes of unit mass of a free rod are 2 / sqrt(m) at its ends, and it follows a slow force there
     as 4 / m.

@@ -429,6 +429,7 @@ def test_mesh_files_that_are_not_read(tmp_path):
         load(tmp_path, mesh="part.msh")
 
 
+@pytest.mark.long
 def test_a_mesh_file_has_one_mesh_and_no_bar(shipped, tmp_path):
     scene, body = shipped
     written(body, tmp_path / "part.vtu")

@@ -190,6 +190,7 @@ def test_steps_and_an_adaptive_integrator_have_one_envelope(turned):
     np.testing.assert_allclose(force[-1], known[-1], rtol=1e-2)
 
 
+@pytest.mark.long
 def test_energy_is_stored_or_lost(turned):
     # second order in the step: 6e-4 at the speed of the source, with the same steps a turn
     assert abs(turned[1].unbalanced[0]) < 2e-3

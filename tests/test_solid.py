@@ -130,6 +130,7 @@ def test_light_hexahedra_are_near_the_reference(overhung, light):
     assert 0 < k[2, 2] / K_ZZ - 1 < 5e-3
 
 
+@pytest.mark.long
 def test_light_hexahedra_bend_near_the_reference(overhung, light):
     f = sg.modes(light, overhung, n=3).named("bending 1").frequency_hz
     # frequencies feel the singular corners less than the port's stiffness does: a quarter of that

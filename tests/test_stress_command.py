@@ -236,6 +236,7 @@ def test_the_page_holds_every_number_of_the_worst_fillet(run, file, tmp_path):
     assert (out / "section_forces_output.png").exists()
 
 
+@pytest.mark.long
 def test_a_rating_follows_what_is_given(file):
     scene = sg.load(file)
     usual, rough = (

@@ -61,6 +61,7 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
     assert solids.linear_loudest[1] == pytest.approx(16_060.0, rel=5e-3)
 
 
+@pytest.mark.long
 def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
     others = [with_backlash(shop, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
     lumped, beams = BacklashTold(shop.train, (solids, *others), 0.044).sufficiency()

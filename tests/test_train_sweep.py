@@ -250,6 +250,7 @@ NOT_OF_THE_BODY = (
 )
 
 
+@pytest.mark.long
 def test_what_is_no_part_of_a_body_makes_none(tmp_path):
     found, rows, bodies = counted(AXLE, NOT_OF_THE_BODY, tmp_path / "rows.csv")
     assert (found.total, bodies) == (32, 2)
