@@ -86,4 +86,6 @@ def test_an_axis_a_little_beside_the_one_that_is_written_is_taken_and_told(tmp_p
     path.write_text(SCENE.format(given=""))
     scene = sg.load(path)
     assert scene.body.foot == pytest.approx((7e-7, 0, 0), abs=1e-10)
-    assert any("lies 0.7 um beside y of the file" in doubt for doubt in scene.body.doubts)
+    assert any(
+        "lies 0.7 um beside y of the file" in doubt for doubt in scene.body.doubts(scene.material)
+    )
