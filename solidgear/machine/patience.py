@@ -76,6 +76,6 @@ class Patience:
 def _processor_seconds(pid: int) -> float | None:
     """Taken by a process and by the children it has waited for; None where that is not shown."""
     told = text_of(Path(f"/proc/{pid}/stat")).rpartition(")")[2].split()
-    if len(told) < 15:
+    if len(told) < 15 or not hasattr(os, "sysconf"):
         return None
     return sum(int(field) for field in told[11:15]) / os.sysconf("SC_CLK_TCK")
