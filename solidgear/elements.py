@@ -11,28 +11,15 @@ from typing import NamedTuple
 
 
 class Element(NamedTuple):
-    """An element of the 3D solid.
+    """An element of the 3D solid."""
 
-    Attributes
-    ----------
-    order : int
-        Of what lies along an edge.
-    degree : int
-        Of polynomials that its quadrature integrates (of hexahedra, in every direction): stiffness
-        and mass of affine elements, and one order in reserve for curved ones.
-    basis : str
-        Its class in ``skfem.element``.
-    cell : str
-        Its kind of cell in meshio.
-    vtk : str
-        Its class of cell in VTK, which knows the order of nodes.
-    """
-
-    order: int
+    order: int  #: of what lies along an edge
+    #: of polynomials that its quadrature integrates (of hexahedra, in every direction): stiffness
+    #: and mass of affine elements, and one order in reserve for curved ones
     degree: int
-    basis: str
-    cell: str
-    vtk: str
+    basis: str  #: its class in ``skfem.element``
+    cell: str  #: its kind of cell in meshio
+    vtk: str  #: its class of cell in VTK, which knows the order of nodes
 
 
 ELEMENTS = {

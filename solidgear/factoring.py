@@ -14,17 +14,6 @@ ENGINES = ("own", "petsc", "petsc-gamg")
 class Factoring:
     """Requests to a solver beyond the back end that it takes.
 
-    Attributes
-    ----------
-    precision : {'double', 'single'}
-        Of the factor. Solutions are refined in double precision either way.
-    out_of_core : bool
-        Whether the factor is kept in files.
-    engine : {'own', 'petsc', 'petsc-gamg'}
-        PETSc in processes of its own: MUMPS, or conjugate gradients on algebraic multigrid.
-    ranks : int
-        Processes of the engine.
-
     Examples
     --------
     >>> Factoring(precision="single").words
@@ -33,10 +22,12 @@ class Factoring:
     ''
     """
 
+    #: of the factor. Solutions are refined in double precision either way.
     precision: str = "double"
-    out_of_core: bool = False
+    out_of_core: bool = False  #: whether the factor is kept in files
+    #: PETSc in processes of its own: MUMPS, or conjugate gradients on algebraic multigrid
     engine: str = "own"
-    ranks: int = 2
+    ranks: int = 2  #: processes of the engine
 
     @property
     def words(self) -> str:

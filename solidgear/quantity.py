@@ -52,17 +52,6 @@ class Quantity(Name):
     ----------
     text : str
 
-    Attributes
-    ----------
-    symbol : str
-        The name without points.
-    kind : {'compliance', 'stiffness', 'frequency'}
-    row, column : int or None
-        Place in the 6x6, in the order of :data:`~solidgear.frames.DOF_NAMES`; None of frequencies.
-    points : tuple of str
-        Names of lumped points, of the motion (of a stiffness: the load) and of the load (the
-        motion); one where both are the same, none at the main point.
-
     Examples
     --------
     >>> name = Quantity("C_z,thx@wheel@pinion")
@@ -72,10 +61,14 @@ class Quantity(Name):
     (True, 'frequency')
     """
 
-    symbol: str
+    symbol: str  #: the name without points
     kind: str
+    #: row, column: place in the 6x6, in the order of :data:`~solidgear.frames.DOF_NAMES`; None of
+    #: frequencies
     row: int | None
     column: int | None
+    #: names of lumped points, of the motion (of a stiffness: the load) and of the load (the
+    #: motion); one where both are the same, none at the main point
     points: tuple[str, ...]
 
     def __new__(cls, text: str) -> Quantity:

@@ -50,14 +50,9 @@ class Holds(Protocol):
 
 @dataclass(frozen=True)
 class Linear:
-    """A bearing of constant stiffness.
+    """A bearing of constant stiffness."""
 
-    Attributes
-    ----------
-    stiffness : (6, 6) ndarray
-    """
-
-    stiffness: np.ndarray
+    stiffness: np.ndarray  #: (6, 6)
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """``K q``."""
@@ -74,18 +69,10 @@ class Linear:
 
 @dataclass(frozen=True)
 class Foot:
-    """Something elastic that the outer ring of a bearing stands on.
+    """Something elastic that the outer ring of a bearing stands on."""
 
-    Attributes
-    ----------
-    moves : (6, k) ndarray
-        Motion of the ring for unit motions in which it gives.
-    stiffness : (k, k) ndarray
-        Against these.
-    """
-
-    moves: np.ndarray
-    stiffness: np.ndarray
+    moves: np.ndarray  #: (6, k) motion of the ring for unit motions in which it gives
+    stiffness: np.ndarray  #: (k, k) against these
 
 
 def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
@@ -100,23 +87,13 @@ def foot_of(housing: Elastic, moves: np.ndarray | None = None) -> Foot:
 
 @dataclass(frozen=True)
 class Mounted:
-    """Carrier at a port.
-
-    Attributes
-    ----------
-    attachment : str or None
-        Of the port; None takes the body's first.
-    spring : float or None
-        In series with it along y, N/m.
-    housing : Elastic or None
-        That its outer ring alone stands in.
-    """
+    """Carrier at a port."""
 
     port: str
     bearing: Holds
-    attachment: str | None = None
-    spring: float | None = None
-    housing: Elastic | None = None
+    attachment: str | None = None  #: of the port; None takes the body's first
+    spring: float | None = None  #: in series with it along y, N/m
+    housing: Elastic | None = None  #: that its outer ring alone stands in
 
     @property
     def feet(self) -> tuple[Foot, ...]:
@@ -127,21 +104,11 @@ class Mounted:
 
 
 class Between(NamedTuple):
-    """Elastic behaviour of something free between n places where it is seen.
+    """Elastic behaviour of something free between n places where it is seen."""
 
-    Attributes
-    ----------
-    basis : (n, r) ndarray
-        Motions of the places that are possible at all, one a column.
-    stiffness : (r,) ndarray
-        Against each of them, N/m; zero for rigid motions.
-    size : (n,) ndarray
-        Motion of each place that counts as one metre.
-    """
-
-    basis: np.ndarray
-    stiffness: np.ndarray
-    size: np.ndarray
+    basis: np.ndarray  #: (n, r) motions of the places that are possible at all, one a column
+    stiffness: np.ndarray  #: (r,) against each of them, N/m; zero for rigid motions
+    size: np.ndarray  #: (n,) motion of each place that counts as one metre
 
 
 def between(soft: np.ndarray, rigid: np.ndarray, size: np.ndarray) -> Between:

@@ -32,14 +32,9 @@ from solidgear.bearings.row import FELT, Contacts, Elements, felt, products, six
 
 @dataclass(frozen=True, kw_only=True)
 class BallRow(Elements):
-    """One row of balls.
+    """One row of balls."""
 
-    Attributes
-    ----------
-    inner, outer : float
-        Groove radius over ball diameter; above 0.5.
-    """
-
+    #: inner, outer: groove radius over ball diameter; above 0.5
     inner: float = 0.52
     outer: float = 0.53
 

@@ -25,22 +25,12 @@ End = Literal["middle", "softer", "stiffer"]
 
 @dataclass(frozen=True)
 class Catalogued:
-    """A bearing made from catalogue data.
-
-    Attributes
-    ----------
-    inside : Inside
-        Inner geometry of a row that it was made with.
-    estimated : tuple of str
-        What of the inside was not given.
-    clearance : float
-        Radial, at work, m.
-    """
+    """A bearing made from catalogue data."""
 
     bearing: RollingBearing
-    inside: Inside
-    estimated: tuple[str, ...]
-    clearance: float
+    inside: Inside  #: inner geometry of a row that it was made with
+    estimated: tuple[str, ...]  #: what of the inside was not given
+    clearance: float  #: radial, at work, m
 
 
 def catalogued(

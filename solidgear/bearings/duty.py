@@ -16,24 +16,12 @@ from solidgear.scene.units import TYPED
 
 @dataclass(frozen=True)
 class DutyPoint:
-    """Point of a duty table of one bearing.
+    """Point of a duty table of one bearing."""
 
-    Attributes
-    ----------
-    life : float
-        Of the bearing there, revolutions; infinite where it carries nothing.
-    speed : float
-        rad/s.
-    share : float or None
-        Of the time.
-    hours : float or None
-        In place of a share.
-    """
-
-    life: float
-    speed: float
-    share: float | None = None
-    hours: float | None = None
+    life: float  #: of the bearing there, revolutions; infinite where it carries nothing
+    speed: float  #: rad/s
+    share: float | None = None  #: of the time
+    hours: float | None = None  #: in place of a share
 
     @property
     def turns(self) -> float:
@@ -43,20 +31,13 @@ class DutyPoint:
 
 @dataclass(frozen=True)
 class DutyLife:
-    """Life over a duty table.
-
-    Attributes
-    ----------
-    damage : tuple of float
-        Share of the damage that each point does; they sum to one, or are zero where none does any.
-    worst : int
-        Place of the point that does most.
-    """
+    """Life over a duty table."""
 
     hours: float
     revolutions: float
+    #: share of the damage that each point does; they sum to one, or are zero where none does any
     damage: tuple[float, ...]
-    worst: int
+    worst: int  #: place of the point that does most
 
 
 def duty_life(points: Sequence[DutyPoint]) -> DutyLife:

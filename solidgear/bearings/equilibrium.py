@@ -32,33 +32,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A shaft at rest under load.
+    """A shaft at rest under load."""
 
-    Attributes
-    ----------
-    ports : tuple of str
-        Bearings in the order given, then loaded ports that carry none.
-    motion : dict of str to (6,) ndarray
-        Of ports, m and rad; thy is not solved for and is zero.
-    relative : dict of str to (6,) ndarray
-        Motion of each bearing's inner ring against its outer one.
-    load : dict of str to (6,) ndarray
-        What each bearing carries, N and N m: the load of the shaft on it.
-    tangent : dict of str to (6, 6) ndarray
-        Of each bearing alone, at that point.
-    lost : tuple of str
-        Bearings that carry nothing.
-    unbalanced : float
-        What is left of the loads, of the largest of them or of the preloads.
-    """
-
-    ports: tuple[str, ...]
-    motion: dict[str, np.ndarray]
-    relative: dict[str, np.ndarray]
+    ports: tuple[str, ...]  #: bearings in the order given, then loaded ports that carry none
+    motion: dict[str, np.ndarray]  #: of ports, m and rad; thy is not solved for and is zero
+    relative: dict[str, np.ndarray]  #: motion of each bearing's inner ring against its outer one
+    #: what each bearing carries, N and N m: the load of the shaft on it
     load: dict[str, np.ndarray]
-    tangent: dict[str, np.ndarray]
-    lost: tuple[str, ...]
-    unbalanced: float
+    tangent: dict[str, np.ndarray]  #: of each bearing alone, at that point
+    lost: tuple[str, ...]  #: bearings that carry nothing
+    unbalanced: float  #: what is left of the loads, of the largest of them or of the preloads
     iterations: int
     _state: np.ndarray = field(repr=False, default_factory=lambda: np.zeros(0))
 

@@ -61,37 +61,22 @@ _STATIC = (0.52, 0.50, 0.46, 0.42, 0.38, 0.33, 0.29, 0.26, 0.22)
 
 
 class Factors(NamedTuple):
-    """Factors of an equivalent load.
+    """Factors of an equivalent load."""
 
-    Attributes
-    ----------
-    e : float
-        Of F_a / F_r, up to which `low` holds.
-    low, high : (float, float)
-        X and Y up to e, and beyond.
-    """
-
-    e: float
+    e: float  #: of F_a / F_r, up to which `low` holds
+    #: low, high: X and Y up to e, and beyond
     low: tuple[float, float]
     high: tuple[float, float]
 
 
 class Equivalent(NamedTuple):
-    """Equivalent dynamic load of a bearing.
+    """Equivalent dynamic load of a bearing."""
 
-    Attributes
-    ----------
-    load : float
-        P, N.
-    radial, axial : float
-        What it comes from, N.
-    X, Y, e : float
-        Factors that were taken, and the limit of F_a / F_r between both pairs of them.
-    """
-
-    load: float
+    load: float  #: P, N
+    #: radial, axial: what it comes from, N
     radial: float
     axial: float
+    #: X, Y, e: factors that were taken, and the limit of F_a / F_r between both pairs of them
     X: float
     Y: float
     e: float

@@ -30,16 +30,10 @@ RATING_SPREAD = 0.08
 
 @dataclass(frozen=True)
 class Inside:
-    """Inner geometry of a row, m and rad.
-
-    Attributes
-    ----------
-    diameter, length, pitch : float
-        `length` is 0 for balls.
-    conformity : (float, float)
-    """
+    """Inner geometry of a row, m and rad."""
 
     elements: int
+    #: diameter, length, pitch: `length` is 0 for balls
     diameter: float
     length: float
     pitch: float
@@ -58,20 +52,13 @@ class Inside:
 
 
 class Geometry(NamedTuple):
-    """Inner geometry with its spread.
+    """Inner geometry with its spread."""
 
-    Attributes
-    ----------
-    middle, softer, stiffer : Inside
-        All three the same where nothing is estimated.
-    estimated : tuple of str
-        What was not given.
-    """
-
+    #: middle, softer, stiffer: all three the same where nothing is estimated
     middle: Inside
     softer: Inside
     stiffer: Inside
-    estimated: tuple[str, ...]
+    estimated: tuple[str, ...]  #: what was not given
 
 
 @lru_cache(maxsize=1024)

@@ -38,17 +38,10 @@ _MOST_STEPS = 50
 
 
 class Point(NamedTuple):
-    """A point contact.
+    """A point contact."""
 
-    Attributes
-    ----------
-    constant : float
-        c of ``Q = c delta^(3/2)``, N/m^(3/2).
-    long, short : float
-        Semi-axes of the ellipse at 1 N, m; they grow with the cube root of the load.
-    """
-
-    constant: float
+    constant: float  #: c of ``Q = c delta^(3/2)``, N/m^(3/2)
+    #: long, short: semi-axes of the ellipse at 1 N, m; they grow with the cube root of the load
     long: float
     short: float
 

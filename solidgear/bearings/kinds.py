@@ -14,35 +14,19 @@ class Share(NamedTuple):
 
 
 class Shares(NamedTuple):
-    """Usual inside of a kind, and what its rating has of the kind.
+    """Usual inside of a kind, and what its rating has of the kind."""
 
-    Attributes
-    ----------
-    diameter : Share
-        Element diameter over ``D - d``.
-    length : Share
-        Effective roller length over width.
-    filling : Share
-        Elements over those that would touch all around.
-    rating_factor : float
-        b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today.
-    angle : float
-        Contact angle where nothing tells it, rad.
-    angle_spread : float
-        Of it, relative.  Ball and tapered rows have none here: a steeper one is stiffer along y and
-        softer across it.  Barrels stand so flat that only the former counts.
-    conformity : tuple of (float, float)
-        Groove radius over ball diameter, inner and outer: softer, middle (that of ISO 281's rating
-        where it has one) and stiffer end; of spherical rollers over twice the radius of their
-        contour.
-    """
-
-    diameter: Share
-    length: Share
-    filling: Share
-    rating_factor: float
-    angle: float = 0.0
+    diameter: Share  #: element diameter over ``D - d``
+    length: Share  #: effective roller length over width
+    filling: Share  #: elements over those that would touch all around
+    rating_factor: float  #: b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today
+    angle: float = 0.0  #: contact angle where nothing tells it, rad
+    #: of it, relative.  Ball and tapered rows have none here: a steeper one is stiffer along y and
+    #: softer across it.  Barrels stand so flat that only the former counts.
     angle_spread: float = 0.0
+    #: groove radius over ball diameter, inner and outer: softer, middle (that of ISO 281's rating
+    #: where it has one) and stiffer end; of spherical rollers over twice the radius of their
+    #: contour
     conformity: tuple[tuple[float, float], ...] = ((0.53, 0.53), (0.52, 0.53), (0.515, 0.515))
 
 

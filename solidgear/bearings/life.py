@@ -37,67 +37,41 @@ MOST_LOAD = 0.5
 
 
 class Modified(NamedTuple):
-    """Modified reference rating life and its factors.
+    """Modified reference rating life and its factors."""
 
-    Attributes
-    ----------
-    life : float
-        L_nmr, revolutions.
-    a1, a_iso, kappa, contamination : float
-        Factors of ISO 281; `a_iso` is that of all slices together, `contamination` is e_C.
-    reference_viscosity : float
-        nu_1, m^2/s.
-    low, high : float
-        Life at both ends of the cleanliness that a word means.
-    """
-
-    life: float
+    life: float  #: L_nmr, revolutions
     reliability: float
+    #: a1, a_iso, kappa, contamination: factors of ISO 281; `a_iso` is that of all slices together,
+    #: `contamination` is e_C
     a1: float
     a_iso: float
     kappa: float
     contamination: float
-    reference_viscosity: float
+    reference_viscosity: float  #: nu_1, m^2/s
+    #: low, high: life at both ends of the cleanliness that a word means
     low: float
     high: float
 
 
 @dataclass(frozen=True)
 class Life:
-    """Life and static safety of a bearing at one motion; lives in revolutions of 90 % reliability.
+    """Life and static safety of a bearing at one motion; lives in revolutions of 90 % reliability."""
 
-    Attributes
-    ----------
-    basic : float
-        L_10 of ISO 281.
-    reference : float
-        L_10r of ISO/TS 16281.
-    without : str
-        Why there is no modified life; empty where there is one.
-    equivalent : Equivalent
-        Dynamic load P of the basic life.
-    reference_load : float
-        What its elements feel: the radial load, N, under which half of each row carrying it evenly
-        would live as long as the reference life.
-    static_load, static_safety : float
-        P_0 in N, and C_0 / P_0.
-    pressure : tuple of (float, float)
-        Largest at the inner and the outer ring of each row, Pa.
-    notes : tuple of str
-        What is to be said of it, one sentence each.
-    """
-
-    basic: float
-    reference: float
+    basic: float  #: L_10 of ISO 281
+    reference: float  #: L_10r of ISO/TS 16281
     modified: Modified | None
-    without: str
-    equivalent: Equivalent
+    without: str  #: why there is no modified life; empty where there is one
+    equivalent: Equivalent  #: dynamic load P of the basic life
+    #: what its elements feel: the radial load, N, under which half of each row carrying it evenly
+    #: would live as long as the reference life
     reference_load: float
+    #: static_load, static_safety: P_0 in N, and C_0 / P_0
     static_load: float
     static_safety: float
+    #: largest at the inner and the outer ring of each row, Pa
     pressure: tuple[tuple[float, float], ...]
     rated: Ratings
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  #: what is to be said of it, one sentence each
 
 
 def life(

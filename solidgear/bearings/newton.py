@@ -27,17 +27,11 @@ UNBALANCED = 1e-12
 
 
 class Settled(NamedTuple):
-    """An equilibrium.
+    """An equilibrium."""
 
-    Attributes
-    ----------
-    motion : (n,) ndarray
-    unbalanced : float
-        Largest part of the load that is left, of the largest load or of the forces at work without
-        any, in scaled units.
-    """
-
-    motion: np.ndarray
+    motion: np.ndarray  #: (n,)
+    #: largest part of the load that is left, of the largest load or of the forces at work without
+    #: any, in scaled units
     unbalanced: float
     iterations: int
 

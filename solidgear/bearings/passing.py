@@ -26,22 +26,13 @@ from solidgear.bearings.row import Contacts
 
 
 class Passing(NamedTuple):
-    """Frequencies of a row of rolling elements, in the unit of the speeds of its rings.
+    """Frequencies of a row of rolling elements, in the unit of the speeds of its rings."""
 
-    Attributes
-    ----------
-    cage : float
-        FTF; negative where the cage turns against the sense of the speeds.
-    outer, inner : float
-        BPFO and BPFI.
-    element : float
-        BSF, against the cage.
-    """
-
-    cage: float
+    cage: float  #: FTF; negative where the cage turns against the sense of the speeds
+    #: outer, inner: BPFO and BPFI
     outer: float
     inner: float
-    element: float
+    element: float  #: BSF, against the cage
 
 
 def passing(

@@ -35,17 +35,10 @@ class SprungRow:
     The ring goes where contacts and spring balance; at rest they do with the row as it is pushed.
     With the ring's motion w the energy is that of the row at ``q - w e_y`` and of the spring, least
     in w: the load is the row's there, the tangent the row's with y condensed.
-
-    Attributes
-    ----------
-    row : BallRow or RollerRow
-        Pushed by the spring's force.
-    spring : float
-        N/m.
     """
 
-    row: BallRow | RollerRow
-    spring: float
+    row: BallRow | RollerRow  #: pushed by the spring's force
+    spring: float  #: N/m
 
     @property
     def pitch(self) -> float:

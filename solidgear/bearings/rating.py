@@ -111,20 +111,13 @@ def _factor(data: Catalogue) -> float:
 
 
 class Ratings(NamedTuple):
-    """Load ratings of a bearing, of all its rows together.
+    """Load ratings of a bearing, of all its rows together."""
 
-    Attributes
-    ----------
-    dynamic, static, fatigue : float
-        C, C_0 and C_u, N.
-    sources : dict of str to str
-        Where each came from, by C, C0 and Cu.
-    """
-
+    #: dynamic, static, fatigue: C, C_0 and C_u, N
     dynamic: float
     static: float
     fatigue: float
-    sources: dict[str, str]
+    sources: dict[str, str]  #: where each came from, by C, C0 and Cu
 
 
 def ratings(data: Catalogue, inside: Inside) -> Ratings:

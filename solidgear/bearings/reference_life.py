@@ -45,26 +45,17 @@ Ring = Literal["inner", "outer"]
 
 
 class Fatigue(NamedTuple):
-    """Laws of fatigue of a kind of contact.
+    """Laws of fatigue of a kind of contact."""
 
-    Attributes
-    ----------
-    turning, standing : float
-        Powers p and s of the mean load on a ring.
-    slices : float
-        Power of the number of slices in the capacity of one.
-    inner, outer : float
-        Integrals that turn the rating of half a loaded row into the capacity of an element.
-    edge : float
-        What uneven loads along an element have already taken off the rating.
-    """
-
+    #: turning, standing: powers p and s of the mean load on a ring
     turning: float
     standing: float
-    slices: float
+    slices: float  #: power of the number of slices in the capacity of one
+    #: inner, outer: integrals that turn the rating of half a loaded row into the capacity of an
+    #: element
     inner: float
     outer: float
-    edge: float
+    edge: float  #: what uneven loads along an element have already taken off the rating
 
 
 POINT = Fatigue(3.0, 10 / 3, 0.0, 0.407, 0.389, 1.0)
@@ -74,20 +65,13 @@ LINE = Fatigue(4.0, 9 / 2, 7 / 9, 0.378, 0.364, 0.83)
 
 
 class Raceways(NamedTuple):
-    """Load of an element for which a raceway lives one million revolutions.
+    """Load of an element for which a raceway lives one million revolutions."""
 
-    Attributes
-    ----------
-    inner, outer : float
-        Q_ci and Q_ce, N.
-    rating : float
-        Of the row, N.
-    """
-
+    #: inner, outer: Q_ci and Q_ce, N
     inner: float
     outer: float
     law: Fatigue
-    rating: float
+    rating: float  #: of the row, N
 
 
 def raceways(inside: Inside, rating: float) -> Raceways:
@@ -132,19 +116,11 @@ def edge_stress(slices: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Damage:
-    """Damage of the rows of a bearing in a million revolutions, slice by slice.
+    """Damage of the rows of a bearing in a million revolutions, slice by slice."""
 
-    Attributes
-    ----------
-    each : (rows, slices) ndarray
-        Sum of ``(Q / Q_c)^s`` over both rings.
-    rating : float
-        Basic dynamic radial load rating of a row, N.
-    """
-
-    each: np.ndarray
+    each: np.ndarray  #: (rows, slices) sum of ``(Q / Q_c)^s`` over both rings
     law: Fatigue
-    rating: float
+    rating: float  #: basic dynamic radial load rating of a row, N
 
     @property
     def life(self) -> float:

@@ -32,21 +32,11 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, kw_only=True)
 class RollerRow(Elements):
-    """One row of rollers.
+    """One row of rollers."""
 
-    Attributes
-    ----------
-    length : float
-        Effective length of a roller.
-    profile : {'logarithmic', 'straight'}
-        That of ISO/TS 16281, 5.3.3, or none.
-    slices : int
-        ISO/TS 16281 asks for 30 or more.
-    """
-
-    length: float
-    profile: Profile = "logarithmic"
-    slices: int = 30
+    length: float  #: effective length of a roller
+    profile: Profile = "logarithmic"  #: that of ISO/TS 16281, 5.3.3, or none
+    slices: int = 30  #: ISO/TS 16281 asks for 30 or more
 
     @cached_property
     def along(self) -> np.ndarray:

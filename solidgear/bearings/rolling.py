@@ -44,12 +44,6 @@ class RollingBearing:
     act on the inner ring from outside, and that the bearing carries.  Both at one reference point
     on the axis, order (x, y, z, thx, thy, thz), SI.
 
-    Attributes
-    ----------
-    floats : bool
-        One of its rings slides along y in its seat, without friction: at every motion the rows
-        stand where nothing presses them along y, and the stiffness is what is left then.
-
     Examples
     --------
     >>> import numpy as np
@@ -64,6 +58,8 @@ class RollingBearing:
     """
 
     rows: tuple[Row, ...]
+    #: one of its rings slides along y in its seat, without friction: at every motion the rows stand
+    #: where nothing presses them along y, and the stiffness is what is left then
     floats: bool = False
 
     @cached_property

@@ -33,64 +33,38 @@ _PLACE = np.array(FELT)
 
 
 class Contacts(NamedTuple):
-    """Loads of the rolling elements of a row.
+    """Loads of the rolling elements of a row."""
 
-    Attributes
-    ----------
-    azimuth : (n,) ndarray
-        From x towards z, rad.
-    load : (..., n) ndarray
-        N; along the contact normal.
-    angle : (..., n) ndarray
-        Contact angle, rad, positive where the shaft is pressed towards +y; NaN where unloaded.
-    inner, outer : (..., n) ndarray
-        Largest pressure at both rings, Pa.
-    on_inner, on_outer : (..., n, slices) ndarray
-        N, on the slices of each element at both rings; a ball is one slice.
-    """
-
-    azimuth: np.ndarray
-    load: np.ndarray
+    azimuth: np.ndarray  #: (n,) from x towards z, rad
+    load: np.ndarray  #: (..., n) N; along the contact normal
+    #: (..., n) contact angle, rad, positive where the shaft is pressed towards +y; NaN where
+    #: unloaded
     angle: np.ndarray
+    #: inner, outer: (..., n) largest pressure at both rings, Pa
     inner: np.ndarray
     outer: np.ndarray
+    #: on_inner, on_outer: (..., n, slices) N, on the slices of each element at both rings; a ball
+    #: is one slice
     on_inner: np.ndarray
     on_outer: np.ndarray
 
 
 @dataclass(frozen=True)
 class Elements:
-    """Rolling elements of one row, and their place; lengths in m, angles in rad.
-
-    Attributes
-    ----------
-    diameter, pitch : float
-        Of an element (mean), and of the circle of their centres.
-    angle : float
-        Nominal contact angle; 0 for deep grooves, cylindrical and needle rollers.
-    side : {1, -1}
-        Which way the shaft is held by a contact angle: towards +y or -y.
-    clearance : float
-        Radial internal clearance (diametral, as catalogues give it); negative is an interference.
-    preload : float
-        How far the inner ring has been pushed into contact along y, m.
-    height : float
-        Of the elements' centres along y from the reference point.
-    first : float
-        Azimuth of the first element, from x towards z.
-    E, nu : float
-        Of elements and rings.
-    """
+    """Rolling elements of one row, and their place; lengths in m, angles in rad."""
 
     count: int
+    #: diameter, pitch: of an element (mean), and of the circle of their centres
     diameter: float
     pitch: float
-    angle: float = 0.0
-    side: int = 1
+    angle: float = 0.0  #: nominal contact angle; 0 for deep grooves, cylindrical and needle rollers
+    side: int = 1  #: which way the shaft is held by a contact angle: towards +y or -y
+    #: radial internal clearance (diametral, as catalogues give it); negative is an interference
     clearance: float = 0.0
-    preload: float = 0.0
-    height: float = 0.0
-    first: float = 0.0
+    preload: float = 0.0  #: how far the inner ring has been pushed into contact along y, m
+    height: float = 0.0  #: of the elements' centres along y from the reference point
+    first: float = 0.0  #: azimuth of the first element, from x towards z
+    #: E, nu: of elements and rings
     E: float = STEEL_E
     nu: float = STEEL_NU
 

@@ -24,24 +24,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Choice:
-    """Place in the ranges of catalogue data at which a solution is taken.
+    """Place in the ranges of catalogue data at which a solution is taken."""
 
-    Attributes
-    ----------
-    end : {'middle', 'softer', 'stiffer'}
-        Of an estimated inner geometry.
-    clearance : float
-        Place in the range of a clearance class, 0 to 1.
-    preload, load : float
-        Times what the scene says.
-    apart : mapping of str to Choice
-        Those of single bearings by name, but for the load.
-    """
-
-    end: End = "middle"
-    clearance: float = 0.5
+    end: End = "middle"  #: of an estimated inner geometry
+    clearance: float = 0.5  #: place in the range of a clearance class, 0 to 1
+    #: preload, load: times what the scene says
     preload: float = 1.0
     load: float = 1.0
+    #: those of single bearings by name, but for the load
     apart: Mapping[str, Choice] = field(default_factory=dict)
 
 
@@ -50,23 +40,13 @@ AS_TOLD = Choice()
 
 @dataclass(frozen=True)
 class Solved:
-    """A scene whose catalogue bearings have their stiffness.
+    """A scene whose catalogue bearings have their stiffness."""
 
-    Attributes
-    ----------
-    scene : Scene
-        With a 6x6 for every bearing.
-    made : dict of str to Catalogued
-        Bearings of catalogue data by name.
-    motion : dict of str to (6,) ndarray
-        Motion of the inner ring of each at which the stiffness is taken.
-    equilibrium : Equilibrium or None
-        Of shaft and bearings, where the scene has a load of its own.
-    """
-
-    scene: Scene
-    made: dict[str, Catalogued]
+    scene: Scene  #: with a 6x6 for every bearing
+    made: dict[str, Catalogued]  #: bearings of catalogue data by name
+    #: motion of the inner ring of each at which the stiffness is taken
     motion: dict[str, np.ndarray]
+    #: of shaft and bearings, where the scene has a load of its own
     equilibrium: Equilibrium | None = None
 
 

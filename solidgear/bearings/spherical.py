@@ -29,14 +29,9 @@ from solidgear.bearings.row import felt
 
 @dataclass(frozen=True, kw_only=True)
 class SphericalRow(RollerRow):
-    """One of the two rows of a spherical roller bearing.
+    """One of the two rows of a spherical roller bearing."""
 
-    Attributes
-    ----------
-    inner, outer : float
-        Groove radius over twice the radius of the rollers' contour; above 0.5.
-    """
-
+    #: inner, outer: groove radius over twice the radius of the rollers' contour; above 0.5
     inner: float = 0.51
     outer: float = 0.51
 

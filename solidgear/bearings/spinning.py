@@ -40,19 +40,11 @@ _BALANCED, _NEGLIGIBLE, _MOST = 1e-10, 1e-9, 100
 
 @dataclass(frozen=True)
 class SpinningBalls:
-    """A row of balls whose inner ring turns; the outer one stands.
-
-    Attributes
-    ----------
-    speed : float
-        rad/s.
-    density : float
-        Of the balls, kg/m^3.
-    """
+    """A row of balls whose inner ring turns; the outer one stands."""
 
     row: BallRow
-    speed: float
-    density: float = DENSITY
+    speed: float  #: rad/s
+    density: float = DENSITY  #: of the balls, kg/m^3
 
     @property
     def pitch(self) -> float:

@@ -20,15 +20,6 @@ class ModeName(Name):
     ----------
     text : str
 
-    Attributes
-    ----------
-    family : str
-        ``bending``, ``axial``, ``ovalising n=2``, ...
-    plane : str
-        ``z`` or ``x`` of bending in a part with a mirror plane, else empty.
-    number : int or None
-        In ascending order of frequency, from one; None of rigid motions.
-
     Examples
     --------
     >>> name = ModeName("bending x 2")
@@ -38,9 +29,9 @@ class ModeName(Name):
     ('ovalising n=2', True)
     """
 
-    family: str
-    plane: str
-    number: int | None
+    family: str  #: ``bending``, ``axial``, ``ovalising n=2``, ..
+    plane: str  #: ``z`` or ``x`` of bending in a part with a mirror plane, else empty
+    number: int | None  #: in ascending order of frequency, from one; None of rigid motions
     rigid: bool
 
     def __new__(cls, text: str) -> ModeName:

@@ -72,55 +72,34 @@ def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarra
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """One family of motions that symmetry decouples from the others.
+    """One family of motions that symmetry decouples from the others."""
 
-    Attributes
-    ----------
-    name : str
-        ``bending_z``, ``bending_x``, ``axial``, ``torsion``, ``ovalising_n`` or ``full``.
-    components : tuple of int
-        Which of the six port components this block carries.
-    stiffness, mass : (n, n) sparse, or a :class:`~solidgear.body.mass.ScalarMass` for the mass
-        Symmetric; two blocks that are twins hold the *same* objects.
-    rigid : (n, len(components)) ndarray
-        Rigid motions about the origin of the scene, one column per component.
-    y : (n,) ndarray
-        Axial position of each unknown; NaN for unknowns that are not point values.
-    ports : (n_ports * len(components), n) sparse
-        Port motions as linear functions of the unknowns, port by port; nothing before it has any.
-    mirror : (int, tuple of float), optional
-        Index of the block this one repeats in the other plane, and the sign of each component
-        there.
-    border : int
-        Number of unknowns at the end that are coupled to very many others (motions of rigid seats).
-    planar : bool
-        Whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best.
-    expand : (n_mesh, n) sparse, optional
-        The unknowns of the mesh from those of a block with rigidly tied seats; None where they are
-        the same.
-    sections : callable, optional
-        See :mod:`solidgear.body.sections`; None where all unknowns are values at points, ``y``.
-    reflections : tuple of (partner, sign)
-        In the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
-        (:mod:`solidgear.solve.symmetry`).
-    swirl : callable, optional
-        The coupling by spin of unknowns (n, k) with the twin a quarter of a wave further round
-        (:mod:`solidgear.solve.spin`), times them; None where there is none.
-    """
-
-    name: str
-    components: tuple[int, ...]
+    name: str  #: ``bending_z``, ``bending_x``, ``axial``, ``torsion``, ``ovalising_n`` or ``full``
+    components: tuple[int, ...]  #: which of the six port components this block carries
+    #: stiffness, mass: symmetric; two blocks that are twins hold the *same* objects
     stiffness: sp.csr_matrix
     mass: sp.csr_matrix | ScalarMass
-    rigid: np.ndarray
+    rigid: np.ndarray  #: rigid motions about the origin of the scene, one column per component
+    #: (n,) axial position of each unknown; NaN for unknowns that are not point values
     y: np.ndarray
+    #: port motions as linear functions of the unknowns, port by port; nothing before it has any
     ports: sp.csr_matrix = field(default_factory=lambda: sp.csr_matrix((0, 0)))
+    #: index of the block this one repeats in the other plane, and the sign of each component there
     mirror: tuple[int, tuple[float, ...]] | None = None
+    #: whether the matrix comes from a 1D or 2D mesh, for which a light factorisation is best
     planar: bool = True
+    #: number of unknowns at the end that are coupled to very many others (motions of rigid seats)
     border: int = 0
+    #: the unknowns of the mesh from those of a block with rigidly tied seats; None where they are
+    #: the same
     expand: sp.csr_matrix | None = None
+    #: see :mod:`solidgear.body.sections`; None where all unknowns are values at points, ``y``
     sections: Sections | None = None
+    #: in the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
+    #: (:mod:`solidgear.solve.symmetry`).
     reflections: tuple[Reflection, ...] = ()
+    #: the coupling by spin of unknowns (n, k) with the twin a quarter of a wave further round
+    #: (:mod:`solidgear.solve.spin`), times them; None where there is none
     swirl: Swirl | None = None
 
     def mirrored(

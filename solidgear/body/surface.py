@@ -19,48 +19,27 @@ PIECES = 4
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A moving surface, made of faces whose normals point out of the material.
+    """A moving surface, made of faces whose normals point out of the material."""
 
-    Attributes
-    ----------
-    points : (n, 3) ndarray
-        x, y, z at rest, m.
-    displacement : (n, 3) ndarray
-        In the unit of the vector it was made from; m for unit-mass shapes up to their common
-        factor.
-    faces : (m, 4) ndarray of int
-        Quadrilaterals.
-    triangles : (k, 3) ndarray of int
-    lines : (l, 2) ndarray of int
-        Pieces of lines that are worth drawing: element edges of a solid, circles and meridians
-        otherwise.
-    """
-
-    points: np.ndarray
+    points: np.ndarray  #: (n, 3) x, y, z at rest, m
+    #: (n, 3) in the unit of the vector it was made from; m for unit-mass shapes up to their common
+    #: factor
     displacement: np.ndarray
-    faces: np.ndarray
-    triangles: np.ndarray
+    faces: np.ndarray  #: (m, 4) quadrilaterals
+    triangles: np.ndarray  #: (k, 3)
+    #: (l, 2) pieces of lines that are worth drawing: element edges of a solid, circles and
+    #: meridians otherwise
     lines: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """A mesh of a volume whose unknowns are displacements x, y, z of its nodes, node by node.
+    """A mesh of a volume whose unknowns are displacements x, y, z of its nodes, node by node."""
 
-    Attributes
-    ----------
-    element : str
-        One of :data:`solidgear.elements.ELEMENTS`.
-    nodes : (3, n) ndarray
-        m.
-    cells : (nodes of a cell, m) ndarray of int
-    local : (nodes of a cell, 3) ndarray
-        Reference coordinates of a cell's nodes, in the order of ``cells``.
-    """
-
-    element: str
-    nodes: np.ndarray
-    cells: np.ndarray
+    element: str  #: one of :data:`solidgear.elements.ELEMENTS`
+    nodes: np.ndarray  #: (3, n) m
+    cells: np.ndarray  #: (nodes of a cell, m)
+    #: (nodes of a cell, 3) reference coordinates of a cell's nodes, in the order of ``cells``
     local: np.ndarray
 
 

@@ -43,26 +43,16 @@ APART = 0.02
 
 @dataclass
 class HarmonicBounds:
-    """Bounds of one harmonic body.
-
-    Attributes
-    ----------
-    of_ports : (ne, 6 p, 6 p) ndarray
-        M of its flexibility by cells of the mesh, N m per unit loads; empty where statics were not
-        asked for.
-    less : (6 p, 6 p) ndarray
-        Its sum by a richer space of an order less.
-    of_modes : dict of str to ndarray
-        By the name of a mode, (ne,) energies of its local solutions, rad^2/s^2.
-    lowest : dict of str to float
-        Least eigenvalue that each mode may have, rad^2/s^2.
-    """
+    """Bounds of one harmonic body."""
 
     body: Body
+    #: (ne, 6 p, 6 p) M of its flexibility by cells of the mesh, N m per unit loads; empty where
+    #: statics were not asked for
     of_ports: np.ndarray
-    less: np.ndarray
+    less: np.ndarray  #: (6 p, 6 p) its sum by a richer space of an order less
+    #: by the name of a mode, (ne,) energies of its local solutions, rad^2/s^2
     of_modes: dict[str, np.ndarray]
-    lowest: dict[str, float]
+    lowest: dict[str, float]  #: least eigenvalue that each mode may have, rad^2/s^2
 
     @cached_property
     def more(self) -> np.ndarray:

@@ -29,21 +29,11 @@ BATCH = 3e7
 
 @dataclass(frozen=True)
 class Loading:
-    """Displacements of a block whose error is sought, and what they are the answer to.
+    """Displacements of a block whose error is sought, and what they are the answer to."""
 
-    Attributes
-    ----------
-    fields : (n, k) ndarray
-        Displacements, in the unknowns of the block.
-    forces : (p c, k) ndarray
-        On the ports, those of bearings included.
-    carried : (n, k) ndarray
-        Accelerations whose inertia forces load the body.
-    """
-
-    fields: np.ndarray
-    forces: np.ndarray
-    carried: np.ndarray
+    fields: np.ndarray  #: (n, k) displacements, in the unknowns of the block
+    forces: np.ndarray  #: (p c, k) on the ports, those of bearings included
+    carried: np.ndarray  #: (n, k) accelerations whose inertia forces load the body
 
 
 @dataclass(frozen=True)

@@ -47,31 +47,17 @@ EXPONENT = {"rigid": 0.5, "load": 1.0, "section": 1.0, "material": 0.7}
 
 @dataclass(frozen=True)
 class Meshed:
-    """A mesh of a harmonic solid as options of its builder.
-
-    Attributes
-    ----------
-    size : float
-        Of the largest cells, in local outer radii.
-    cuts : dict of (float, float) to int
-        Corner, y and r in m, to cuts.
-    across : tuple of (float, float)
-        Points that further lines pass, y and r in m.
-    given : dict
-        Options that are not about the mesh.
-    smooth : float
-        What was away from corners when this mesh was asked for; zero at the start.
-    raised : int
-        By how many orders it was raised since.
-    """
+    """A mesh of a harmonic solid as options of its builder."""
 
     order: int = FIRST
-    size: float = SIZE
+    size: float = SIZE  #: of the largest cells, in local outer radii
+    #: corner, y and r in m, to cuts
     cuts: Mapping[tuple[float, float], int] = field(default_factory=dict)
-    across: tuple[tuple[float, float], ...] = ()
-    given: Mapping[str, Any] = field(default_factory=dict)
+    across: tuple[tuple[float, float], ...] = ()  #: points that further lines pass, y and r in m
+    given: Mapping[str, Any] = field(default_factory=dict)  #: options that are not about the mesh
+    #: what was away from corners when this mesh was asked for; zero at the start
     smooth: float = 0.0
-    raised: int = 0
+    raised: int = 0  #: by how many orders it was raised since
 
     def options(self) -> dict[str, Any]:
         """For the builder."""

@@ -210,28 +210,17 @@ def _united(count: int, joined: list[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Mapped:
-    """Pieces at reference points.
+    """Pieces at reference points."""
 
-    Attributes
-    ----------
-    at : (m, q, 2) ndarray
-        In the coordinates of their cells.
-    place : (m, q, 2) ndarray
-        r and y, m.
-    det : (m, q) ndarray
-        Of the derivative of position along the coordinates of the pieces, m^2.
-    inverse, outer : (m, 2, 2, q) ndarray
-        Derivatives of the coordinates of the pieces, and of their cells (second axis), along r and y
-        (third), 1/m.
-    value, slope : (m, (order + 1)^2, q) ndarray and pair of them
-        Functions of the mesh and their derivatives along the coordinates of the cells.
-    """
-
-    at: np.ndarray
-    place: np.ndarray
+    at: np.ndarray  #: (m, q, 2) in the coordinates of their cells
+    place: np.ndarray  #: (m, q, 2) r and y, m
+    #: (m, q) of the derivative of position along the coordinates of the pieces, m^2
     det: np.ndarray
+    #: inverse, outer: (m, 2, 2, q) derivatives of the coordinates of the pieces, and of their cells
+    #: (second axis), along r and y (third), 1/m
     inverse: np.ndarray
     outer: np.ndarray
+    #: value, slope: functions of the mesh and their derivatives along the coordinates of the cells
     value: np.ndarray
     slope: np.ndarray
 

@@ -19,23 +19,16 @@ LOCAL: float = _MEASURED["local problems"]["safety"]
 
 @dataclass(frozen=True)
 class Safety:
-    """Measured constants of a solid whose bars rest on two meshes.
+    """Measured constants of a solid whose bars rest on two meshes."""
 
-    Attributes
-    ----------
-    steps : (float, float)
-        Bar over what a change of mesh leaves, after two meshes and after more.
-    share, share_of_free_modes : float
-        Of what features change of a number, and of a mode that no bearing holds: the bar is no less,
-        for two meshes may agree by accident. Zero where the meshes hold the whole part.
-    shrinks : float
-        What each finer mesh leaves of that.
-    """
-
+    #: bar over what a change of mesh leaves, after two meshes and after more
     steps: tuple[float, float]
+    #: share, share_of_free_modes: of what features change of a number, and of a mode that no
+    #: bearing holds: the bar is no less, for two meshes may agree by accident. Zero where the
+    #: meshes hold the whole part.
     share: float = 0.0
     share_of_free_modes: float = 0.0
-    shrinks: float = 1.0
+    shrinks: float = 1.0  #: what each finer mesh leaves of that
 
     def least_share(self, free: bool, meshes: int) -> float:
         """Share of what features change that a bar holds at least after some meshes.

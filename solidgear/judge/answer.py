@@ -54,28 +54,17 @@ LEAST_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, repr=False)
 class Answered(Displayed):
-    """An answer and the way to it.
-
-    Attributes
-    ----------
-    values : tuple of Value
-        In the order asked for.
-    reached : bool
-        Whether every bar is within the tolerance.
-    rung : str
-        That the values come from.
-    missing : tuple of Quantity
-        Quantities that do not exist for this scene, such as the compliance of a free motion.
-    """
+    """An answer and the way to it."""
 
     shown: ClassVar[str] = "answered"
 
     scene: str
     tolerance: float
-    values: tuple[Value, ...]
+    values: tuple[Value, ...]  #: in the order asked for
     steps: tuple[Step, ...]
-    reached: bool
-    rung: str
+    reached: bool  #: whether every bar is within the tolerance
+    rung: str  #: that the values come from
+    #: quantities that do not exist for this scene, such as the compliance of a free motion
     missing: tuple[Quantity, ...]
     seconds: float
 

@@ -34,37 +34,19 @@ SIDES = ("longest", "middle", "shortest")
 
 @dataclass(frozen=True)
 class ErrorBar:
-    """Error bar of one quantity.
+    """Error bar of one quantity."""
 
-    Attributes
-    ----------
-    values : tuple of float
-        Coarse to fine.
-    width : float
-        The error bar, relative to the finest value (couplings: to the geometric mean of their
-        diagonal entries).
-    change : float
-        Last change, relative; of local problems the distance of the other end.
-    reduction : float or None
-        Last change over the one before.
-    factor : float
-        Error bar over what it rests on.
-    solver : float
-        Share of the solver in the error bar.
-    method : str
-        Where the error bar comes from.
-    middle : float or None
-        A better value than the finest one, half of `change` away from it, where there is one.
-    """
-
-    values: tuple[float, ...]
+    values: tuple[float, ...]  #: coarse to fine
+    #: the error bar, relative to the finest value (couplings: to the geometric mean of their
+    #: diagonal entries)
     width: float
-    change: float
-    reduction: float | None
-    factor: float
-    solver: float
+    change: float  #: last change, relative; of local problems the distance of the other end
+    reduction: float | None  #: last change over the one before
+    factor: float  #: error bar over what it rests on
+    solver: float  #: share of the solver in the error bar
     extrapolated: float
-    method: str = "two meshes"
+    method: str = "two meshes"  #: where the error bar comes from
+    #: a better value than the finest one, half of `change` away from it, where there is one
     middle: float | None = None
 
     @property

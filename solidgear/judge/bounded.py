@@ -35,15 +35,10 @@ ABOVE = 12
 
 @dataclass(frozen=True)
 class Bounded:
-    """Bars of some numbers.
-
-    Attributes
-    ----------
-    scores : dict of Quantity to ndarray
-        Of every number, (ne,) shares of its bar by cells; in sum one.
-    """
+    """Bars of some numbers."""
 
     error_bars: dict[Quantity, ErrorBar]
+    #: of every number, (ne,) shares of its bar by cells; in sum one
     scores: dict[Quantity, np.ndarray]
 
 

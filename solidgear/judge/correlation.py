@@ -28,24 +28,13 @@ RANKED = 0.15
 
 @dataclass(frozen=True)
 class Pairing:
-    """A reference mode and the mode of a model that is the same one.
-
-    Attributes
-    ----------
-    mode : Mode or None
-        None where no mode of the model has this shape.
-    mac : float
-        Of the two shapes; 0 for families that are paired by rank, and without a partner.
-    certain : bool
-        Whether no other mode comes into question.
-    others : tuple of Mode
-        The rest of the partner, where the model has split a pair of the reference.
-    """
+    """A reference mode and the mode of a model that is the same one."""
 
     reference: Mode
-    mode: Mode | None
-    mac: float
-    certain: bool
+    mode: Mode | None  #: none where no mode of the model has this shape
+    mac: float  #: of the two shapes; 0 for families that are paired by rank, and without a partner
+    certain: bool  #: whether no other mode comes into question
+    #: the rest of the partner, where the model has split a pair of the reference
     others: tuple[Mode, ...] = ()
 
     @property

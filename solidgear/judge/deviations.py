@@ -43,31 +43,18 @@ def resolution(size: float, band: float | None) -> str:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A quantity of a model beside that of the reference.
-
-    Attributes
-    ----------
-    attachment : str
-        Tie of both: ``as scene`` or ``section``.
-    value, reference_value : float
-        SI.
-    relative : float
-        Of couplings to the geometric mean of their diagonal entries.
-    band : float or None
-        Sum of the bars of both, relative; None where neither has one.
-    pairing : str
-        In words, how a mode was found where its name did not tell.
-    """
+    """A quantity of a model beside that of the reference."""
 
     model: str
     reference: str
-    attachment: str
+    attachment: str  #: tie of both: ``as scene`` or ``section``
     quantity: Quantity
+    #: value, reference_value: SI
     value: float
     reference_value: float
-    relative: float
-    band: float | None
-    pairing: str = ""
+    relative: float  #: of couplings to the geometric mean of their diagonal entries
+    band: float | None  #: sum of the bars of both, relative; None where neither has one
+    pairing: str = ""  #: in words, how a mode was found where its name did not tell
 
     @property
     def size(self) -> float:

@@ -44,24 +44,13 @@ def family_of(quantity: Quantity) -> str:
 
 @dataclass(frozen=True)
 class Solved:
-    """Solution of one mesh.
+    """Solution of one mesh."""
 
-    Attributes
-    ----------
-    body : Body
-        The last one that was built on it.
-    unknowns : int
-        Of all bodies.
-    cells : tuple of float
-        Sizes of its cells, m.
-    score : (ne,) ndarray or None
-        Where on a meridian the bars come from that are not within the tolerance.
-    """
-
-    body: Body
+    body: Body  #: the last one that was built on it
     numbers: Numbers
-    unknowns: int
-    cells: tuple[float, ...]
+    unknowns: int  #: of all bodies
+    cells: tuple[float, ...]  #: sizes of its cells, m
+    #: (ne,) where on a meridian the bars come from that are not within the tolerance
     score: np.ndarray | None = None
 
 

@@ -56,44 +56,24 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Settled:
-    """A body, and how sure it is of what was asked.
-
-    Attributes
-    ----------
-    options : dict
-        Of the builder: with these, the model gives the same body again.
-    body : Body
-        With all families of motion.
-    bars : dict of Quantity to float
-        Relative; of couplings, to the geometric mean of their diagonal entries.
-        Infinite where nothing is known.
-    steps : tuple of Step
-        What was passed over and tried.
-    reached : bool
-        Whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
-        exactly zero, and no bar to meet.
-    missing : tuple of Quantity
-        Those that do not exist for this scene.
-    judged_on : int
-        Bearing sets that the bars were taken over.
-    point : str
-        The main lumped point.
-    mesh : Meshed or None
-        Of a harmonic solid.
-    """
+    """A body, and how sure it is of what was asked."""
 
     scene: str
     tolerance: float
     rung: str
-    options: dict[str, Any]
-    body: Body
+    options: dict[str, Any]  #: of the builder: with these, the model gives the same body again
+    body: Body  #: with all families of motion
+    #: relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
+    #: nothing is known.
     bars: dict[Quantity, float]
-    steps: tuple[Step, ...]
+    steps: tuple[Step, ...]  #: what was passed over and tried
+    #: whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
+    #: exactly zero, and no bar to meet.
     reached: bool
-    missing: tuple[Quantity, ...]
-    judged_on: int = 1
-    point: str = ""
-    mesh: Meshed | None = None
+    missing: tuple[Quantity, ...]  #: those that do not exist for this scene
+    judged_on: int = 1  #: bearing sets that the bars were taken over
+    point: str = ""  #: the main lumped point
+    mesh: Meshed | None = None  #: of a harmonic solid
 
     @property
     def setting(self) -> str:

@@ -22,22 +22,14 @@ SMOOTH = 0.05
 
 @dataclass(frozen=True)
 class Place:
-    """A point of the meridian where stress is singular, or jumps.
+    """A point of the meridian where stress is singular, or jumps."""
 
-    Attributes
-    ----------
-    what : str
-        In a sentence: ``the {what} at y = ...``.
-    y, r : float
-        m.
-    reach : float
-        How far it rules the displacements around it, m: the wall there, or the radius of a solid
-        shaft; for the end of a seat the width of the seat, if that is less.
-    """
-
-    what: str
+    what: str  #: in a sentence: ``the {what} at y = ...``
+    #: y, r: m
     y: float
     r: float
+    #: how far it rules the displacements around it, m: the wall there, or the radius of a solid
+    #: shaft; for the end of a seat the width of the seat, if that is less
     reach: float
 
 

@@ -27,36 +27,21 @@ from solidgear.solve.modes import ModeSet
 
 @dataclass
 class Solution:
-    """One model of one scene, solved with its evidence.
+    """One model of one scene, solved with its evidence."""
 
-    Attributes
-    ----------
-    model : str
-        Its name.
-    ties : dict of str to Answer
-        ``as scene`` and ``section``, as far as they could be solved.
-    error_bars : dict of str to dict of Quantity to ErrorBar
-        The same keys; empty for a model without an error bar of its own.
-    scores : dict of Quantity to ndarray
-        With the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a
-        model whose bars are computed.
-    variants : dict of str to Answer
-        The scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
-        ``section``.
-    levels : list of LevelRecord
-        Coarse to fine.
-    failed : dict of str to str
-        What was left out, and why.
-    """
-
-    model: str
-    ties: dict[str, Answer]
+    model: str  #: its name
+    ties: dict[str, Answer]  #: ``as scene`` and ``section``, as far as they could be solved
     meter: Meter
+    #: the same keys; empty for a model without an error bar of its own
     error_bars: dict[str, dict[Quantity, ErrorBar]] = field(default_factory=dict)
+    #: with the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a model whose
+    #: bars are computed
     scores: dict[Quantity, np.ndarray] = field(default_factory=dict)
+    #: the scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
+    #: ``section``
     variants: dict[str, Answer] = field(default_factory=dict)
-    levels: list[LevelRecord] = field(default_factory=list)
-    failed: dict[str, str] = field(default_factory=dict)
+    levels: list[LevelRecord] = field(default_factory=list)  #: coarse to fine
+    failed: dict[str, str] = field(default_factory=dict)  #: what was left out, and why
     options: dict[str, Any] = field(default_factory=dict)
 
     @property

@@ -27,37 +27,21 @@ ENOUGH = 10
 
 @dataclass(frozen=True)
 class Numbers:
-    """Numbers of an answer, without the body behind it.
+    """Numbers of an answer, without the body behind it."""
 
-    Attributes
-    ----------
-    quantities : dict of Quantity to float
-        The compared numbers; see :mod:`solidgear.judge.quantities`.
-    solver : dict of Quantity to float
-        Relative error that the solver may have left in every one of them.
-    """
-
+    #: the compared numbers; see :mod:`solidgear.judge.quantities`
     quantities: dict[Quantity, float]
+    #: relative error that the solver may have left in every one of them
     solver: dict[Quantity, float]
 
 
 @dataclass(frozen=True)
 class Statics:
-    """Statics of a body on its bearings.
+    """Statics of a body on its bearings."""
 
-    Attributes
-    ----------
-    main : Condensed
-        At the main lumped point.
-    further : mapping of str to Condensed
-        At further ones, by name.
-    coupled : Coupled or None
-        Of several points together.
-    """
-
-    main: Condensed
-    further: Mapping[str, Condensed] = field(default_factory=dict)
-    coupled: Coupled | None = None
+    main: Condensed  #: at the main lumped point
+    further: Mapping[str, Condensed] = field(default_factory=dict)  #: at further ones, by name
+    coupled: Coupled | None = None  #: of several points together
 
     @classmethod
     def at(
@@ -131,23 +115,14 @@ def _left(
 
 @dataclass
 class Answer:
-    """A body on its bearings, tied in one way.
-
-    Attributes
-    ----------
-    statics : Statics
-        At all lumped points, and between them where there are several.
-    quantities : dict of Quantity to float
-        The compared numbers; see :mod:`solidgear.judge.quantities`.
-    supports : Supports or None
-        That hold it.
-    """
+    """A body on its bearings, tied in one way."""
 
     body: Body
-    statics: Statics
+    statics: Statics  #: at all lumped points, and between them where there are several
     modes: ModeSet
+    #: the compared numbers; see :mod:`solidgear.judge.quantities`
     quantities: dict[Quantity, float]
-    supports: Supports | None = None
+    supports: Supports | None = None  #: that hold it
 
     @classmethod
     def of(cls, body: Body, supports: Supports, statics: Statics, modes: ModeSet) -> Answer:

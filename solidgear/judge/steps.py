@@ -18,34 +18,20 @@ ABOVE, BELOW, BOTH = "above", "below", "both"
 
 @dataclass(frozen=True)
 class Value:
-    """A number with its bar.
-
-    Attributes
-    ----------
-    value : float
-        SI.
-    bar : float
-        Relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
-        nothing is known.
-    meshes : int
-        Solutions that the value and its bar rest on.
-    size : float
-        What the bar is relative to, SI.
-    side : str
-        Where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
-        it may be either.
-    method : str
-        Where the bar comes from.
-    """
+    """A number with its bar."""
 
     quantity: Quantity
-    value: float
+    value: float  #: SI
     unit: str
+    #: relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
+    #: nothing is known.
     bar: float
-    meshes: int
-    size: float
+    meshes: int  #: solutions that the value and its bar rest on
+    size: float  #: what the bar is relative to, SI
+    #: where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
+    #: it may be either
     side: str = BOTH
-    method: str = ""
+    method: str = ""  #: where the bar comes from
 
     @property
     def how(self) -> str:
@@ -62,31 +48,17 @@ class Value:
 
 @dataclass(frozen=True)
 class Step:
-    """Something that was tried, or passed over.
-
-    Attributes
-    ----------
-    setting : str
-        Of the mesh, in words.
-    valid : bool
-        Whether it could be an answer at all.
-    why : str
-        Why it was passed over, or what came after it.
-    bar : float or None
-        The largest over the quantities asked for; None where there is none yet.
-    only : tuple of Quantity
-        What was still open, where a mesh was not solved for everything asked for.
-    options : dict
-        Of the mesh, for its builder.
-    """
+    """Something that was tried, or passed over."""
 
     rung: str
-    setting: str
-    valid: bool
-    why: str = ""
+    setting: str  #: of the mesh, in words
+    valid: bool  #: whether it could be an answer at all
+    why: str = ""  #: why it was passed over, or what came after it
+    #: the largest over the quantities asked for; None where there is none yet
     bar: float | None = None
     unknowns: int | None = None
     seconds: float = 0.0
     chosen: bool = False
+    #: what was still open, where a mesh was not solved for everything asked for
     only: tuple[Quantity, ...] = ()
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)  #: of the mesh, for its builder

@@ -102,13 +102,11 @@ class Tied(Loop):
         Whether modes are counted on the last mesh.
     keep : callable
         Given what there is after every mesh.
-    solution : Solution or None
-        Of the last mesh.
     """
 
     middles = False
     counted = False
-    solution: Solution | None = None
+    solution: Solution | None = None  #: of the last mesh
 
     def __init__(self, *args: Any):
         super().__init__(*args)

@@ -26,25 +26,14 @@ STRAIGHT = 3e-13
 
 @dataclass(frozen=True)
 class Tabulated:
-    """Basis functions of some elements at reference points.
+    """Basis functions of some elements at reference points."""
 
-    Attributes
-    ----------
-    value : (nb, nq) ndarray
-    slope : (nb, dim, nq) ndarray
-        Reference gradients.
-    det : (ne, nq) ndarray
-        Determinant of the Jacobian, m^dim.
-    x : (dim, ne, nq) ndarray
-        Places, m.
-    jac, inverse : (dim, dim, ne, nq) ndarray
-        Derivative of position along reference coordinates, m, and its inverse.
-    """
-
-    value: np.ndarray
-    slope: np.ndarray
-    det: np.ndarray
-    x: np.ndarray
+    value: np.ndarray  #: (nb, nq)
+    slope: np.ndarray  #: (nb, dim, nq) reference gradients
+    det: np.ndarray  #: (ne, nq) determinant of the Jacobian, m^dim
+    x: np.ndarray  #: (dim, ne, nq) places, m
+    #: jac, inverse: (dim, dim, ne, nq) derivative of position along reference coordinates, m, and
+    #: its inverse
     jac: np.ndarray
     inverse: np.ndarray
 

@@ -19,20 +19,11 @@ from solidgear.frames import on_axis, shift
 
 
 class Attached(NamedTuple):
-    """A port of a block.
+    """A port of a block."""
 
-    Attributes
-    ----------
-    place : float or (float, float, float)
-        Its y on the axis, or its point, m.
-    rows : (c, n) ndarray or sparse, optional
-        Its motion.
-    held : (n,) ndarray of bool, optional
-        In place of that, the unknowns that move with it as one rigid piece.
-    """
-
-    place: float | Sequence[float]
-    rows: np.ndarray | sp.spmatrix | None = None
+    place: float | Sequence[float]  #: its y on the axis, or its point, m
+    rows: np.ndarray | sp.spmatrix | None = None  #: (c, n) its motion
+    #: (n,) in place of that, the unknowns that move with it as one rigid piece
     held: np.ndarray | None = None
 
 

@@ -23,18 +23,11 @@ _CORNERS = ElementQuad1()
 
 @dataclass(frozen=True)
 class Kind:
-    """Cells that are tabulated alike.
+    """Cells that are tabulated alike."""
 
-    Attributes
-    ----------
-    cells : (m,) ndarray of int
-    flip : tuple of bool
-        Local edges whose odd functions have the other sign.
-    """
-
-    cells: np.ndarray
+    cells: np.ndarray  #: (m,)
     curved: bool
-    flip: tuple[bool, ...]
+    flip: tuple[bool, ...]  #: local edges whose odd functions have the other sign
 
 
 class Shapes:

@@ -39,26 +39,13 @@ ROUNDED = 1e-13
 
 @dataclass
 class Cell:
-    """A cell, condensed to the unknowns that it shares with others.
+    """A cell, condensed to the unknowns that it shares with others."""
 
-    Attributes
-    ----------
-    hats : (h,) sequence of int
-        That are not zero on it.
-    unknowns : (n,) ndarray of int
-        Numbers of its unknowns in the richer space.
-    stiffness : (n, n) ndarray
-    loads : (h, n, k) ndarray
-        ``R(phi_i v)`` by hat.
-    inside : (k, k) ndarray
-        Products of energy of what was condensed.
-    """
-
-    hats: Sequence[int]
-    unknowns: np.ndarray
-    stiffness: np.ndarray
-    loads: np.ndarray
-    inside: np.ndarray
+    hats: Sequence[int]  #: that are not zero on it
+    unknowns: np.ndarray  #: (n,) numbers of its unknowns in the richer space
+    stiffness: np.ndarray  #: (n, n)
+    loads: np.ndarray  #: (h, n, k) ``R(phi_i v)`` by hat
+    inside: np.ndarray  #: (k, k) products of energy of what was condensed
 
 
 def condensed(cell: Cell, inner: np.ndarray) -> Cell:

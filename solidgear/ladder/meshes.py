@@ -30,25 +30,14 @@ HEAVY = 15_000
 
 @dataclass(frozen=True)
 class Sequence:
-    """Meshes of one solid, coarse to fine.
+    """Meshes of one solid, coarse to fine."""
 
-    Attributes
-    ----------
-    levels : tuple of dict
-        Builder options of each.
-    fixed : bool
-        All are solved, the last being the one that was asked for; otherwise the program climbs
-        until a bar is met.
-    layered : bool
-        Whether every level adds layers towards singular points (see
-        :mod:`solidgear.judge.bars`).
-    turned : dict or None
-        The coarsest level with half as many cells around again: what they leave is measured there,
-        where it is cheap.
-    """
-
-    levels: tuple[Options, ...]
+    levels: tuple[Options, ...]  #: builder options of each
+    #: all are solved, the last being the one that was asked for; otherwise the program climbs until
+    #: a bar is met
     fixed: bool
+    #: inner, outer: whether every level adds layers towards singular points (see
+    #: :mod:`solidgear.judge.bars`)
     layered: bool
     turned: Options | None = None
 

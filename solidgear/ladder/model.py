@@ -33,70 +33,42 @@ def features_of(scene: Any) -> tuple[Any, ...]:
 
 
 class Model:
-    """One model of the ladder; a subclass fills in what is not as usual.
+    """One model of the ladder; a subclass fills in what is not as usual."""
 
-    Attributes
-    ----------
-    name : str
-        What scenes, commands and records call it.
-    title : str
-        In a sentence, such as ``harmonic solid``.
-    heading : str
-        At the head of a narrow column; the title unless told otherwise.
-    family : str
-        ``lumped`` (rests on another model's body), ``beam`` or ``solid``. Solids judge the others.
-    theory : str
-        What it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``.
-    colour, marker : str
-        In charts.
-    options : mapping of str to Option
-        Of the builder, with their limits.
-    preset : mapping
-        Options that make this model of a builder that several share.
-    coarser : str
-        What to change where it is too large.
-    holds : tuple of str
-        Sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
-        one of them at a time; a body of revolution holds none.
-    together : frozenset of str
-        Sorts of these that it holds beside each other.
-    for_features : bool
-        Whether it is made for the features that it holds, and for nothing else.
-    bounded : bool
-        Whether every mesh tells its own error by local problems: its displacements are admissible on
-        the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
-        from below, stiffnesses and frequencies from above.
-    share : float
-        Error bars are wanted below the tolerance asked for divided by this.
-    section_ties : bool
-        Whether its mesh carries the mean motion of any section; otherwise it is not compared like
-        for like.
-    mass_tolerance : float
-        Closure of mass and inertia that it owes to the closed form.
-    most_seats : int
-        Seats that one body carries in a sweep.
-    safety : Safety or None
-        Of an error bar over its meshes, where it is not that of meshes with layers or of plain refinement.
-    """
-
-    name: ClassVar[str]
-    title: ClassVar[str]
-    heading: ClassVar[str]
+    name: ClassVar[str]  #: what scenes, commands and records call it
+    title: ClassVar[str]  #: in a sentence, such as ``harmonic solid``
+    heading: ClassVar[str]  #: at the head of a narrow column; the title unless told otherwise
+    #: ``lumped`` (rests on another model's body), ``beam`` or ``solid``. Solids judge the others.
     family: ClassVar[str]
+    #: what it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``
     theory: ClassVar[str] = ""
+    #: colour, marker: in charts
     colour: ClassVar[str] = "#777777"
     marker: ClassVar[str] = "P"
-    options: ClassVar[Mapping[str, Option]] = {}
-    preset: ClassVar[Options] = {}
-    coarser: ClassVar[str] = "use a coarser mesh"
+    options: ClassVar[Mapping[str, Option]] = {}  #: of the builder, with their limits
+    preset: ClassVar[Options] = {}  #: options that make this model of a builder that several share
+    coarser: ClassVar[str] = "use a coarser mesh"  #: what to change where it is too large
+    #: sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
+    #: one of them at a time; a body of revolution holds none
     holds: ClassVar[tuple[str, ...]] = ()
+    #: sorts of these that it holds beside each other
     together: ClassVar[frozenset[str]] = frozenset()
+    #: whether it is made for the features that it holds, and for nothing else
     for_features: ClassVar[bool] = False
+    #: whether every mesh tells its own error by local problems: its displacements are admissible on
+    #: the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
+    #: from below, stiffnesses and frequencies from above.
     bounded: ClassVar[bool] = False
+    #: error bars are wanted below the tolerance asked for divided by this
     share: ClassVar[float] = 1.0
+    #: whether its mesh carries the mean motion of any section; otherwise it is not compared like
+    #: for like
     section_ties: ClassVar[bool] = True
+    #: closure of mass and inertia that it owes to the closed form
     mass_tolerance: ClassVar[float] = 1e-9
-    most_seats: ClassVar[int] = 12
+    most_seats: ClassVar[int] = 12  #: seats that one body carries in a sweep
+    #: of an error bar over its meshes, where it is not that of meshes with layers or of plain
+    #: refinement
     safety: ClassVar[Safety | None] = None
     #: what its body is, where a feature does not fit it
     _nature: ClassVar[str] = "of revolution"

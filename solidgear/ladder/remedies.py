@@ -36,21 +36,11 @@ BY_REFINEMENT = 4
 
 @dataclass(frozen=True)
 class Remedy:
-    """One way out.
+    """One way out."""
 
-    Attributes
-    ----------
-    words : str
-        What to ask for.
-    mb : float
-        What it would take, about.
-    note : str
-        What there is to be known of it.
-    """
-
-    words: str
-    mb: float
-    note: str = ""
+    words: str  #: what to ask for
+    mb: float  #: what it would take, about
+    note: str = ""  #: what there is to be known of it
 
     @property
     def text(self) -> str:

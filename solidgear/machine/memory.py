@@ -56,17 +56,11 @@ def require(need_mb: float, what: str, by: str = "", free: float | None = None) 
 
 @dataclass
 class Run:
-    """Memory of one run.
+    """Memory of one run."""
 
-    Attributes
-    ----------
-    base_mb : float or None
-        What the process held when it began; None before that, and where the system does not tell.
-    expected_mb : float or None
-        The largest peak that was told beforehand (see :func:`expect`).
-    """
-
+    #: what the process held when it began; None before that, and where the system does not tell
     base_mb: float | None = None
+    #: the largest peak that was told beforehand (see :func:`expect`)
     expected_mb: float | None = None
 
 

@@ -34,23 +34,13 @@ GROWTH = 1.0
 
 @dataclass
 class Zone:
-    """Rows of blocks on one side of a joint.
+    """Rows of blocks on one side of a joint."""
 
-    Attributes
-    ----------
-    side : int
-        -1 where y is smaller than at the joint, +1 where it is larger.
-    rows : int
-        0 where there is no block.
-    skip : float
-        Axial extent of fillets that run into this side from the face of the other, m.
-    knots : list of (radius, depth)
-        How far the zone reaches at some radii, m.
-    """
-
-    side: int
-    rows: int = 0
+    side: int  #: -1 where y is smaller than at the joint, +1 where it is larger
+    rows: int = 0  #: 0 where there is no block
+    #: axial extent of fillets that run into this side from the face of the other, m
     skip: float = 0.0
+    #: how far the zone reaches at some radii, m
     knots: list[tuple[float, float]] = field(default_factory=list)
 
     @property
@@ -70,24 +60,14 @@ class Zone:
 
 @dataclass
 class Joint:
-    """A place where segments meet, or an end face, with the edges that have fillets or chamfers.
+    """A place where segments meet, or an end face, with the edges that have fillets or chamfers."""
 
-    Attributes
-    ----------
-    y : float
-        m.
-    index : int
-        Number of the segment that begins here.
-    line : int
-        Mesh line of the joint, once there is one.
-    """
-
-    y: float
-    index: int
+    y: float  #: m
+    index: int  #: number of the segment that begins here
     corners: list[Corner]
     low: Zone = field(default_factory=lambda: Zone(-1))
     high: Zone = field(default_factory=lambda: Zone(1))
-    line: int = -1
+    line: int = -1  #: mesh line of the joint, once there is one
 
     def zone(self, side: int) -> Zone:
         """The zone of one side."""

@@ -21,28 +21,16 @@ Cells = dict[tuple[int, int], "Cell"]
 
 @dataclass
 class Cell:
-    """A quadrilateral: inner-low, outer-low, outer-high, inner-high.
+    """A quadrilateral: inner-low, outer-low, outer-high, inner-high."""
 
-    Attributes
-    ----------
-    ids : tuple of int
-        Of its corners; those of ring lines are ``line * ring lines + ring``.
-    ring : int
-        Its place in its segment from the inside, -1 in a block.
-    count : int
-        Rings of cells of that segment.
-    arc : (int, float, float) or None
-        A local edge that is an arc, and (r, y) of its middle, m.
-    flip : int or None
-        A local edge whose odd functions have the other sign.
-    """
-
+    #: of its corners; those of ring lines are ``line * ring lines + ring``
     ids: tuple[int, int, int, int]
     segment: int
-    ring: int = -1
-    count: int = 0
+    ring: int = -1  #: its place in its segment from the inside, -1 in a block
+    count: int = 0  #: rings of cells of that segment
+    #: a local edge that is an arc, and (r, y) of its middle, m
     arc: tuple[int, float, float] | None = None
-    flip: int | None = None
+    flip: int | None = None  #: a local edge whose odd functions have the other sign
 
 
 def ring_cells(scene: Shaft, plan: Layout) -> tuple[Cells, Places]:

@@ -21,24 +21,14 @@ LONGEST = 4.0
 
 @dataclass(frozen=True)
 class Pieces:
-    """Cells cut in pieces.
+    """Cells cut in pieces."""
 
-    Attributes
-    ----------
-    parent : (m,) ndarray of int
-        Cell that each piece lies in.
-    corners : (m, 4) ndarray of int
-        Vertices, those of the uncut mesh under their own numbers, in the sense of the parent's.
-    local : (m, 4, 2) ndarray
-        Where they are in the reference coordinates of the parent.
-    points : (n, 2) ndarray
-        Vertices with every side straight, m.
-    """
-
-    parent: np.ndarray
+    parent: np.ndarray  #: (m,) cell that each piece lies in
+    #: (m, 4) vertices, those of the uncut mesh under their own numbers, in the sense of the
+    #: parent's
     corners: np.ndarray
-    local: np.ndarray
-    points: np.ndarray
+    local: np.ndarray  #: (m, 4, 2) where they are in the reference coordinates of the parent
+    points: np.ndarray  #: (n, 2) vertices with every side straight, m
 
 
 _LOCAL = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -66,23 +66,13 @@ def ten_nodes(
 
 @dataclass(frozen=True)
 class Filling:
-    """Curved tetrahedra in what is drawn.
-
-    Attributes
-    ----------
-    mesh : skfem.MeshTet2
-    volume : (ne,) ndarray of int
-        Number of the drawn volume that each element is in.
-    inside : (k,) ndarray of bool
-        Edges that lie on no drawn surface, but for their ends.
-    straightened : dict of int to float
-        Share that the second moments of a drawn volume are off by, as edges of elements that would
-        fold are straight.
-    """
+    """Curved tetrahedra in what is drawn."""
 
     mesh: MeshTet2
-    volume: np.ndarray
-    inside: np.ndarray
+    volume: np.ndarray  #: (ne,) number of the drawn volume that each element is in
+    inside: np.ndarray  #: (k,) edges that lie on no drawn surface, but for their ends
+    #: share that the second moments of a drawn volume are off by, as edges of elements that would
+    #: fold are straight
     straightened: dict[int, float] = field(default_factory=dict)
 
 

@@ -48,28 +48,15 @@ AT_STEPS = (1.0, 1.5, 2.0)
 
 @dataclass(frozen=True)
 class FeaturedMesh:
-    """A meshed shaft with the volumes of its features.
+    """A meshed shaft with the volumes of its features."""
 
-    Attributes
-    ----------
-    mesh : skfem.MeshTet2
-        Of the plain shaft, or of half of it.
-    segment : (ne,) ndarray of int
-        Segment each element lies in.
-    cut : (ne,) ndarray of bool
-        Elements that features remove.
-    plane : int or None
-        Axis at right angles to the mirror plane: 0 for x = 0, 2 for z = 0; None for a whole shaft.
-    removed : float
-        Volume that OCC says the features remove from the whole shaft, m^3.
-    """
-
-    mesh: MeshTet2
-    segment: np.ndarray
-    cut: np.ndarray
+    mesh: MeshTet2  #: of the plain shaft, or of half of it
+    segment: np.ndarray  #: (ne,) segment each element lies in
+    cut: np.ndarray  #: (ne,) elements that features remove
+    #: axis at right angles to the mirror plane: 0 for x = 0, 2 for z = 0; None for a whole shaft
     plane: int | None
     quality: MeshQuality
-    removed: float
+    removed: float  #: volume that OCC says the features remove from the whole shaft, m^3
 
 
 def featured_mesh(

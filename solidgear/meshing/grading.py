@@ -39,45 +39,28 @@ class Grading:
 
     The local length of a segment is its outer radius, or the decay length of a shell where its wall
     is thin.
-
-    Attributes
-    ----------
-    layers : int
-        Geometric layers towards right-angled shoulders and rigid seat ends, the strongest
-        singularities.
-    edge_layers : int
-        The same towards the ends of averaged seats.
-    radial_layers : int or None
-        As ``layers``, across the thickness, where a line costs more cells than along the shaft.
-    ratio : float
-        Size of a layer relative to the one before, 0.15 to 0.5.
-    relative_size : float
-        Size of a cell away from singular points, in local lengths.
-    size : float or None
-        Size of a cell away from singular points in m, in place of ``relative_size``.
-    reach, radial_reach : float
-        Where grading starts, in local lengths from the singular point, along the shaft and across.
-    refinement : float
-        Multiplies the number of cells everywhere.
-    core : bool
-        Start the band on the axis with one cell of half its width, room for the core of an O-grid.
-    corner_cells : int
-        Cells along either half of a fillet, at refinement 1.
-    plain : bool
-        Whether nothing narrow or thin asks for lines of its own: those come later, where the error is.
     """
 
+    #: geometric layers towards right-angled shoulders and rigid seat ends, the strongest
+    #: singularities
     layers: int = 3
-    edge_layers: int = 1
+    edge_layers: int = 1  #: the same towards the ends of averaged seats
+    #: as ``layers``, across the thickness, where a line costs more cells than along the shaft
     radial_layers: int | None = None
-    ratio: float = 0.2
-    relative_size: float = 1.0
+    ratio: float = 0.2  #: size of a layer relative to the one before, 0.15 to 0.5
+    relative_size: float = 1.0  #: size of a cell away from singular points, in local lengths
+    #: size of a cell away from singular points in m, in place of ``relative_size``
     size: float | None = None
+    #: reach, radial_reach: where grading starts, in local lengths from the singular point, along
+    #: the shaft and across
     reach: float = REACH
     radial_reach: float = REACH
-    refinement: float = 1.0
+    refinement: float = 1.0  #: multiplies the number of cells everywhere
+    #: start the band on the axis with one cell of half its width, room for the core of an O-grid
     core: bool = False
-    corner_cells: int = 1
+    corner_cells: int = 1  #: cells along either half of a fillet, at refinement 1
+    #: whether nothing narrow or thin asks for lines of its own: those come later, where the error
+    #: is
     plain: bool = False
 
     @property

@@ -22,26 +22,16 @@ FULL_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Hole:
-    """Holes of a bolt circle and the edge of elements at them, m.
+    """Holes of a bolt circle and the edge of elements at them, m."""
 
-    Attributes
-    ----------
-    circle, radius : float
-        Radius of the circle of middles, and of a hole.
-    lo, hi : float
-        Ends along the axis.
-    count : int
-        On the circle.
-    least : float
-        Element edge on the wall.
-    """
-
+    #: circle, radius: radius of the circle of middles, and of a hole
     circle: float
     radius: float
+    #: lo, hi: ends along the axis
     lo: float
     hi: float
-    count: int
-    least: float
+    count: int  #: on the circle
+    least: float  #: element edge on the wall
 
 
 def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:

@@ -27,32 +27,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Layout:
-    """Structured layout of the meridian.
+    """Structured layout of the meridian."""
 
-    Attributes
-    ----------
-    y : (ny + 1,) ndarray
-        Axial mesh lines, m.
-    segment : (ny,) ndarray of int
-        Segment of each axial cell.
-    bands : tuple of (lowest, end) per segment
-        Radial bands a segment occupies, as indices into ``fractions``.
-    left, right : tuple of ndarray per segment
-        Radii of the band boundaries ``lowest .. end`` at the two ends of the segment, m.
-    fractions : dict of (band index, first segment of a run) -> (m + 1,) ndarray
-        Subdivision of each band, 0 to 1 outwards, for every run of neighbours that have the band: a
-        flange does not pass its rings on to a seat at the other end of the shaft.
-    joints : tuple of Joint
-        Places with fillets or chamfers, whose blocks of cells
-        :mod:`solidgear.meshing.blended` puts in.
-    """
-
-    y: np.ndarray
-    segment: np.ndarray
-    bands: Bands
+    y: np.ndarray  #: (ny + 1,) axial mesh lines, m
+    segment: np.ndarray  #: (ny,) segment of each axial cell
+    bands: Bands  #: radial bands a segment occupies, as indices into ``fractions``
+    #: left, right: radii of the band boundaries ``lowest .. end`` at the two ends of the segment,
+    #: m.
     left: tuple[np.ndarray, ...]
     right: tuple[np.ndarray, ...]
+    #: subdivision of each band, 0 to 1 outwards, for every run of neighbours that have the band: a
+    #: flange does not pass its rings on to a seat at the other end of the shaft
     fractions: dict[tuple[int, int], np.ndarray]
+    #: places with fillets or chamfers, whose blocks of cells :mod:`solidgear.meshing.blended` puts
+    #: in
     joints: tuple[Joint, ...] = ()
 
     def radii(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:

@@ -31,31 +31,18 @@ class Meridian:
     Every cell is numbered inner-low, outer-low, outer-high, inner-high, so that its first
     local coordinate runs outwards and its second along the shaft: hierarchical
     edge functions of scikit-fem carry no orientation sign and need just that.
-
-    Attributes
-    ----------
-    points : (2, n) ndarray
-        r and y, m.
-    cells : (4, m) ndarray of int
-    segment : (m,) ndarray of int
-    outer, inner : (k,) ndarray of int
-        Cells with their outer (inner) edge on a lateral surface.
-    arc : (m,) ndarray of int
-        Local edge that is part of a circle, or -1: 0 low, 1 outer, 2 high, 3 inner.
-    centre : (2, m) ndarray
-        r and y of the middle of that circle, m.
-    flip : (4, m) ndarray of bool
-        Local edges whose odd functions have the other sign.
     """
 
-    points: np.ndarray
-    cells: np.ndarray
-    segment: np.ndarray
+    points: np.ndarray  #: (2, n) r and y, m
+    cells: np.ndarray  #: (4, m)
+    segment: np.ndarray  #: (m,)
+    #: outer, inner: (k,) cells with their outer (inner) edge on a lateral surface
     outer: np.ndarray
     inner: np.ndarray
+    #: (m,) local edge that is part of a circle, or -1: 0 low, 1 outer, 2 high, 3 inner
     arc: np.ndarray
-    centre: np.ndarray
-    flip: np.ndarray
+    centre: np.ndarray  #: (2, m) r and y of the middle of that circle, m
+    flip: np.ndarray  #: (4, m) local edges whose odd functions have the other sign
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:

@@ -37,39 +37,19 @@ _HEX_CORNERS = np.array(
 
 @dataclass(frozen=True)
 class FileMesh:
-    """A mesh from a file, in the scene.
+    """A mesh from a file, in the scene."""
 
-    Attributes
-    ----------
-    mesh : skfem mesh
-        m.
-    element : str
-        ``tet4``, ``tet10``, ``hex8`` or ``hex20``.
-    volume : float
-        m^3.
-    owner : (ne,) ndarray of int
-        Place of the group of each element among those that were named; one more for the rest.
-    rest : tuple of str
-        Groups of the rest.
-    told : tuple of str
-        Groups of the file that tell materials, where there are several.
-    remarks : tuple of str
-        What is odd about the file.
-    patches : dict of str to (n,) ndarray
-        Facets of the mesh in named groups of surfaces.
-    materials : tuple of FileMaterial
-        That the file says itself, of its groups.
-    """
-
-    mesh: Mesh
-    element: str
-    volume: float
+    mesh: Mesh  #: m
+    element: str  #: ``tet4``, ``tet10``, ``hex8`` or ``hex20``
+    volume: float  #: m^3
+    #: (ne,) place of the group of each element among those that were named; one more for the rest
     owner: np.ndarray
-    rest: tuple[str, ...] = ()
-    told: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
+    rest: tuple[str, ...] = ()  #: groups of the rest
+    told: tuple[str, ...] = ()  #: groups of the file that tell materials, where there are several
+    remarks: tuple[str, ...] = ()  #: what is odd about the file
+    #: facets of the mesh in named groups of surfaces
     patches: Mapping[str, np.ndarray] = field(default_factory=dict)
-    materials: tuple[FileMaterial, ...] = ()
+    materials: tuple[FileMaterial, ...] = ()  #: that the file says itself, of its groups
 
     def faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Its surface and what lies between groups: (3, n) points, (3, t) triangles, into which

@@ -10,21 +10,12 @@ Triple = tuple[float, float, float]
 
 
 class Placing(NamedTuple):
-    """From places in a file to places in a scene, ``turn @ (unit * x - foot)``.
+    """From places in a file to places in a scene, ``turn @ (unit * x - foot)``."""
 
-    Attributes
-    ----------
-    unit : float
-        m for each unit of the file.
-    turn : tuple of tuple of float
-        3 x 3, a rotation.
-    foot : tuple of float
-        What comes to lie at the origin: where the axis of the part leaves it, m, in the axes of the
-        file.
-    """
-
-    unit: float
-    turn: tuple[Triple, Triple, Triple]
+    unit: float  #: m for each unit of the file
+    turn: tuple[Triple, Triple, Triple]  #: 3 x 3, a rotation
+    #: what comes to lie at the origin: where the axis of the part leaves it, m, in the axes of the
+    #: file
     foot: Triple
 
     def of(self, points: np.ndarray) -> np.ndarray:

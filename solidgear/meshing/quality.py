@@ -38,34 +38,24 @@ class MeshError(SolidgearError):
 
 @dataclass(frozen=True)
 class MeshQuality:
-    """Measures of a mesh.
+    """Measures of a mesh."""
 
-    Attributes
-    ----------
-    n_elements, n_vertices : int
-        Elements, and their corner nodes (mid nodes are not counted).
-    volume : float
-        Volume of the elements with their curved faces, exact for the geometry of the mesh [m^3].
-    min_det_j, max_det_j : float
-        Extremes of the Jacobian determinant over all elements [m^3].
-    min_ratio : float
-        Smallest (min det J) / (max det J) inside one element: 1 is an affine element, 0 or less a
-        folded one.
-    min_volume_ratio : float
-        Smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
-        sliver wrongly.
-    straightened : float
-        Largest share that the second moments of a part of it are off by, as edges of elements that
-        would fold are straight: it falls by no order.
-    """
-
+    #: n_elements, n_vertices: elements, and their corner nodes (mid nodes are not counted)
     n_elements: int
     n_vertices: int
+    #: volume of the elements with their curved faces, exact for the geometry of the mesh [m^3]
     volume: float
+    #: min_det_j, max_det_j: extremes of the Jacobian determinant over all elements [m^3]
     min_det_j: float
     max_det_j: float
+    #: smallest (min det J) / (max det J) inside one element: 1 is an affine element, 0 or less a
+    #: folded one
     min_ratio: float
+    #: smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
+    #: sliver wrongly
     min_volume_ratio: float
+    #: largest share that the second moments of a part of it are off by, as edges of elements that
+    #: would fold are straight: it falls by no order
     straightened: float = 0.0
 
 

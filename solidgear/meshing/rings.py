@@ -37,19 +37,11 @@ Radii = Sequence[np.ndarray]
 
 
 class Run(NamedTuple):
-    """Neighbouring segments that have a band, without a gap between them.
-
-    Attributes
-    ----------
-    thicknesses : tuple of float
-        Of the band at both ends of each segment, m.
-    on_axis : bool
-        Whether it begins on the axis, the only band boundary that is no surface anywhere.
-    """
+    """Neighbouring segments that have a band, without a gap between them."""
 
     band: int
     segments: tuple[int, ...]
-    thicknesses: tuple[float, ...]
+    thicknesses: tuple[float, ...]  #: of the band at both ends of each segment, m
     on_axis: bool
 
     @property

@@ -57,32 +57,17 @@ class Lathe(NamedTuple):
 
 @dataclass(frozen=True)
 class RoundPart:
-    """The recognised part.
+    """The recognised part."""
 
-    Attributes
-    ----------
-    walls : tuple of Frustum
-        End to end.
-    surfaces : tuple of Lathe
-        Round surfaces, outer ones and bores.
-    share : float
-        Share of the surface that is round, faces across the axis left out.
-    facets : float
-        Volume that a mesh may lack beside the round surfaces, m^3: that outside flat triangles
-        with corners on them, or a small part of it where they are so wide that the part itself may
-        be many-sided, and no facet but a curved one speaks for something round.
-    beside_arcs : float
-        Largest distance of walls from the arc of a torus, m.
-    tori : tuple of Torus
-        That walls follow as cones.
-    """
-
-    walls: tuple[Frustum, ...]
-    surfaces: tuple[Lathe, ...]
-    share: float
+    walls: tuple[Frustum, ...]  #: end to end
+    surfaces: tuple[Lathe, ...]  #: round surfaces, outer ones and bores
+    share: float  #: share of the surface that is round, faces across the axis left out
+    #: volume that a mesh may lack beside the round surfaces, m^3: that outside flat triangles with
+    #: corners on them, or a small part of it where they are so wide that the part itself may be
+    #: many-sided, and no facet but a curved one speaks for something round
     facets: float = 0.0
-    beside_arcs: float = 0.0
-    tori: tuple[Torus, ...] = ()
+    beside_arcs: float = 0.0  #: largest distance of walls from the arc of a torus, m
+    tori: tuple[Torus, ...] = ()  #: that walls follow as cones
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:

@@ -16,15 +16,10 @@ SECTIONS, SCANS = 3, 200
 
 
 class Share(NamedTuple):
-    """A frustum and what it is made of.
-
-    Attributes
-    ----------
-    groups : tuple of (int, float)
-        Groups and their shares of its volume, roughly where there are several.
-    """
+    """A frustum and what it is made of."""
 
     wall: Frustum
+    #: groups and their shares of its volume, roughly where there are several
     groups: tuple[tuple[int, float], ...]
 
     @property

@@ -45,33 +45,16 @@ MATCH = 1e-9
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """A meshed sector, or the half of one that is even about its middle.
+    """A meshed sector, or the half of one that is even about its middle."""
 
-    Attributes
-    ----------
-    mesh : skfem.MeshTet2
-        Twisted as its teeth are; a half has its middle plane in x = 0, whatever ``turn`` is.
-    segment : (ne,) ndarray of int
-        Segment each element lies in.
-    count : int
-        Sectors around.
-    straight : (3, nv) ndarray
-        Vertices before they were twisted, m.
-    quality : MeshQuality
-        Of the twisted mesh.
-    drawn : float
-        Volume of the sector (of a half, of that half) that OCC has drawn, m^3.
-    turn : float
-        Angle of the middle of the sector at the start of the shaft, rad.
-    """
-
+    #: twisted as its teeth are; a half has its middle plane in x = 0, whatever ``turn`` is
     mesh: MeshTet2
-    segment: np.ndarray
-    count: int
-    straight: np.ndarray
-    quality: MeshQuality
-    drawn: float
-    turn: float = 0.0
+    segment: np.ndarray  #: (ne,) segment each element lies in
+    count: int  #: sectors around
+    straight: np.ndarray  #: (3, nv) vertices before they were twisted, m
+    quality: MeshQuality  #: of the twisted mesh
+    drawn: float  #: volume of the sector (of a half, of that half) that OCC has drawn, m^3
+    turn: float = 0.0  #: angle of the middle of the sector at the start of the shaft, rad
     half: bool = False
 
     @property

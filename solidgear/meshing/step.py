@@ -38,26 +38,13 @@ GROWTH = 0.5
 
 @dataclass(frozen=True)
 class Seen:
-    """Look of a part.
+    """Look of a part."""
 
-    Attributes
-    ----------
-    points : (3, n) ndarray
-        On its surface and between its solids, m, in the axes of the scene.
-    triangles : (3, t) ndarray of int
-    sides : (2, t) ndarray of int
-        Owner of the solid on each side, -1 outside.
-    volumes : (n + 1,) ndarray
-        Of the solids that were named and of the rest, m^3.
-    rest : tuple of str
-        Solids of the rest.
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    sides: np.ndarray
-    volumes: np.ndarray
-    rest: tuple[str, ...]
+    points: np.ndarray  #: (3, n) on its surface and between its solids, m, in the axes of the scene
+    triangles: np.ndarray  #: (3, t)
+    sides: np.ndarray  #: (2, t) owner of the solid on each side, -1 outside
+    volumes: np.ndarray  #: (n + 1,) of the solids that were named and of the rest, m^3
+    rest: tuple[str, ...]  #: solids of the rest
     faces: int
 
     @property

@@ -28,18 +28,10 @@ _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 
 @dataclass(frozen=True)
 class TetMesh:
-    """A meshed shaft.
+    """A meshed shaft."""
 
-    Attributes
-    ----------
-    mesh : skfem.MeshTet2
-        With mid-edge nodes on the true surface, but for what keeps its volume.
-    segment : ndarray of int, shape (n_elements,)
-        Index of the segment each element lies in.
-    """
-
-    mesh: MeshTet2
-    segment: np.ndarray
+    mesh: MeshTet2  #: with mid-edge nodes on the true surface, but for what keeps its volume
+    segment: np.ndarray  #: index of the segment each element lies in
     quality: MeshQuality
 
 

@@ -29,38 +29,20 @@ SHAFT = 0.5
 
 @dataclass
 class Modal:
-    """Port numbers of a free body.
+    """Port numbers of a free body."""
 
-    Attributes
-    ----------
-    rigid_mass : (6, 6) ndarray
-    value : (k, k) ndarray
-        Stiffness among the modes, rad^2/s^2: diagonal before it is corrected.
-    motions : (6 p, k) ndarray
-        G U.
-    sections : (6 s, k) ndarray
-        Motions of sections in every mode.
-    gram : (6 s, 6 s) ndarray
-        Mass matrix of sections.
-    static, inert : (6 p, 6 p) ndarray
-        mu_0 and mu_1 before any mode is taken out of H.
-    vectors : list of dict of int to ndarray
-        The modes on the mesh.
-    moves : list of tuple of int
-        Port components of the block that each mode is of.
-    fields : dict of int to ndarray
-        ``H G'`` on the mesh likewise, by block, columns of that block's port components.
-    """
-
-    rigid_mass: np.ndarray
+    rigid_mass: np.ndarray  #: (6, 6)
+    #: (k, k) stiffness among the modes, rad^2/s^2: diagonal before it is corrected
     value: np.ndarray
-    motions: np.ndarray
-    sections: np.ndarray
-    gram: np.ndarray
+    motions: np.ndarray  #: (6 p, k) G U
+    sections: np.ndarray  #: (6 s, k) motions of sections in every mode
+    gram: np.ndarray  #: (6 s, 6 s) mass matrix of sections
+    #: static, inert: (6 p, 6 p) mu_0 and mu_1 before any mode is taken out of H
     static: np.ndarray
     inert: np.ndarray
-    vectors: list[dict[int, np.ndarray]]
-    moves: list[tuple[int, ...]]
+    vectors: list[dict[int, np.ndarray]]  #: the modes on the mesh
+    moves: list[tuple[int, ...]]  #: port components of the block that each mode is of
+    #: ``H G'`` on the mesh likewise, by block, columns of that block's port components
     fields: dict[int, np.ndarray]
 
     def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

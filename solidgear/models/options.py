@@ -15,30 +15,19 @@ from solidgear.factoring import ENGINES, PRECISIONS
 
 @dataclass(frozen=True)
 class Option:
-    """One option of a builder.
-
-    Attributes
-    ----------
-    kind : {'number', 'whole', 'choice', 'flag', 'harmonics', 'several', 'places'}
-    least, most : float, optional
-        Limits that may be met.
-    above, below : float, optional
-        Limits that may not.
-    why : str
-        The reason for the limits.
-    optional : bool
-        Whether None may be given, for the builder's own choice.
-    """
+    """One option of a builder."""
 
     meaning: str
     kind: str = "number"
+    #: least, most: limits that may be met
     least: float | None = None
     most: float | None = None
+    #: above, below: limits that may not
     above: float | None = None
     below: float | None = None
-    why: str = ""
+    why: str = ""  #: the reason for the limits
     choices: tuple[str, ...] = ()
-    optional: bool = False
+    optional: bool = False  #: whether None may be given, for the builder's own choice
 
 
 #: ways of tying a station to the shaft

@@ -18,24 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Size:
-    """Unknowns, entries and memory of a model.
+    """Unknowns, entries and memory of a model."""
 
-    Attributes
-    ----------
-    unknowns : int
-        Of all blocks, twins counted twice: the ``size`` of the body.
-    matrices : tuple of (int, int)
-        Rows and entries of every matrix that is factored.
-    entries : int
-        That are held.
-    planar : bool
-        Whether they come from a 1D or 2D mesh.
-    """
-
-    unknowns: int
-    matrices: tuple[tuple[int, int], ...]
-    entries: int
-    planar: bool = False
+    unknowns: int  #: of all blocks, twins counted twice: the ``size`` of the body
+    matrices: tuple[tuple[int, int], ...]  #: rows and entries of every matrix that is factored
+    entries: int  #: that are held
+    planar: bool = False  #: whether they come from a 1D or 2D mesh
 
     @property
     def backend(self) -> str:

@@ -42,41 +42,23 @@ BELIEVED = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Apart:
-    """A branch that hangs together with none known before.
-
-    Attributes
-    ----------
-    periods : int
-        Of the excitation after which its motions repeat themselves; frequencies of the branch are
-        those of them all.
-    end : {'closed', 'range', 'merged'}
-        Back where it began, cut by the range of speeds, or of one period again.
-    """
+    """A branch that hangs together with none known before."""
 
     branch: Branch = field(repr=False)
+    #: of the excitation after which its motions repeat themselves; frequencies of the branch are
+    #: those of them all
     periods: int
-    end: str
+    end: str  #: back where it began, cut by the range of speeds, or of one period again
 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """Search for branches apart: starts, and motions found.
+    """Search for branches apart: starts, and motions found."""
 
-    Attributes
-    ----------
-    omega : (n,) ndarray
-        Speeds of starts, rad/s.
-    starts : int
-        At all of them.
-    found : tuple of Apart
-    lost : tuple of float
-        Speeds of further motions that could not be followed, rad/s.
-    """
-
-    omega: np.ndarray = field(repr=False)
-    starts: int
+    omega: np.ndarray = field(repr=False)  #: (n,) speeds of starts, rad/s
+    starts: int  #: at all of them
     found: tuple[Apart, ...]
-    lost: tuple[float, ...] = ()
+    lost: tuple[float, ...] = ()  #: speeds of further motions that could not be followed, rad/s
 
 
 @pinned

@@ -56,39 +56,23 @@ def as_complex(parts: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """The balance that is left at a trial motion, with its derivatives.
+    """The balance that is left at a trial motion, with its derivatives."""
 
-    Attributes
-    ----------
-    value : (n,) ndarray
-    jacobian : (n, n) ndarray
-    by_omega : (n,) ndarray
-    held : bool
-        Some link carries a force at some instant, or none needs to: where laws alone hold the
-        system, a motion without any leaves the Jacobian singular.
-    """
-
-    value: np.ndarray
-    jacobian: np.ndarray
-    by_omega: np.ndarray
+    value: np.ndarray  #: (n,)
+    jacobian: np.ndarray  #: (n, n)
+    by_omega: np.ndarray  #: (n,)
+    #: some link carries a force at some instant, or none needs to: where laws alone hold the
+    #: system, a motion without any leaves the Jacobian singular
     held: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Balance:
-    """The equations of a remainder for so many harmonics.
-
-    Attributes
-    ----------
-    count : int
-        Harmonics H.
-    instants : int
-        A harmonic.
-    """
+    """The equations of a remainder for so many harmonics."""
 
     remainder: Remainder
-    count: int
-    instants: int = INSTANTS
+    count: int  #: harmonics H
+    instants: int = INSTANTS  #: a harmonic
 
     @property
     def samples(self) -> int:

@@ -40,25 +40,14 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A periodic motion.
+    """A periodic motion."""
 
-    Attributes
-    ----------
-    omega : float
-        Of the excitation, rad/s.
-    motion : (n,) ndarray
-        Coefficients of the balance.
-    tangent : (n + 1,) ndarray
-        Of the branch, in scaled unknowns; its last entry is that of the speed.
-    sign : float
-        Of the bordered determinant; 0 where branches cross.
-    """
-
-    omega: float
-    motion: np.ndarray = field(repr=False)
+    omega: float  #: of the excitation, rad/s
+    motion: np.ndarray = field(repr=False)  #: (n,) coefficients of the balance
     balance: Balance = field(repr=False)
+    #: (n + 1,) of the branch, in scaled unknowns; its last entry is that of the speed
     tangent: np.ndarray = field(repr=False)
-    sign: float
+    sign: float  #: of the bordered determinant; 0 where branches cross
 
     @property
     def harmonics(self) -> np.ndarray:
@@ -106,20 +95,11 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """Points in order, and which of them turn.
+    """Points in order, and which of them turn."""
 
-    Attributes
-    ----------
-    points : tuple of Point
-        Turning points among them.
-    turning : tuple of int
-        Where the speed turns round.
-    scale : tuple of float
-        Of motions and of speeds, in tangents and steps.
-    """
-
-    points: tuple[Point, ...]
-    turning: tuple[int, ...]
+    points: tuple[Point, ...]  #: turning points among them
+    turning: tuple[int, ...]  #: where the speed turns round
+    #: of motions and of speeds, in tangents and steps
     scale: tuple[float, float] = field(repr=False)
 
     @property

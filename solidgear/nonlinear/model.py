@@ -36,54 +36,31 @@ LOOSE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class Remainder:
-    """Linear remainder that links with a law move against.
+    """Linear remainder that links with a law move against."""
 
-    Attributes
-    ----------
-    omega : (r,) ndarray
-        Of the modes that move, rad/s.
-    losses : (r, r) ndarray
-        Damping in these modes, mass-normalised, rad/s, the tangents c of the laws within.
-    seen : (m, r) ndarray
-        Stretch of every row of the links in each mode.
-    flexible : (m, m) ndarray
-        Flexibility of the other modes between these rows, m/N.
-    mean : (m,) ndarray
-        Stretch of the linear system under its constant load, m.
-    stiffness, damper : (m, m) ndarray
-        Tangents of the laws, N/m and N s/m.
-    drag : (m, m) ndarray
-        Damping that acts on the rate of the transmission error, N s/m.
-    laws : tuple of (Law, slice)
-        And their rows.
-    error : (o, m) complex ndarray
-        Transmission error e of each row, by orders from 1, m.
-    cycle : (o, m) complex ndarray
-        How the force of each row varies with the angle of the excitation: one, and these orders.
-    push : (o, r) complex ndarray
-        Forces on the modes by orders from 1, mass-normalised.
-    gives : (o, m) complex ndarray
-        What they stretch the rows by in the modes that are flexibility, m.
-    unbalance : bool
-        These forces are those at 1 rad/s and grow with the square of the frequency.
-    sway : Sway or None
-        How the line of action of links turns over the cycle.
-    """
-
-    omega: np.ndarray
+    omega: np.ndarray  #: (r,) of the modes that move, rad/s
+    #: (r, r) damping in these modes, mass-normalised, rad/s, the tangents c of the laws within
     losses: np.ndarray
-    seen: np.ndarray
-    flexible: np.ndarray
-    mean: np.ndarray
+    seen: np.ndarray  #: (m, r) stretch of every row of the links in each mode
+    flexible: np.ndarray  #: (m, m) flexibility of the other modes between these rows, m/N
+    mean: np.ndarray  #: (m,) stretch of the linear system under its constant load, m
+    #: stiffness, damper: (m, m) tangents of the laws, N/m and N s/m
     stiffness: np.ndarray
     damper: np.ndarray
-    drag: np.ndarray
-    laws: tuple[tuple[Law, slice], ...]
+    drag: np.ndarray  #: (m, m) damping that acts on the rate of the transmission error, N s/m
+    laws: tuple[tuple[Law, slice], ...]  #: and their rows
+    #: (o, m) transmission error e of each row, by orders from 1, m
     error: np.ndarray = field(repr=False)
+    #: (o, m) how the force of each row varies with the angle of the excitation: one, and these
+    #: orders
     cycle: np.ndarray = field(repr=False)
+    #: (o, r) forces on the modes by orders from 1, mass-normalised
     push: np.ndarray = field(repr=False)
+    #: (o, m) what they stretch the rows by in the modes that are flexibility, m
     gives: np.ndarray = field(repr=False)
+    #: these forces are those at 1 rad/s and grow with the square of the frequency
     unbalance: bool = False
+    #: how the line of action of links turns over the cycle
     sway: Sway | None = field(repr=False, default=None)
 
     @property

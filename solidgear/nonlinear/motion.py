@@ -38,28 +38,15 @@ CROSSINGS, LOCATED = 30, 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Steady:
-    """A motion that no longer changes.
+    """A motion that no longer changes."""
 
-    Attributes
-    ----------
-    omega : float
-        Of the excitation, rad/s.
-    cycle : int
-        Periods of the excitation after which it repeats itself; 0 where it never did.
-    periods : int
-        That it took.
-    stretch, force : (t, m) ndarray
-        Over its cycle, at equal intervals; forces with those of dampers.
-    state : (2r,) ndarray
-        At its end, where another speed can begin.
-    """
-
-    omega: float
-    cycle: int
-    periods: int
+    omega: float  #: of the excitation, rad/s
+    cycle: int  #: periods of the excitation after which it repeats itself; 0 where it never did
+    periods: int  #: that it took
+    #: stretch, force: (t, m) over its cycle, at equal intervals; forces with those of dampers
     stretch: np.ndarray
     force: np.ndarray
-    state: np.ndarray
+    state: np.ndarray  #: (2r,) at its end, where another speed can begin
 
     @property
     def rms(self) -> np.ndarray:

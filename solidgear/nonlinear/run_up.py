@@ -33,32 +33,18 @@ class Spectra(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class RunUp:
-    """A motion under a ramp of the speed, cycle by cycle of the excitation.
+    """A motion under a ramp of the speed, cycle by cycle of the excitation."""
 
-    Attributes
-    ----------
-    omega : (c,) ndarray
-        In the middle of each cycle, rad/s.
-    lowest, highest : (c,) ndarray
-        Force of the first link within it, that of a damper included, N.
-    least, most : (c,) ndarray
-        Its stretch, m.
-    state : (2r,) ndarray
-        At the end.
-    spectra : Spectra
-        Of this force, at speeds that are evenly apart.
-    others : tuple of RunUp
-        The same of the other links with a law.
-    """
-
-    omega: np.ndarray
+    omega: np.ndarray  #: (c,) in the middle of each cycle, rad/s
+    #: lowest, highest: (c,) force of the first link within it, that of a damper included, N
     lowest: np.ndarray
     highest: np.ndarray
+    #: least, most: (c,) its stretch, m
     least: np.ndarray
     most: np.ndarray
-    state: np.ndarray
-    spectra: Spectra
-    others: tuple[RunUp, ...] = ()
+    state: np.ndarray  #: (2r,) at the end
+    spectra: Spectra  #: of this force, at speeds that are evenly apart
+    others: tuple[RunUp, ...] = ()  #: the same of the other links with a law
 
     @property
     def swing(self) -> np.ndarray:

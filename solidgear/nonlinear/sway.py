@@ -46,18 +46,11 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Sway:
-    """Shares over the cycle.
+    """Shares over the cycle."""
 
-    Attributes
-    ----------
-    orders : (o, m) complex ndarray
-        By orders from 1; of the first row of a link none, since that is the mean line.
-    links : tuple of slice
-        Rows of links whose line turns.
-    """
-
+    #: (o, m) by orders from 1; of the first row of a link none, since that is the mean line
     orders: np.ndarray = field(repr=False)
-    links: tuple[slice, ...]
+    links: tuple[slice, ...]  #: rows of links whose line turns
 
     def line(self, angle: np.ndarray, omega: float | np.ndarray) -> Line:
         """Shares at angles (T,) of an excitation of a frequency, or frequencies (T, 1), rad/s."""

@@ -35,18 +35,6 @@ ITERATIONS, HALVINGS = 40, 8
 class TwoTone:
     """The equations of a system under two excitations of their own frequencies.
 
-    Attributes
-    ----------
-    fast, slow : Remainder
-        One system under its constant load, with the excitation and the cycle of either frequency;
-        where both have a cycle, forces are multiplied by both.
-    omega : (float, float)
-        rad/s.
-    counts : (int, int)
-        Multiples of both frequencies.
-    instants : (int, int)
-        Of the grid, over each angle.
-
     Raises
     ------
     SolidgearError
@@ -69,11 +57,13 @@ class TwoTone:
     [0.0047, 0.1985, 0.0034]
     """
 
+    #: fast, slow: one system under its constant load, with the excitation and the cycle of either
+    #: frequency; where both have a cycle, forces are multiplied by both
     fast: Remainder
     slow: Remainder
-    omega: tuple[float, float]
-    counts: tuple[int, int]
-    instants: tuple[int, int] = (64, 64)
+    omega: tuple[float, float]  #: rad/s
+    counts: tuple[int, int]  #: multiples of both frequencies
+    instants: tuple[int, int] = (64, 64)  #: of the grid, over each angle
 
     def __post_init__(self):
         if any(law.kinks for law, _ in self.fast.laws):

@@ -27,19 +27,11 @@ from solidgear.reduction.superelement import PortMotion, Superelement
 
 @dataclass(frozen=True, eq=False)
 class CondensedShaft:
-    """A part whose coordinates are the motions of its l lumped points.
+    """A part whose coordinates are the motions of its l lumped points."""
 
-    Attributes
-    ----------
-    mass : (6 l, 6 l) ndarray
-    strain : (r, 6 l) ndarray
-        Of the shaft alone, without bearings.
-    ports : mapping of str to PortMotion
-        All ports of the shaft, as they follow the lumped points statically.
-    """
-
-    mass: np.ndarray
-    strain: np.ndarray
+    mass: np.ndarray  #: (6 l, 6 l)
+    strain: np.ndarray  #: (r, 6 l) of the shaft alone, without bearings
+    #: all ports of the shaft, as they follow the lumped points statically
     ports: Mapping[str, PortMotion]
 
     def with_mass(self, mass: np.ndarray) -> CondensedShaft:

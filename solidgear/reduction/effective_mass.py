@@ -47,47 +47,25 @@ STATIC_SHAPE = 1e-9
 
 @dataclass(frozen=True)
 class Synthesis:
-    """One lumped model of the first bending mode.
+    """One lumped model of the first bending mode."""
 
-    Attributes
-    ----------
-    method : str
-        ``old``, ``thesis``, ``mode-matched`` or ``guyan``.
-    mass : (2, 2) ndarray or None
-        On (z, thx): kg, kg m, kg m^2.  None when the method has no answer.
-    feasible : bool
-        Whether there is a real mass matrix, positive definite.
-    first : bool
-        Whether the frequency below is the first of the lumped model (a mode-matched pair can place
-        it second).
-    frequency_hz : float or None
-        First natural frequency of the lumped model.
-    frequency_error : float or None
-        Against the body's first bending, relative.
-    slope_error : float or None
-        Of phi / z at the lumped point against the body's mode, relative.
-    kinetic_error : float or None
-        ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's
-        own.
-    valid_to_hz : float or None
-        The receptance z/F_z at the lumped point stays within 5 per cent of the body's up to here.
-    verdict : str
-        In a sentence.
-    numbers : dict
-        Discriminant, roots and the like.
-    """
-
-    method: str
+    method: str  #: ``old``, ``thesis``, ``mode-matched`` or ``guyan``
+    #: (2, 2) on (z, thx): kg, kg m, kg m^2.  None when the method has no answer.
     mass: np.ndarray | None
-    feasible: bool
+    feasible: bool  #: whether there is a real mass matrix, positive definite
+    #: whether the frequency below is the first of the lumped model (a mode-matched pair can place
+    #: it second)
     first: bool
-    frequency_hz: float | None
-    frequency_error: float | None
-    slope_error: float | None
+    frequency_hz: float | None  #: first natural frequency of the lumped model
+    frequency_error: float | None  #: against the body's first bending, relative
+    slope_error: float | None  #: of phi / z at the lumped point against the body's mode, relative
+    #: ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's
+    #: own
     kinetic_error: float | None
+    #: the receptance z/F_z at the lumped point stays within 5 per cent of the body's up to here
     valid_to_hz: float | None
-    verdict: str
-    numbers: dict = field(default_factory=dict)
+    verdict: str  #: in a sentence
+    numbers: dict = field(default_factory=dict)  #: discriminant, roots and the like
 
 
 def effective_masses(

@@ -22,28 +22,16 @@ PLANE = (2, 3)  # z and thx
 
 @dataclass(frozen=True)
 class LumpedPoint:
-    """Constants of a body that the synthesis of lumped models needs.
+    """Constants of a body that the synthesis of lumped models needs."""
 
-    Attributes
-    ----------
-    stiffness : (2, 2) ndarray
-        Static, on (z, thx), everything else free to follow.
-    motion : (2,) ndarray
-        (z, phi) of the lumped point in the first bending mode of unit modal mass.
-    omega : float
-        rad/s.
-    total_mass, total_inertia : float
-        Of the body, the inertia transverse and about the lumped point.
-    guyan : (2, 2) ndarray
-        Mass condensed on the static shapes.
-    """
-
-    stiffness: np.ndarray
+    stiffness: np.ndarray  #: (2, 2) static, on (z, thx), everything else free to follow
+    #: (2,) (z, phi) of the lumped point in the first bending mode of unit modal mass
     motion: np.ndarray
-    omega: float
+    omega: float  #: rad/s
+    #: total_mass, total_inertia: of the body, the inertia transverse and about the lumped point
     total_mass: float
     total_inertia: float
-    guyan: np.ndarray
+    guyan: np.ndarray  #: (2, 2) mass condensed on the static shapes
 
     @property
     def static_share(self) -> float:

@@ -40,34 +40,17 @@ Mass: TypeAlias = sp.csr_matrix | ScalarMass
 
 @dataclass(frozen=True)
 class ReducedBlock:
-    """One block of a body, seen from its seats; all shapes in U have unit energy in A.
-
-    Attributes
-    ----------
-    turn : (r, c) ndarray
-        Coordinates in U of unit rigid motions about the origin.
-    theta : (u,) ndarray
-        ``1 / (lambda + sigma)`` of the shapes in U, rigid ones first, s^2.
-    motions : (c * p, u) ndarray
-        Port motions of the shapes in U.
-    moments : (2 J + 3, c * p, c * p) ndarray
-        mu_0 .. mu_(2J+2); empty when U is all there is.
-    cut : float
-        Least theta that is not in U: the largest of ``A^-1 M`` on its complement, s^2.
-    families : tuple of str
-        Of the shapes in U; the last entry is that of the block itself, or empty.
-    mirror : (int, tuple of float) or None
-        As in :class:`solidgear.body.Block`.
-    """
+    """One block of a body, seen from its seats; all shapes in U have unit energy in A."""
 
     components: tuple[int, ...]
-    turn: np.ndarray
-    theta: np.ndarray
-    motions: np.ndarray
-    moments: np.ndarray
-    cut: float
+    turn: np.ndarray  #: (r, c) coordinates in U of unit rigid motions about the origin
+    theta: np.ndarray  #: (u,) ``1 / (lambda + sigma)`` of the shapes in U, rigid ones first, s^2
+    motions: np.ndarray  #: (c * p, u) port motions of the shapes in U
+    moments: np.ndarray  #: (2 J + 3, c * p, c * p) mu_0 .. mu_(2J+2); empty when U is all there is.
+    cut: float  #: least theta that is not in U: the largest of ``A^-1 M`` on its complement, s^2
+    #: of the shapes in U; the last entry is that of the block itself, or empty
     families: tuple[str, ...]
-    mirror: tuple[int, tuple[float, ...]] | None = None
+    mirror: tuple[int, tuple[float, ...]] | None = None  #: as in :class:`solidgear.body.Block`
 
     @property
     def steps(self) -> int:
@@ -91,26 +74,15 @@ class ReducedBlock:
 
 @dataclass(frozen=True)
 class Reduced:
-    """Everything the variants of a sweep need of a body; small, and independent of it.
-
-    Attributes
-    ----------
-    frame : Body
-        The ports with their static flexibility, and the components of the blocks: enough for
-        :func:`solidgear.solve.statics.condense`.
-    shift : float
-        sigma, rad^2/s^2.
-    round : bool
-        Whether symmetry promises pairs.
-    level : int
-        How often the basis was enlarged.
-    """
+    """Everything the variants of a sweep need of a body; small, and independent of it."""
 
     blocks: tuple[ReducedBlock, ...]
+    #: the ports with their static flexibility, and the components of the blocks: enough for
+    #: :func:`solidgear.solve.statics.condense`
     frame: Body
-    shift: float
-    round: bool
-    level: int
+    shift: float  #: sigma, rad^2/s^2
+    round: bool  #: whether symmetry promises pairs
+    level: int  #: how often the basis was enlarged
 
     @property
     def size(self) -> int:
@@ -120,22 +92,13 @@ class Reduced:
 
 @dataclass(frozen=True)
 class FreeShapes:
-    """Mass-orthonormal shapes of a free block, rigid motions first.
+    """Mass-orthonormal shapes of a free block, rigid motions first."""
 
-    Attributes
-    ----------
-    shapes : (n, r + k) ndarray
-    value : (r + k,) ndarray
-        Eigenvalues, ascending, rad^2/s^2; exactly 0 for the r rigid ones.
-    order : (k,) ndarray of int
-        Place of each elastic shape among those that were given.
-    lower : (r, r) ndarray
-        Cholesky factor of the rigid mass matrix: unit rigid motions are ``shapes[:, :r] @ lower.T``.
-    """
-
-    shapes: np.ndarray
-    value: np.ndarray
-    order: np.ndarray
+    shapes: np.ndarray  #: (n, r + k)
+    value: np.ndarray  #: (r + k,) eigenvalues, ascending, rad^2/s^2; exactly 0 for the r rigid ones
+    order: np.ndarray  #: (k,) place of each elastic shape among those that were given
+    #: (r, r) cholesky factor of the rigid mass matrix: unit rigid motions are ``shapes[:, :r] @
+    #: lower.T``
     lower: np.ndarray
 
 

@@ -48,21 +48,11 @@ PortChoice = Iterable["str | tuple[str, str]"]
 
 @dataclass(frozen=True, eq=False)
 class PortMotion:
-    """Motion of a port as a linear function of coordinates.
+    """Motion of a port as a linear function of coordinates."""
 
-    Attributes
-    ----------
-    rows : (6, n) ndarray
-        x y z thx thy thz in the port's own axes, m and rad.
-    point : (3,) ndarray
-        Where the port is, m.
-    axes : (3, 3) ndarray
-        Its own axes as columns, in those that ``point`` is told in.
-    """
-
-    rows: np.ndarray
-    point: np.ndarray
-    axes: np.ndarray
+    rows: np.ndarray  #: (6, n) x y z thx thy thz in the port's own axes, m and rad
+    point: np.ndarray  #: (3,) where the port is, m
+    axes: np.ndarray  #: (3, 3) its own axes as columns, in those that ``point`` is told in
 
     def seen_from(self, other: PortMotion) -> np.ndarray:
         """(6, n) motion at the place and in the axes of another port, carried there rigidly."""
@@ -73,41 +63,22 @@ class PortMotion:
 
 @dataclass(frozen=True, eq=False)
 class Truncation:
-    """Truncation of a reduced part; see the head of this module.
+    """Truncation of a reduced part; see the head of this module."""
 
-    Attributes
-    ----------
-    cut : float
-        Lowest eigenvalue of the fields left out, rad^2/s^2; infinite if nothing is.
-    defect : (n, n) ndarray
-        Positive semidefinite, s^2 in mass-normalised coordinates.
-    """
-
-    cut: float
-    defect: np.ndarray
+    cut: float  #: lowest eigenvalue of the fields left out, rad^2/s^2; infinite if nothing is
+    defect: np.ndarray  #: (n, n) positive semidefinite, s^2 in mass-normalised coordinates
 
 
 @dataclass(frozen=True, eq=False)
 class ReducedMotions:
-    """One block of a body in the modes of its basis.
+    """One block of a body in the modes of its basis."""
 
-    Attributes
-    ----------
-    index : int
-        Of the block in its body.
-    value : (m,) ndarray
-        Eigenvalues of the free block in the basis, rad^2/s^2; exactly 0 for the rigid ones, which
-        come first.
-    shapes : (n, m) ndarray
-        Mass-normalised, on the unknowns of the block.
-    motions : (6, p, m) ndarray
-        Of the chosen ports.
-    """
-
-    index: int
+    index: int  #: of the block in its body
+    #: (m,) eigenvalues of the free block in the basis, rad^2/s^2; exactly 0 for the rigid ones,
+    #: which come first
     value: np.ndarray
-    shapes: np.ndarray
-    motions: np.ndarray
+    shapes: np.ndarray  #: (n, m) mass-normalised, on the unknowns of the block
+    motions: np.ndarray  #: (6, p, m) of the chosen ports
     truncation: Truncation
 
 

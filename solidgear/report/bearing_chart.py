@@ -20,24 +20,15 @@ TALL, WIDTH = 290.0, 330.0
 
 
 class BearingPanel(NamedTuple):
-    """Curves of one bearing over its load.
-
-    Attributes
-    ----------
-    factors : (n,) ndarray
-        Times the load of the scene.
-    middle, low, high : (n, 3) ndarray
-        Stiffness in x, y and z, N/m, and the ends of its range.
-    rows : sequence of (azimuth, load)
-        Of every element, rad from x towards z, and N.
-    """
+    """Curves of one bearing over its load."""
 
     title: str
-    factors: np.ndarray
+    factors: np.ndarray  #: (n,) times the load of the scene
+    #: middle, low, high: (n, 3) stiffness in x, y and z, N/m, and the ends of its range
     middle: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    rows: Sequence[tuple[np.ndarray, np.ndarray]]
+    rows: Sequence[tuple[np.ndarray, np.ndarray]]  #: of every element, rad from x towards z, and N
 
 
 def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:

@@ -110,22 +110,13 @@ def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Output:
-    """A kind of file.
+    """A kind of file."""
 
-    Attributes
-    ----------
-    what : str
-        Named where it is left out: one that fails costs a sentence, and no number.
-    stem, ending : str
-        Of its name, before and after the model.
-    write : callable
-        Given a solution and the path.
-    """
-
-    what: str
+    what: str  #: named where it is left out: one that fails costs a sentence, and no number
+    #: stem, ending: of its name, before and after the model
     stem: str
     ending: str
-    write: Callable[[Solution, Path], object]
+    write: Callable[[Solution, Path], object]  #: given a solution and the path
 
     def name(self, model: str) -> str:
         """Of the file of a model."""

@@ -28,24 +28,12 @@ SECTORS = 96
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A surface of triangles.
+    """A surface of triangles."""
 
-    Attributes
-    ----------
-    points : (n, 3) ndarray
-        m; on a sharp edge there is one for either side of it.
-    triangles : (m, 3) ndarray of int
-        Normals point out of the material.
-    edges : (l, 2) ndarray of int
-        Sharp ones.
-    source : (n,) ndarray of int
-        Places of the points in the surface that they were taken from.
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    edges: np.ndarray
-    source: np.ndarray
+    points: np.ndarray  #: (n, 3) m; on a sharp edge there is one for either side of it
+    triangles: np.ndarray  #: (m, 3) normals point out of the material
+    edges: np.ndarray  #: (l, 2) sharp ones
+    source: np.ndarray  #: (n,) places of the points in the surface that they were taken from
 
 
 def mesh_of(surface: Surface) -> Mesh:

@@ -13,17 +13,10 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class Contents:
-    """Sections of a page, numbered as its template tells them.
+    """Sections of a page, numbered as its template tells them."""
 
-    Attributes
-    ----------
-    number : str
-        Of a section, with braces for its figure.
-    told : list of (str, str)
-        Anchor and heading of every section.
-    """
-
-    number: str = "{}."
+    number: str = "{}."  #: of a section, with braces for its figure
+    #: anchor and heading of every section
     told: list[tuple[str, str]] = field(default_factory=list)
 
     def add(self, anchor: str, title: str) -> str:

@@ -43,27 +43,15 @@ TURNED = {"labelAngle": -60, "labelAlign": "right", "labelOverlap": False}
 
 
 class Axis(NamedTuple):
-    """One axis of a panel.
-
-    Attributes
-    ----------
-    ends : (float, float)
-        From left to right, or from the foot up.
-    label : str
-        What a tick says, as an expression of Vega.
-    ticks : mapping of float to str, optional
-        Where they stand and what they say instead.
-    shown : bool
-        Of one that is not shown only the ends count.
-    """
+    """One axis of a panel."""
 
     title: str
-    ends: tuple[float, float]
+    ends: tuple[float, float]  #: from left to right, or from the foot up
     log: bool = False
-    label: str = NUMBER
-    ticks: Mapping[float, str] | None = None
+    label: str = NUMBER  #: what a tick says, as an expression of Vega
+    ticks: Mapping[float, str] | None = None  #: where they stand and what they say instead
     grid: bool = True
-    shown: bool = True
+    shown: bool = True  #: of one that is not shown only the ends count
 
     def channel(self, room: float, more: Mapping[str, Any]) -> dict[str, Any]:
         """The axis in Vega-Lite, its title in lines that fit a room (px)."""

@@ -40,41 +40,22 @@ STILL = ((1.0, ""),)
 
 @dataclass(frozen=True, eq=False)
 class RenderJob:
-    """One picture to draw.
-
-    Attributes
-    ----------
-    title : str
-        Such as ``harmonic - bending 1 - 2758.0 Hz``.
-    path : Path
-        Of the png.
-    frames : sequence of (float, str)
-        Factors on the displacement and what is written over each, side by side.
-    along : bool
-        One shaft along y, seen across its motion; else a train, seen from above.
-    """
+    """One picture to draw."""
 
     surface: Surface
-    title: str
-    path: Path
+    title: str  #: such as ``harmonic - bending 1 - 2758.0 Hz``
+    path: Path  #: of the png
+    #: factors on the displacement and what is written over each, side by side
     frames: Sequence[tuple[float, str]] = STILL
-    along: bool = True
+    along: bool = True  #: one shaft along y, seen across its motion; else a train, seen from above
 
 
 @dataclass(frozen=True)
 class RenderResult:
-    """Outcome of a :class:`RenderJob`.
+    """Outcome of a :class:`RenderJob`."""
 
-    Attributes
-    ----------
-    path : Path
-        Holds the new picture if ``ok``; otherwise whatever was there before is untouched.
-    reason : str
-        One sentence on what went wrong, and what mends it; empty if ``ok``.
-    """
-
-    path: Path
-    reason: str = ""
+    path: Path  #: holds the new picture if ``ok``; otherwise whatever was there before is untouched
+    reason: str = ""  #: one sentence on what went wrong, and what mends it; empty if ``ok``
 
     @property
     def ok(self) -> bool:

@@ -12,23 +12,14 @@ FILL = {"shaft": "#d5dbe1", "frustum": "#ecd9b4", "backcone": "#dcc08a"}
 
 @dataclass(frozen=True)
 class Pen:
-    """Axes of matplotlib, in inches: x along the shaft, 0 on the axis.
-
-    Attributes
-    ----------
-    left : float
-        Where the shaft begins.
-    inch, radial : float
-        Inches per metre along the shaft and across it.
-    top : float
-        Largest radius.
-    """
+    """Axes of matplotlib, in inches: x along the shaft, 0 on the axis."""
 
     ax: Any
-    left: float
+    left: float  #: where the shaft begins
+    #: inch, radial: inches per metre along the shaft and across it
     inch: float
     radial: float
-    top: float
+    top: float  #: largest radius
 
     def x(self, y: float) -> float:
         """Place of a position along the shaft, m."""

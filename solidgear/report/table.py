@@ -43,41 +43,26 @@ SIDE: dict[str, Literal["left", "right", "center"]] = {
 
 
 class Cell(NamedTuple):
-    """A value that stands out.
-
-    Attributes
-    ----------
-    value : object
-        As in a cell without a look.
-    look : str
-        ``quiet`` (said with less weight), ``faint`` (next to nothing), ``strong``, ``good``, ``bad``
-        (beyond what was asked), ``unresolved``, or ``mark`` and the status of an input.
-    """
+    """A value that stands out."""
 
     value: Any
+    #: ``quiet`` (said with less weight), ``faint`` (next to nothing), ``strong``, ``good``, ``bad``
+    #: (beyond what was asked), ``unresolved``, or ``mark`` and the status of an input
     look: str = ""
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table.
+    """A column of a table."""
 
-    Attributes
-    ----------
-    head : str
-        With its unit.
-    of : callable, optional
-        The value, or :class:`Cell`, of an item; by default the item has its cells in the order of the
-        columns.
-    write : callable
-        Writes a value; texts stand as they are, and a dash for what is not there.
-    kind : str
-        ``number``, ``text``, ``word`` or ``mark``; by default a text for the first column, else a number.
-    """
-
-    head: str
+    head: str  #: with its unit
+    #: the value, or :class:`Cell`, of an item; by default the item has its cells in the order of
+    #: the columns
     of: Callable[[Any], Any] | None = None
+    #: writes a value; texts stand as they are, and a dash for what is not there
     write: Callable[[Any], str] = as_text
+    #: ``number``, ``text``, ``word`` or ``mark``; by default a text for the first column, else a
+    #: number
     kind: str = ""
 
     def written(self, value: Any, nothing: str = DASH) -> str:
@@ -113,21 +98,6 @@ def given(head: str, si: str, units: Units, of: Callable[[Any], Any] | None = No
 class Table:
     """A table.
 
-    Attributes
-    ----------
-    columns : sequence of Column or str
-        A text is the head of a column whose values need no more than :func:`as_text`.
-    rows : sequence
-        Items for the columns, which become rows of values.
-    note : str
-        What stands below.
-    style : str
-        Name of a style: ``facts``, ``summary`` and ``numbers`` of pages, ``matrix``, and those of
-        terminals in ``TERMINAL``.
-    over : sequence of tuple of str
-        Where the rows are several blocks: for each what stands over equal shares of the columns
-        behind the first, such as units.
-
     Examples
     --------
     >>> Table("two modes", ("mode", "Hz"), [("bending 1", 2758.0042), ("axial 1", 1388.5)])
@@ -138,10 +108,16 @@ class Table:
     """
 
     title: str
+    #: a text is the head of a column whose values need no more than :func:`as_text`
     columns: Sequence[Any]
+    #: items for the columns, which become rows of values
     rows: Sequence[Any] = field(default_factory=list)
-    note: str = ""
+    note: str = ""  #: what stands below
+    #: name of a style: ``facts``, ``summary`` and ``numbers`` of pages, ``matrix``, and those of
+    #: terminals in ``TERMINAL``
     style: str = ""
+    #: where the rows are several blocks: for each what stands over equal shares of the columns
+    #: behind the first, such as units
     over: Sequence[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:

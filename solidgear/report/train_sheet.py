@@ -73,24 +73,16 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page, with a heading that the contents point to.
-
-    Attributes
-    ----------
-    charts : mapping of str to callable
-        By names of letters and underscores, each of no other chart of the page; those in ``WORDS``
-        say what is written there, others the title.
-    tables : sequence of Table
-        Those without rows are left out.
-    drawings : mapping of str to bytes or None
-        SVG by what it says in words, before the charts.
-    """
+    """A part of a page, with a heading that the contents point to."""
 
     anchor: str
     title: str
     words: str = ""
+    #: by names of letters and underscores, each of no other chart of the page; those in ``WORDS``
+    #: say what is written there, others the title
     charts: Mapping[str, Make] = field(default_factory=dict)
-    tables: Sequence[Table] = ()
+    tables: Sequence[Table] = ()  #: those without rows are left out
+    #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
 
 

@@ -28,50 +28,30 @@ TURNS = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """One mode as it is drawn.
+    """One mode as it is drawn."""
 
-    Attributes
-    ----------
-    name : str
-        Such as ``bending 1``.
-    pair : bool
-        True if there is a second shape at this frequency.
-    twists : bool
-        True if sections turn about the axis: drawn enlarged, they are turned, and do not swell.
-    displacement : (n, 3) ndarray
-        At the points of the mesh; the largest has length 1, of all bodies that move in the mode.
-    """
-
-    name: str
+    name: str  #: such as ``bending 1``
     frequency_hz: float
-    pair: bool
+    pair: bool  #: true if there is a second shape at this frequency
+    #: true if sections turn about the axis: drawn enlarged, they are turned, and do not swell
     twists: bool
+    #: (n, 3) at the points of the mesh; the largest has length 1, of all bodies that move in the
+    #: mode
     displacement: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
 class Turned:
-    """One body with its elastic modes.
+    """One body with its elastic modes."""
 
-    Attributes
-    ----------
-    title : str
-        Of the model, such as ``harmonic solid``.
-    shapes : tuple of Shape
-        In ascending order of frequency; rigid motions are left out.
-    rotation : (3, 3) ndarray
-        From the axes of the body, in which its mesh and shapes are, to those of the picture.
-    origin : (3,) ndarray
-        Of its axes in those of the picture, m.
-    along : tuple of Turned
-        Further bodies that move in the same modes, as the other shaft of a train does.
-    """
-
-    title: str
+    title: str  #: of the model, such as ``harmonic solid``
     mesh: Mesh
-    shapes: tuple[Shape, ...]
+    shapes: tuple[Shape, ...]  #: in ascending order of frequency; rigid motions are left out
+    #: (3, 3) from the axes of the body, in which its mesh and shapes are, to those of the picture
     rotation: np.ndarray = field(default_factory=lambda: np.eye(3))
+    #: (3,) of its axes in those of the picture, m
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    #: further bodies that move in the same modes, as the other shaft of a train does
     along: tuple[Turned, ...] = ()
 
     @property
@@ -88,20 +68,12 @@ class Turned:
 
 
 class Member(NamedTuple):
-    """A body among several that move together.
-
-    Attributes
-    ----------
-    rotation : (3, 3) ndarray
-    origin : (3,) ndarray
-        As of :class:`Turned`.
-    vectors : sequence of sequence of mapping
-        Arguments of :meth:`Body.surface`, for every mode one, or the two of a pair.
-    """
+    """A body among several that move together."""
 
     body: Body
-    rotation: np.ndarray
-    origin: np.ndarray
+    rotation: np.ndarray  #: (3, 3)
+    origin: np.ndarray  #: (3,) as of :class:`Turned`
+    #: arguments of :meth:`Body.surface`, for every mode one, or the two of a pair
     vectors: Sequence[Sequence[Any]]
 
 

@@ -32,25 +32,15 @@ SMALLEST, LARGEST = -3, 8
 
 @dataclass(frozen=True)
 class Units:
-    """A choice of units.
+    """A choice of units."""
 
-    Attributes
-    ----------
-    name : str
-        What ``--units`` calls it.
-    about : str
-        The choice in a few words.
-    of : mapping of str to (str, float)
-        SI unit -> its name here, and how many of it make one of SI; those left out stay as they
-        are. ``m moved`` is a metre of motion, which is read finer than one of length; ``rad moved``
-        is the like of angles, and ``Pa stressed`` a stress, which is far below a modulus.
-    exponents : bool
-        Whether numbers carry exponents (multiples of three) or all their digits.
-    """
-
-    name: str
-    about: str
+    name: str  #: what ``--units`` calls it
+    about: str  #: the choice in a few words
+    #: SI unit -> its name here, and how many of it make one of SI; those left out stay as they are.
+    #: ``m moved`` is a metre of motion, which is read finer than one of length; ``rad moved`` is
+    #: the like of angles, and ``Pa stressed`` a stress, which is far below a modulus.
     of: Mapping[str, tuple[str, float]]
+    #: whether numbers carry exponents (multiples of three) or all their digits
     exponents: bool = False
 
     @property

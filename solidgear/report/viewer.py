@@ -44,19 +44,11 @@ STOPS = 17
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Turning:
-    """Models that can be turned: shows itself in a notebook, and writes itself as a page.
-
-    Attributes
-    ----------
-    title : str
-        Of the page.
-    first : str
-        Name of the mode to open with; first bending by default.
-    """
+    """Models that can be turned: shows itself in a notebook, and writes itself as a page."""
 
     models: tuple[Turned, ...]
-    title: str = ""
-    first: str = ""
+    title: str = ""  #: of the page
+    first: str = ""  #: name of the mode to open with; first bending by default
 
     def write(self, path: str | os.PathLike, *, still: str = "") -> Path:
         """Write one self-contained page.

@@ -19,16 +19,10 @@ Words = tuple[tuple[str, tuple[str, ...] | None], ...]
 
 
 class Pair(NamedTuple):
-    """Two single bearings that hold a shaft against each other.
-
-    Attributes
-    ----------
-    bearings : tuple of int
-        Places of both in the list of a file.
-    """
+    """Two single bearings that hold a shaft against each other."""
 
     arrangement: str
-    bearings: tuple[int, ...]
+    bearings: tuple[int, ...]  #: places of both in the list of a file
 
     def ways(self, places: Iterable[float]) -> Iterator[tuple[int, str]]:
         """Place in the list and direction held of each, from their places along y, m."""

@@ -26,35 +26,20 @@ Edge = Literal["root", "rim"]
 
 @dataclass(frozen=True)
 class Corner:
-    """An edge of a shaft with its fillet or chamfer, in plain floats.
+    """An edge of a shaft with its fillet or chamfer, in plain floats."""
 
-    Attributes
-    ----------
-    name, kind : str
-        Kind is fillet or chamfer.
-    y, r : float
-        Of the sharp edge, m.
-    root : bool
-        Material is added; at a rim it is taken away.
-    owner : int
-        Segment whose cylinder the outline runs into.
-    side : int
-        +1 if that segment lies at larger y than the edge, -1 otherwise.
-    out : int
-        +1 if the plane face beside the edge lies at larger radius, -1 otherwise.
-    axial, radial : float
-        Extent along the shaft and across it, m.
-    """
-
+    #: name, kind: kind is fillet or chamfer
     name: str
     kind: str
+    #: y, r: of the sharp edge, m
     y: float
     r: float
     surface: Surface
-    root: bool
-    owner: int
-    side: int
-    out: int
+    root: bool  #: material is added; at a rim it is taken away
+    owner: int  #: segment whose cylinder the outline runs into
+    side: int  #: +1 if that segment lies at larger y than the edge, -1 otherwise
+    out: int  #: +1 if the plane face beside the edge lies at larger radius, -1 otherwise
+    #: axial, radial: extent along the shaft and across it, m
     axial: float
     radial: float
 
@@ -245,8 +230,6 @@ class Fillet(_Blend):
     edge : {'root', 'rim'} or None
         Root adds material in the corner of a step, rim rounds off its edge; by default the root,
         and the rim at an end face.
-    radius : float
-        m.
 
     Raises
     ------
@@ -261,7 +244,7 @@ class Fillet(_Blend):
     """
 
     kind: Literal["fillet"] = "fillet"
-    radius: PositiveLength
+    radius: PositiveLength  #: m
 
     @property
     def extents(self) -> tuple[float, float]:
@@ -287,10 +270,6 @@ class Chamfer(_Blend):
     ----------
     name, y, surface, edge
         As for :class:`Fillet`; a chamfer at a root fills the corner.
-    length : float
-        Along the shaft, m.
-    angle : float
-        To the axis, rad; 45 degrees by default.
 
     Raises
     ------
@@ -305,7 +284,8 @@ class Chamfer(_Blend):
     """
 
     kind: Literal["chamfer"] = "chamfer"
-    length: PositiveLength
+    length: PositiveLength  #: along the shaft, m
+    #: to the axis, rad; 45 degrees by default
     angle: Annotated[float, BeforeValidator(slope)] = math.pi / 4
 
     @property

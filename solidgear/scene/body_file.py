@@ -138,24 +138,12 @@ def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 class PartGroup(Model):
-    """Share of a part from a file that is of one material.
+    """Share of a part from a file that is of one material."""
 
-    Attributes
-    ----------
-    name : str
-        Of the group of elements or the solid in the file; empty for all the rest.
-    material : Material or None
-        None is that of the scene.
-    volume : float
-        m^3.
-    members : tuple of str
-        Of the rest: groups of the file with elements in it.
-    """
-
-    name: str
-    material: Material | None = None
-    volume: float
-    members: tuple[str, ...] = ()
+    name: str  #: of the group of elements or the solid in the file; empty for all the rest
+    material: Material | None = None  #: none is that of the scene
+    volume: float  #: m^3
+    members: tuple[str, ...] = ()  #: of the rest: groups of the file with elements in it
 
     @property
     def said(self) -> str:
@@ -176,50 +164,6 @@ class CoarseMesh(Model):
 class BodyFile(Model):
     """A part from a file, or a rectangular block, as far as a scene knows it.
 
-    Attributes
-    ----------
-    name : str
-        Of the file, without its folder; of a block its edges in words.
-    path : str
-        Where it is; no part of what identifies the body.
-    sha256 : str
-        Of what is in it.
-    unit : float
-        m for each unit of length of the file.
-    turn, foot
-        Its place in the scene: ``turn @ (unit * x - foot)``, m.
-    volume : float
-        m^3.
-    round_share : float
-        Share of its surface, faces across the axis left out, that is of revolution.
-    round_volume : float
-        Of the segments over that of the part.
-    facets : float
-        Volume between round surfaces and the facets that a mesh file has of them, over that of the
-        part: so far its volume may be off of a part that is round.
-    beside_arcs : float
-        Largest distance of segments from the arcs that they stand for, m.
-    element : str
-        Of a mesh file.
-    counts : tuple of int or None
-        Vertices, edges, faces and cells of a mesh file.
-    groups : tuple of PartGroup
-        What has a material of its own, and the rest; empty where all of it is of one.
-    told : tuple of str
-        Groups of the file that tell materials, none of which a scene names.
-    mixed : tuple of str
-        Segments of the round part that are of several materials across.
-    remarks : tuple of str
-        What is odd about the file.
-    edges : tuple of float or None
-        Along x, y and z, m, of a block, or around a body without an axis.
-    coarser : tuple of CoarseMesh
-        Meshes of the same part, coarse to fine, of which it is the finest.
-    patches : tuple of Patch
-        Named faces of a body without an axis.
-    file_materials : tuple of FileMaterial
-        That a mesh file says itself, of its groups.
-
     Examples
     --------
     >>> import solidgear as sg
@@ -229,28 +173,37 @@ class BodyFile(Model):
     """
 
     kind: Literal["step", "mesh", "block"]
-    name: str
-    path: str = Field(exclude=True, repr=False)
-    sha256: str
-    unit: float
+    name: str  #: of the file, without its folder; of a block its edges in words
+    path: str = Field(exclude=True, repr=False)  #: where it is; no part of what identifies the body
+    sha256: str  #: of what is in it
+    unit: float  #: m for each unit of length of the file
+    #: turn, foot: its place in the scene: ``turn @ (unit * x - foot)``, m
     turn: tuple[Triple, Triple, Triple]
     foot: Triple
-    volume: float
+    volume: float  #: m^3
+    #: share of its surface, faces across the axis left out, that is of revolution
     round_share: float
-    round_volume: float
+    round_volume: float  #: of the segments over that of the part
+    #: volume between round surfaces and the facets that a mesh file has of them, over that of the
+    #: part: so far its volume may be off of a part that is round
     facets: float = 0.0
-    beside_arcs: float = 0.0
+    beside_arcs: float = 0.0  #: largest distance of segments from the arcs that they stand for, m
     tori: tuple[Torus, ...] = Field((), exclude=True, repr=False)
-    element: str = ""
+    element: str = ""  #: of a mesh file
+    #: vertices, edges, faces and cells of a mesh file
     counts: tuple[int, int, int, int] | None = None
+    #: what has a material of its own, and the rest; empty where all of it is of one
     groups: tuple[PartGroup, ...] = ()
+    #: groups of the file that tell materials, none of which a scene names
     told: tuple[str, ...] = ()
-    mixed: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
+    mixed: tuple[str, ...] = ()  #: segments of the round part that are of several materials across
+    remarks: tuple[str, ...] = ()  #: what is odd about the file
+    #: along x, y and z, m, of a block, or around a body without an axis
     edges: Triple | None = None
+    #: meshes of the same part, coarse to fine, of which it is the finest
     coarser: tuple[CoarseMesh, ...] = ()
-    patches: tuple[Patch, ...] = ()
-    file_materials: tuple[FileMaterial, ...] = ()
+    patches: tuple[Patch, ...] = ()  #: named faces of a body without an axis
+    file_materials: tuple[FileMaterial, ...] = ()  #: that a mesh file says itself, of its groups
 
     @property
     def sort(self) -> str:

@@ -61,17 +61,12 @@ FEWEST, MOST = 3, 300
 
 
 class BearingLoad(Model):
-    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m.
-
-    Attributes
-    ----------
-    thx, thz : float or None
-        Moments; where none is given a bearing's ring is held against tilting.
-    """
+    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m."""
 
     x: Newtons = 0.0
     y: Newtons = 0.0
     z: Newtons = 0.0
+    #: thx, thz: moments; where none is given a bearing's ring is held against tilting
     thx: Torque | None = None
     thz: Torque | None = None
 
@@ -114,18 +109,11 @@ class BearingDisplacement(Model):
 
 
 class Preload(Model):
-    """Preload of a bearing: by a force or by a displacement.
+    """Preload of a bearing: by a force or by a displacement."""
 
-    Attributes
-    ----------
-    force : float or None
-        N along y, felt by every row while the shaft carries nothing else.
-    displacement : float or None
-        m along y by which the rings are pushed together from where they just touch; of a pair, by
-        which both rows together are.
-    """
-
-    force: float | None = None
+    force: float | None = None  #: N along y, felt by every row while the shaft carries nothing else
+    #: m along y by which the rings are pushed together from where they just touch; of a pair, by
+    #: which both rows together are
     displacement: float | None = None
 
 

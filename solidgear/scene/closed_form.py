@@ -33,25 +33,14 @@ def volume_of(outline: Outline) -> float:
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Rigid-body constants of a body of revolution about the axis y.
+    """Rigid-body constants of a body of revolution about the axis y."""
 
-    Attributes
-    ----------
-    mass : float
-        [kg]
-    centre : float
-        Position of the centre of mass along y [m].
-    ixx : float
-        Moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about
-        z is the same.
-    iyy : float
-        Polar moment of inertia about the axis y [kg m^2].
-    """
-
-    mass: float
-    centre: float
+    mass: float  #: [kg]
+    centre: float  #: position of the centre of mass along y [m]
+    #: moment of inertia about a transverse axis through the centre of mass [kg m^2]; the one about
+    #: z is the same
     ixx: float
-    iyy: float
+    iyy: float  #: polar moment of inertia about the axis y [kg m^2]
 
 
 def mass_properties(outline: Outline[Segment]) -> MassProperties:

@@ -37,22 +37,13 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Working:
-    """Two cylindrical gears where they roll on each other.
+    """Two cylindrical gears where they roll on each other."""
 
-    Attributes
-    ----------
-    radii : (float, float)
-        Of the pinion's and the gear's working pitch cylinder, m.
-    helix_angle, pressure_angle : float
-        At these cylinders, the latter normal to the tooth, rad.
-    without_backlash : float
-        Centre distance that the profile shifts ask for, m.
-    """
-
-    radii: tuple[float, float]
+    radii: tuple[float, float]  #: of the pinion's and the gear's working pitch cylinder, m
+    #: helix_angle, pressure_angle: at these cylinders, the latter normal to the tooth, rad
     helix_angle: float
     pressure_angle: float
-    without_backlash: float
+    without_backlash: float  #: centre distance that the profile shifts ask for, m
 
 
 def working(

@@ -168,26 +168,16 @@ _WRITTEN = (
 
 
 class Boundary(NamedTuple):
-    """Kind and sizes behind a designation.
-
-    Attributes
-    ----------
-    bore, outer_diameter, width : float
-        m; the bore of a drawn cup is the diameter under its rollers.
-    contact_angle : float or None
-        rad, where a suffix tells it.
-    clearance : str or None
-        Class of ISO 5753-1, where a suffix tells it.
-    ignored : str
-        Suffixes of seals, cages, tolerances and the like, which have no part in a stiffness.
-    """
+    """Kind and sizes behind a designation."""
 
     kind: str
+    #: bore, outer_diameter, width: m; the bore of a drawn cup is the diameter under its rollers
     bore: float
     outer_diameter: float
     width: float
-    contact_angle: float | None = None
-    clearance: str | None = None
+    contact_angle: float | None = None  #: rad, where a suffix tells it
+    clearance: str | None = None  #: class of ISO 5753-1, where a suffix tells it
+    #: suffixes of seals, cages, tolerances and the like, which have no part in a stiffness
     ignored: str = ""
 
 

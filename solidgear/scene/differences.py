@@ -36,17 +36,10 @@ FILES = ("contact_cells", "step", "mesh", "matrices")
 
 @dataclass(frozen=True)
 class Difference:
-    """An entry that two files do not have alike.
+    """An entry that two files do not have alike."""
 
-    Attributes
-    ----------
-    path : str
-        Such as ``pinion.bearing.0.position``, as :mod:`solidgear.scene.paths` has it.
-    a, b : object
-        As written; None where a file does not have it.
-    """
-
-    path: str
+    path: str  #: such as ``pinion.bearing.0.position``, as :mod:`solidgear.scene.paths` has it
+    #: a, b: as written; None where a file does not have it
     a: Any
     b: Any
 

@@ -23,20 +23,11 @@ SAME, SAME_NU = 5e-3, 5e-3
 
 
 class FileMaterial(Model):
-    """An isotropic material of a mesh file.
+    """An isotropic material of a mesh file."""
 
-    Attributes
-    ----------
-    name : str
-        As the file calls it.
-    group : str
-        Of elements that are of it.
-    E, nu, density : float or None
-        In the units of the file; None where it does not say it.
-    """
-
-    name: str
-    group: str
+    name: str  #: as the file calls it
+    group: str  #: of elements that are of it
+    #: E, nu, density: in the units of the file; None where it does not say it
     E: float | None = None
     nu: float | None = None
     density: float | None = None

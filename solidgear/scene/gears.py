@@ -38,17 +38,10 @@ FLANKS = ("left", "right")
 
 
 class HeadInertia(Model):
-    """A rigid body of revolution at the lumped point of a shaft, beside the mass of its segments.
+    """A rigid body of revolution at the lumped point of a shaft, beside the mass of its segments."""
 
-    Attributes
-    ----------
-    mass : float
-        kg.
-    torsional, bending : float
-        About the shaft and across it, at the lumped point, kg m^2.
-    """
-
-    mass: Mass
+    mass: Mass  #: kg
+    #: torsional, bending: about the shaft and across it, at the lumped point, kg m^2
     torsional: Inertia
     bending: Inertia
     status: Status = "assumed"
@@ -65,37 +58,26 @@ class HeadInertia(Model):
 
 
 class Gear(Model):
-    """The teeth of one gear of a shaft.
-
-    Attributes
-    ----------
-    loaded_side : {'concave', 'convex', 'left', 'right'} or None
-        Of parallel shafts also the left or right flank: as seen from the side of the apex (the start
-        of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771).
-    pitch_radius, face_width : float or None
-        At the heel and along the cone, m.
-    pitch_angle, spiral_angle : float or None
-        rad.
-    module, helix_angle : float or None
-        Of cylindrical gears instead: normal module, m, and helix angle at the reference cylinder, rad;
-        radii follow from the teeth.
-    profile_shift : float
-        Of cylindrical gears, in modules.
-    apex : {'start', 'end'}
-        Towards which end of the shaft the pitch apex lies.
-    """
+    """The teeth of one gear of a shaft."""
 
     teeth: Teeth
     hand: Literal["left", "right"] | None = None
+    #: of parallel shafts also the left or right flank: as seen from the side of the apex (the start
+    #: of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771)
     loaded_side: Literal["concave", "convex", "left", "right"] | None = None
+    #: pitch_radius, face_width: at the heel and along the cone, m
     pitch_radius: PositiveLength | None = None
     face_width: PositiveLength | None = None
+    #: pitch_angle, spiral_angle: rad
     pitch_angle: PitchAngle | None = None
     spiral_angle: SpiralAngle | None = None
+    #: module, helix_angle: of cylindrical gears instead: normal module, m, and helix angle at the
+    #: reference cylinder, rad; radii follow from the teeth
     module: PositiveLength | None = None
     helix_angle: SpiralAngle | None = None
+    #: of cylindrical gears, in modules
     profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
-    apex: Literal["start", "end"] = "start"
+    apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
     head: HeadInertia | None = None
 
     @property
@@ -113,19 +95,12 @@ class Gear(Model):
 
 
 class Shaft(Model):
-    """A shaft and the gears that it carries.
-
-    Attributes
-    ----------
-    gears : dict of str to Gear
-        By the lumped point of the scene at which each sits.
-    scene_load : {'added', 'replaced'} or None
-        Of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
-        gives way to it; where neither is said it must be the mesh force.
-    """
+    """A shaft and the gears that it carries."""
 
     scene: Scene
-    gears: dict[str, Gear] = {}
+    gears: dict[str, Gear] = {}  #: by the lumped point of the scene at which each sits
+    #: of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
+    #: gives way to it; where neither is said it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
 
     @model_validator(mode="after")
@@ -156,16 +131,10 @@ class Shaft(Model):
 
 
 class Member(Gear):
-    """A gear and the shaft that it sits on, whose main lumped point is its own.
-
-    Attributes
-    ----------
-    scene_load : {'added', 'replaced'} or None
-        As of `Shaft`.
-    """
+    """A gear and the shaft that it sits on, whose main lumped point is its own."""
 
     scene: Scene
-    scene_load: Literal["added", "replaced"] | None = None
+    scene_load: Literal["added", "replaced"] | None = None  #: as of `Shaft`
 
     @property
     def shaft(self) -> Shaft:
@@ -177,31 +146,19 @@ class Member(Gear):
 
 @dataclass(frozen=True)
 class Pair:
-    """Two gears that mesh.
+    """Two gears that mesh."""
 
-    Attributes
-    ----------
-    name : str
-        Of the mesh: ``mesh`` where it is the only one.
-    shafts, ports : (str, str)
-        Of the first gear, called pinion here whatever its size, and of the other.
-    paths : mapping of str to tuple
-        Keys of a file at which ``pinion``, ``gear`` and ``mesh`` stand.
-    point : OperatingPoint or None
-        At which the train is looked at.
-    idle : bool
-        True where the other gear is first in a further mesh: it drives there with the flank that the
-        file names, and is driven here on the one behind.
-    """
-
-    name: str
+    name: str  #: of the mesh: ``mesh`` where it is the only one
+    #: shafts, ports: of the first gear, called pinion here whatever its size, and of the other
     shafts: tuple[str, str]
     ports: tuple[str, str]
-    paths: Mapping[str, tuple]
+    paths: Mapping[str, tuple]  #: keys of a file at which ``pinion``, ``gear`` and ``mesh`` stand
     pinion: Member
     gear: Member
     mesh: Mesh
-    point: OperatingPoint | None
+    point: OperatingPoint | None  #: at which the train is looked at
+    #: true where the other gear is first in a further mesh: it drives there with the flank that the
+    #: file names, and is driven here on the one behind
     idle: bool = False
 
     @property

@@ -42,14 +42,6 @@ def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
 class Elastic(Model):
     """Something elastic between the outer ring of a bearing and ground.
 
-    Attributes
-    ----------
-    matrix : tuple of tuple of float
-        6x6, SI, order (x, y, z, thx, thy, thz). The constructor also takes it as `stiffness`:
-        named entries, of which those on the diagonal that are left out are rigid, or six rows.
-    rigid : tuple of str
-        Motions in which it does not give; their rows are zero.
-
     Raises
     ------
     SceneError
@@ -66,8 +58,10 @@ class Elastic(Model):
     [1.0, 1.0, 1.0]
     """
 
+    #: 6x6, SI, order (x, y, z, thx, thy, thz). The constructor also takes it as `stiffness`: named
+    #: entries, of which those on the diagonal that are left out are rigid, or six rows.
     matrix: Matrix
-    rigid: tuple[str, ...] = ()
+    rigid: tuple[str, ...] = ()  #: motions in which it does not give; their rows are zero
 
     def __init__(self, /, **data: Any):
         if "stiffness" in data:

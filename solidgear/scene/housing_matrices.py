@@ -26,22 +26,13 @@ STILL = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class HousingMatrices:
-    """A free elastic body by the motions of its points and its modes.
+    """A free elastic body by the motions of its points and its modes."""
 
-    Attributes
-    ----------
-    source : str
-        File that they are from.
-    mass, stiffness : (n, n) ndarray
-        Symmetric, the first positive definite, SI.
-    positions : dict of str to (3,) ndarray
-        Of its points in turn, m.
-    """
-
-    source: str
+    source: str  #: file that they are from
+    #: mass, stiffness: (n, n) symmetric, the first positive definite, SI
     mass: np.ndarray
     stiffness: np.ndarray
-    positions: dict[str, np.ndarray]
+    positions: dict[str, np.ndarray]  #: of its points in turn, m
 
     @cached_property
     def _factor(self) -> np.ndarray:

@@ -19,19 +19,11 @@ LIGHT_SOURCE = "EN 1999-1-1:2007, 3.2.5: wrought alloys"
 
 @dataclass(frozen=True)
 class Known:
-    """Constants of a material in SI, and their source.
+    """Constants of a material in SI, and their source."""
 
-    Attributes
-    ----------
-    E : float
-        Pa.
-    density : float
-        kg/m^3.
-    """
-
-    E: float
+    E: float  #: pa
     nu: float
-    density: float
+    density: float  #: kg/m^3
     source: str
 
 

@@ -22,14 +22,9 @@ Vector = Annotated[
 
 
 class Cycle(Model):
-    """Common part of tables over one mesh cycle.
+    """Common part of tables over one mesh cycle."""
 
-    Attributes
-    ----------
-    angle : tuple of float
-        Of the pinion, ascending over one tooth pitch, both ends told, rad; linear between.
-    """
-
+    #: of the pinion, ascending over one tooth pitch, both ends told, rad; linear between
     angle: tuple[SignedAngle, ...]
 
     @property
@@ -48,15 +43,9 @@ class Cycle(Model):
 
 
 class StiffnessCycle(Cycle):
-    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh.
+    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh."""
 
-    Attributes
-    ----------
-    stiffness : tuple of float
-        N/m, at each angle.
-    """
-
-    stiffness: tuple[MeshSpring, ...]
+    stiffness: tuple[MeshSpring, ...]  #: N/m, at each angle
 
     @model_validator(mode="after")
     def _periodic(self):
@@ -72,17 +61,10 @@ class StiffnessCycle(Cycle):
 
 
 class LineCycle(Cycle):
-    """Mesh point and line of action over one mesh cycle, in the pinion's frame from its lumped point.
+    """Mesh point and line of action over one mesh cycle, in the pinion's frame from its lumped point."""
 
-    Attributes
-    ----------
-    point : tuple of (float, float, float)
-        Mesh point at each angle, m.
-    normal : tuple of (float, float, float)
-        Unit, the direction of the force on the pinion.
-    """
-
-    point: tuple[Vector, ...]
+    point: tuple[Vector, ...]  #: mesh point at each angle, m
+    #: unit, the direction of the force on the pinion
     normal: tuple[tuple[float, float, float], ...]
 
     @model_validator(mode="after")

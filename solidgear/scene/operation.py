@@ -28,36 +28,14 @@ MOST_POINTS = 1000
 
 
 class OutsideForce(BearingLoad):
-    """A load on a shaft that comes neither from the teeth nor from a bearing, such as a belt.
+    """A load on a shaft that comes neither from the teeth nor from a bearing, such as a belt."""
 
-    Attributes
-    ----------
-    at : str
-        Shaft and port, such as ``pinion.A``; components are along the axes of that shaft's scene.
-    """
-
+    #: shaft and port, such as ``pinion.A``; components are along the axes of that shaft's scene
     at: str
 
 
 class OperatingPoint(Model):
     """A torque and a speed at which a train runs.
-
-    Attributes
-    ----------
-    torque : float
-        N m, of the shaft `of`; positive where the flank that the file names carries it (drive),
-        negative where the other one does (coast).
-    of : str
-        By default, in a train, the shaft that the engine turns with.
-    speed : float or None
-        rad/s, of the shaft `of`.
-    output_torque, output_speed : float or None
-        Of the shaft that the load turns with, or of the engine's where `of` is the load's, to be
-        held against the teeth.
-    weight : str or None
-        Direction in which weight acts, in the axes of the first shaft's scene, such as ``-z``.
-    share, hours : float or None
-        Of a duty table: share of the time, or hours; of every point or of none.
 
     Raises
     ------
@@ -72,13 +50,19 @@ class OperatingPoint(Model):
     """
 
     name: str = ""
+    #: N m, of the shaft `of`; positive where the flank that the file names carries it (drive),
+    #: negative where the other one does (coast)
     torque: Torque
-    of: str = "pinion"
-    speed: Speed | None = None
+    of: str = "pinion"  #: by default, in a train, the shaft that the engine turns with
+    speed: Speed | None = None  #: rad/s, of the shaft `of`
+    #: output_torque, output_speed: of the shaft that the load turns with, or of the engine's where
+    #: `of` is the load's, to be held against the teeth
     output_torque: Torque | None = None
     output_speed: Speed | None = None
+    #: direction in which weight acts, in the axes of the first shaft's scene, such as ``-z``
     weight: Direction | None = None
     force: tuple[OutsideForce, ...] = ()
+    #: share, hours: of a duty table: share of the time, or hours; of every point or of none
     share: Annotated[float, Field(gt=0, le=1)] | None = None
     hours: Annotated[float, Field(gt=0)] | None = None
 

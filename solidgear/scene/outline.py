@@ -77,29 +77,17 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Edge:
-    """The outline on one surface where a segment follows another.
+    """The outline on one surface where a segment follows another."""
 
-    Attributes
-    ----------
-    joint : int
-        Segment that begins there.
-    y : float
-        m.
-    before, after : float
-        Radii on both sides, m.
-    slopes : (float, float)
-        Angles to the axis on both sides, rad, positive where the wall grows thicker.
-    root : Corner or None
-        The fillet or chamfer that fills its re-entrant corner.
-    """
-
-    joint: int
+    joint: int  #: segment that begins there
     surface: Surface
-    y: float
+    y: float  #: m
+    #: before, after: radii on both sides, m
     before: float
     after: float
+    #: angles to the axis on both sides, rad, positive where the wall grows thicker
     slopes: tuple[float, float]
-    root: Corner | None
+    root: Corner | None  #: the fillet or chamfer that fills its re-entrant corner
 
     @property
     def r(self) -> float:

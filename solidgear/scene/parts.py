@@ -24,21 +24,14 @@ from solidgear.scene.units import (
 class Strength(Model):
     """Strength of a material, of which ratings of fatigue are made; nothing else needs it.
 
-    Attributes
-    ----------
-    yield_point : float
-        R_e or R_p0.2, Pa.
-    ultimate : float
-        Tensile strength R_m, Pa.
-
     Raises
     ------
     SceneError
         A yield point above the ultimate strength, or a value that is not positive.
     """
 
-    yield_point: Stress
-    ultimate: Stress
+    yield_point: Stress  #: R_e or R_p0.2, Pa
+    ultimate: Stress  #: tensile strength R_m, Pa
 
     @model_validator(mode="after")
     def _yields_first(self) -> Strength:

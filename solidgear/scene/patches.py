@@ -21,21 +21,11 @@ ELSEWHERE = ("housing", "load", "lubrication", "uncertain")
 
 
 class Patch(Model):
-    """A named patch of the surface.
+    """A named patch of the surface."""
 
-    Attributes
-    ----------
-    name : str
-        Of the group of faces in the file; of a block one of `FACES`.
-    point : tuple of float
-        Its middle, by area, or the point that a scene names in its place, m.
-    extent : float
-        Diagonal of the box around it, m.
-    """
-
-    name: str
-    point: Triple
-    extent: float
+    name: str  #: of the group of faces in the file; of a block one of `FACES`
+    point: Triple  #: its middle, by area, or the point that a scene names in its place, m
+    extent: float  #: diagonal of the box around it, m
 
 
 def point_of(station: Any) -> Triple:

@@ -30,19 +30,12 @@ MOST_PLANETS = 20
 
 
 class Seat(Model):
-    """Springs of a body that turns on them freely: pin and bearing of a planet.
+    """Springs of a body that turns on them freely: pin and bearing of a planet."""
 
-    Attributes
-    ----------
-    radial, axial : float
-        N/m.
-    tilting : float
-        N m/rad.
-    """
-
+    #: radial, axial: N/m
     radial: MeshSpring
     axial: MeshSpring
-    tilting: TorsionSpring
+    tilting: TorsionSpring  #: N m/rad
 
     @property
     def diagonal(self) -> list[float]:
@@ -64,16 +57,10 @@ class HeldSeat(Seat):
 
 
 class PlanetTable(HeadInertia):
-    """Each of the planets, rigid.
-
-    Attributes
-    ----------
-    pin : Seat or None
-        Between planet and carrier.
-    """
+    """Each of the planets, rigid."""
 
     teeth: Teeth
-    pin: Seat | None = None
+    pin: Seat | None = None  #: between planet and carrier
 
     @model_validator(mode="after")
     def _on_a_pin(self) -> PlanetTable:
@@ -90,57 +77,36 @@ class RingTable(HeadInertia):
 
 
 class PlanetMeshes(Model):
-    """The teeth in contact of every planet.
+    """The teeth in contact of every planet."""
 
-    Attributes
-    ----------
-    sun_stiffness, ring_stiffness : float
-        Of the meshes with sun and ring, N/m.
-    pressure_angle : float
-        Normal to the tooth, at the reference cylinder, rad.
-    transmission_error : ErrorTable or None
-        Of each mesh; a single number is a constant amplitude, m; needed where it drives a motion.
-    """
-
+    #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m
     sun_stiffness: MeshSpring
     ring_stiffness: MeshSpring
-    pressure_angle: PressureAngle
+    pressure_angle: PressureAngle  #: normal to the tooth, at the reference cylinder, rad
+    #: of each mesh; a single number is a constant amplitude, m; needed where it drives a motion
     transmission_error: Error = None
     status: Status = "assumed"
 
 
 class Planetary(Model):
-    """A planetary stage as a file tells it.
+    """A planetary stage as a file tells it."""
 
-    Attributes
-    ----------
-    sun : str
-        A gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
-        those of the stage.
-    carrier : str
-        A shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there.
-    ratio : float or None
-        Turns of the sun in one of the carrier, where a source gives it.
-    planets : int
-        Of them, at equal angles, unless `angles` are given.
-    angles : tuple of float
-        Of every planet, rad.
-    position : float
-        Of the carrier, which planets are turned by, rad.
-    ring : RingTable or None
-        One that gives way; without it the ring is fixed.
-    """
-
+    #: a gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
+    #: those of the stage
     sun: str
+    #: a shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there
     carrier: str
     ring_teeth: Teeth
+    #: turns of the sun in one of the carrier, where a source gives it
     ratio: Annotated[float, Field(gt=0)] | None = None
+    #: of them, at equal angles, unless `angles` are given
     planets: Annotated[int, Field(strict=True, ge=1, le=MOST_PLANETS)] | None = None
+    #: of every planet, rad
     angles: Annotated[tuple[Azimuth, ...], Field(max_length=MOST_PLANETS)] = ()
-    position: Azimuth = 0.0
+    position: Azimuth = 0.0  #: of the carrier, which planets are turned by, rad
     planet: PlanetTable
     mesh: PlanetMeshes
-    ring: RingTable | None = None
+    ring: RingTable | None = None  #: one that gives way; without it the ring is fixed
 
     @model_validator(mode="after")
     def _so_many(self) -> Planetary:
@@ -152,20 +118,14 @@ class Planetary(Model):
 
 @dataclass(frozen=True)
 class PlanetMesh:
-    """Mesh of planets with sun or ring, told as a `Pair` is.
+    """Mesh of planets with sun or ring, told as a `Pair` is."""
 
-    Attributes
-    ----------
-    name : str
-        ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the first.
-    planets : tuple of int
-        Counted from 1.
-    """
-
+    #: ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the
+    #: first
     name: str
     stage: Stage
     mate: str
-    planets: tuple[int, ...]
+    planets: tuple[int, ...]  #: counted from 1
 
     @property
     def mesh(self) -> PlanetMeshes:
@@ -200,12 +160,7 @@ class PlanetMesh:
 
 @dataclass(frozen=True)
 class Stage:
-    """A planetary stage between two shafts, that of its sun and that of its carrier.
-
-    Attributes
-    ----------
-    shafts, ports : (str, str)
-    """
+    """A planetary stage between two shafts, that of its sun and that of its carrier."""
 
     called: str
     shafts: tuple[str, str]

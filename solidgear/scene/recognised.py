@@ -64,28 +64,16 @@ def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, flo
 
 
 class Recognised(NamedTuple):
-    """A part and the body of revolution inside it.
-
-    Attributes
-    ----------
-    walls : sequence of (y0, y1, outer0, outer1, inner0, inner1)
-        Frusta end to end from y = 0, m.
-    origin : float
-        Where the origin of the body lies, m from the lower end.
-    cylinders : sequence of (diameter, y0, y1)
-        Of its surface, m.
-    seat_share : callable
-        ``seat_share(radius, lo, hi)``: area of the surface that lies on a cylinder between two
-        places, over that of the cylinder.
-    shares : tuple of tuple of (int, float)
-        Of each frustum: groups of the body and their shares; empty for a body without groups.
-    """
+    """A part and the body of revolution inside it."""
 
     body: BodyFile
-    walls: tuple[tuple[float, ...], ...]
-    origin: float
-    cylinders: tuple[tuple[float, float, float], ...]
+    walls: tuple[tuple[float, ...], ...]  #: frusta end to end from y = 0, m
+    origin: float  #: where the origin of the body lies, m from the lower end
+    cylinders: tuple[tuple[float, float, float], ...]  #: of its surface, m
+    #: ``seat_share(radius, lo, hi)``: area of the surface that lies on a cylinder between two
+    #: places, over that of the cylinder
     seat_share: Callable[[float, float, float], float]
+    #: of each frustum: groups of the body and their shares; empty for a body without groups
     shares: tuple[tuple[tuple[int, float], ...], ...] = ()
 
     def segments(self, material: Material) -> list[Segment]:

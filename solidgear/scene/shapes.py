@@ -48,17 +48,10 @@ class OtherMaterial(Model):
 
 
 class _Shape(Model):
-    """A [[segment]] of a file, by itself; laid end to end with others it gives segments.
+    """A [[segment]] of a file, by itself; laid end to end with others it gives segments."""
 
-    Attributes
-    ----------
-    keys : dict of str to str
-        Fields of its segments, and the keys that they come from.
-    datums : tuple of str
-        Places on it that others can be counted from.
-    """
-
-    keys: ClassVar[Mapping[str, str]]
+    keys: ClassVar[Mapping[str, str]]  #: fields of its segments, and the keys that they come from
+    #: places on it that others can be counted from
     datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
 
     name: Annotated[str, AfterValidator(_segment_name)]
@@ -168,16 +161,10 @@ SHAPES: dict[str, type[_Shape]] = {"cylinder": Cylinder, "cone": Cone, "bevel_he
 
 
 class Laid(NamedTuple):
-    """Shapes laid end to end.
-
-    Attributes
-    ----------
-    shapes : list of (int, Shape)
-        Of each segment, with its place in the file.
-    """
+    """Shapes laid end to end."""
 
     segments: list[Segment]
-    shapes: list[tuple[int, Shape]]
+    shapes: list[tuple[int, Shape]]  #: of each segment, with its place in the file
 
     def path(self, path: tuple) -> tuple:
         """The key of the file that an entry of the segments came from."""

@@ -45,21 +45,6 @@ def involute(angle: float) -> float:
 class ToothFit:
     """Teeth of two cylindrical gears where they meet.
 
-    Attributes
-    ----------
-    teeth : (int, int)
-        Of a ring, which comes second, below zero.
-    module : float
-        Normal, m.
-    helix_angle, pressure_angle : float
-        At the reference cylinder, the latter normal to the tooth, rad.
-    shift : (float, float)
-        Profile shifts, in modules.
-    centre_distance : float
-        m; below zero with a ring.
-    face_width : float
-        That both share, m; zero where it is not known.
-
     Examples
     --------
     The spur gears of Kohara's Gear Technical Reference (2015), table 4.3, have no backlash at
@@ -71,13 +56,14 @@ class ToothFit:
     (448, 1.22)
     """
 
-    teeth: tuple[int, int]
-    module: float
+    teeth: tuple[int, int]  #: of a ring, which comes second, below zero
+    module: float  #: normal, m
+    #: helix_angle, pressure_angle: at the reference cylinder, the latter normal to the tooth, rad
     helix_angle: float
     pressure_angle: float
-    shift: tuple[float, float]
-    centre_distance: float
-    face_width: float = 0.0
+    shift: tuple[float, float]  #: profile shifts, in modules
+    centre_distance: float  #: m; below zero with a ring
+    face_width: float = 0.0  #: that both share, m; zero where it is not known
 
     @property
     def transverse(self) -> float:

@@ -55,27 +55,13 @@ def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 class Mount(Model):
-    """A spring between the housing and ground.
+    """A spring between the housing and ground."""
 
-    Attributes
-    ----------
-    name : str
-        By default its number, counted from one.
-    position : tuple of float or None
-        Of a rigid housing, m.
-    at : str or None
-        A point of the housing instead.
-    stiffness : tuple of tuple of float
-        6x6 about its place, SI; the constructor also takes named entries.
-    loss : float
-        Loss factor, twice a damping ratio.
-    """
-
-    name: str = ""
-    position: Vector | None = None
-    at: str | None = None
-    stiffness: Matrix
-    loss: Loss = 0.1
+    name: str = ""  #: by default its number, counted from one
+    position: Vector | None = None  #: of a rigid housing, m
+    at: str | None = None  #: a point of the housing instead
+    stiffness: Matrix  #: 6x6 about its place, SI; the constructor also takes named entries
+    loss: Loss = 0.1  #: loss factor, twice a damping ratio
     status: Status = "assumed"
 
     @model_validator(mode="after")
@@ -92,27 +78,6 @@ class Mount(Model):
 class TrainHousing(Model):
     """A body that carries the bearings of shafts, on mounts to ground: rigid, or of matrices.
 
-    Attributes
-    ----------
-    matrices : HousingMatrices or None
-        Of an elastic one: mass, inertia and centre are then theirs.
-    mass : float
-        kg.
-    inertia : tuple of tuple of float
-        3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal.
-    centre : tuple of float
-        Its centre of mass, m.
-    loss : float or None
-        Loss factor of an elastic one, 0.01 by default.
-    carries : tuple of str
-        Shafts whose bearings stand in it, and with them rings of planetary stages; all by default.
-    mounts : tuple of Mount
-        ``mount`` in a file.
-    points : dict of str to tuple of float
-        Places of a rigid one whose motion is told, by name, m.
-    status : {'published', 'identified', 'assumed', 'measured'}
-        Of mass and inertia.
-
     Examples
     --------
     >>> mount = Mount(position=("0 mm", "0 mm", "-150 mm"), stiffness={"kzz": "2e7 N/m"})
@@ -121,15 +86,18 @@ class TrainHousing(Model):
     (['1'], array([85. , 85. , 85. ,  3.1,  2.2,  2.9]))
     """
 
+    #: of an elastic one: mass, inertia and centre are then theirs
     matrices: InstanceOf[HousingMatrices] | None = Field(None, exclude=True, repr=False)
-    mass: Mass
+    mass: Mass  #: kg
+    #: 3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal
     inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
-    centre: Vector
-    loss: Loss | None = None
+    centre: Vector  #: its centre of mass, m
+    loss: Loss | None = None  #: loss factor of an elastic one, 0.01 by default
+    #: shafts whose bearings stand in it, and with them rings of planetary stages; all by default
     carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    mounts: tuple[Mount, ...] = Field((), alias="mount")
-    points: dict[str, Vector] = {}
-    status: Status = "assumed"
+    mounts: tuple[Mount, ...] = Field((), alias="mount")  #: ``mount`` in a file
+    points: dict[str, Vector] = {}  #: places of a rigid one whose motion is told, by name, m
+    status: Status = "assumed"  #: of mass and inertia
 
     def __init__(self, /, **data: Any):
         if isinstance(found := data.get("matrices"), HousingMatrices):

@@ -47,24 +47,13 @@ Azimuth = Annotated[SignedAngle, AfterValidator(_within_a_turn)]
 
 
 class TorsionSpringTable(Model):
-    """The spring between a shaft and what turns with it, and where on the shaft it sits.
+    """The spring between a shaft and what turns with it, and where on the shaft it sits."""
 
-    Attributes
-    ----------
-    stiffness : float
-        N m/rad.
-    at : str or None
-        A port of the shaft: its lumped point or a bearing.
-    position : float or None
-        Elsewhere on the shaft, m from ``from``: ``start``, ``end`` or a port.
-    seat_width : float or None
-        Of that place, m.
-    """
-
-    stiffness: TorsionSpring
-    at: str | None = None
+    stiffness: TorsionSpring  #: N m/rad
+    at: str | None = None  #: a port of the shaft: its lumped point or a bearing
     position: Length | None = None
     from_: str = Field("start", alias="from")
+    #: value, slope: of that place, m
     seat_width: PositiveLength | None = None
     status: Status = "assumed"
 
@@ -79,45 +68,26 @@ class TorsionSpringTable(Model):
 
 
 class Rotor(Model):
-    """The engine, the load or another inertia behind a torsional spring.
+    """The engine, the load or another inertia behind a torsional spring."""
 
-    Attributes
-    ----------
-    shaft : str
-        That it turns with.
-    inertia : float
-        About the shaft, kg m^2.
-    share : float or None
-        Of several engines or loads: what it brings or takes of the power, which is of the torque told
-        at one speed.
-    """
-
-    shaft: str = ""
-    inertia: Inertia
+    shaft: str = ""  #: that it turns with
+    inertia: Inertia  #: about the shaft, kg m^2
     spring: TorsionSpringTable
+    #: of several engines or loads: what it brings or takes of the power, which is of the torque
+    #: told at one speed
     share: Annotated[float, Field(gt=0, le=1)] | None = None
     status: Status = "assumed"
 
 
 class ErrorTable(Model):
-    """A transmission error that is not the same everywhere.
+    """A transmission error that is not the same everywhere."""
 
-    Attributes
-    ----------
-    frequency : tuple of float
-        Ascending, Hz; amplitudes between are linear, and constant beyond.
-    amplitude : tuple of float
-        m, at each frequency.
-    orders : tuple of float
-        Instead: amplitudes of the first, second, ... harmonic of the mesh, m.
-    phases : tuple of float
-        Of each of those where the mesh cycle begins, rad: ``sum A cos(n x angle + phase)``, positive
-        where teeth stand back; of nonlinear motion alone.
-    """
-
+    #: ascending, Hz; amplitudes between are linear, and constant beyond
     frequency: tuple[Frequency, ...] = ()
-    amplitude: tuple[Thickness, ...] = ()
+    amplitude: tuple[Thickness, ...] = ()  #: m, at each frequency
     orders: tuple[Thickness, ...] = ()
+    #: of each of those where the mesh cycle begins, rad: ``sum A cos(n x angle + phase)``, positive
+    #: where teeth stand back; of nonlinear motion alone
     phases: tuple[SignedAngle, ...] = ()
 
     @model_validator(mode="after")
@@ -148,90 +118,56 @@ Error = Annotated[ErrorTable | None, BeforeValidator(constant_or_table)]
 
 
 class Cell(Model):
-    """One cell of a loaded tooth contact, in the pinion's frame from its lumped point.
+    """One cell of a loaded tooth contact, in the pinion's frame from its lumped point."""
 
-    Attributes
-    ----------
-    point : tuple of float
-        m.
-    normal : tuple of float
-        Unit, the direction of the force on the pinion.
-    force : float
-        N, not negative.
-    """
-
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-    force: float
+    point: tuple[float, float, float]  #: m
+    normal: tuple[float, float, float]  #: unit, the direction of the force on the pinion
+    force: float  #: N, not negative
 
 
 class Mesh(Model):
-    """The teeth in contact.
-
-    Attributes
-    ----------
-    between : (str, str)
-        Shafts of the two gears, the first of which is called pinion here whatever its size; of a
-        shaft with several gears with the lumped point, such as ``middle.wheel``.
-    azimuth : float
-        Of the mesh about the pinion's axis from -x, right-handed about y, and of parallel shafts
-        about the gear's as well, so that their scenes keep parallel axes, rad.
-    stiffness : float or None
-        N/m; with contact cells it may follow from ``loaded_error`` and ``unloaded_error``.
-    status : {'published', 'identified', 'assumed', 'measured'}
-        Of the stiffness.
-    shaft_angle : float
-        rad.
-    ratio : float or None
-        Teeth of the gear over teeth of the pinion, where a source gives it.
-    pressure_angle : float or None
-        Normal to the tooth, for a line of action from gear geometry, rad; where there is a module, at
-        the reference cylinder.
-    centre_distance : float or None
-        Of parallel shafts, m; by default that without backlash.
-    line_of_action, point : tuple of float or None
-        Given instead, in the pinion's frame, from its lumped point.
-    contact_cells : tuple of Cell
-        Given instead: contact cells.
-    gear_position : tuple of float or None
-        The gear's lumped point from the pinion's, in the pinion's frame, m; by default both lie at
-        the middle of the face.
-    loaded_error, unloaded_error : float or None
-        Static transmission error under the load of the cells and without it, m.
-    transmission_error : ErrorTable or None
-        A single number is a constant amplitude, m; needed where it drives a motion.
-    stiffness_cycle : StiffnessCycle or None
-        Stiffness over a mesh cycle; of nonlinear motion alone.
-    line_cycle : LineCycle or None
-        Mesh point and line of action over a mesh cycle; of nonlinear motion alone.
-    backlash : float or None
-        Width of the gap between both flanks along the line of action, m; of nonlinear motion alone.
-    local_harmonics : tuple of int
-        Harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
-        tooth pitch of the lumped point's seat; by default none, the mean of the seat alone.
-    """
+    """The teeth in contact."""
 
     name: str = ""
+    #: shafts of the two gears, the first of which is called pinion here whatever its size; of a
+    #: shaft with several gears with the lumped point, such as ``middle.wheel``
     between: tuple[str, str] = ("pinion", "gear")
+    #: of the mesh about the pinion's axis from -x, right-handed about y, and of parallel shafts
+    #: about the gear's as well, so that their scenes keep parallel axes, rad
     azimuth: Azimuth = 0.0
+    #: N/m; with contact cells it may follow from ``loaded_error`` and ``unloaded_error``
     stiffness: MeshSpring | None = None
-    status: Status = "assumed"
-    shaft_angle: ShaftAngle = pi / 2
+    status: Status = "assumed"  #: of the stiffness
+    shaft_angle: ShaftAngle = pi / 2  #: rad
+    #: teeth of the gear over teeth of the pinion, where a source gives it
     ratio: Annotated[float, Field(gt=0)] | None = None
+    #: inner, outer: normal to the tooth, for a line of action from gear geometry, rad; where there
+    #: is a module, at the reference cylinder
     pressure_angle: PressureAngle | None = None
+    #: of parallel shafts, m; by default that without backlash
     centre_distance: PositiveLength | None = None
+    #: given instead, in the pinion's frame, from its lumped point
     line_of_action: tuple[float, float, float] | None = None
     line_of_action_status: Status = "assumed"
-    point: Vector | None = None
-    contact_cells: tuple[Cell, ...] = ()
+    point: Vector | None = None  #: given instead, in the pinion's frame, from its lumped point
+    contact_cells: tuple[Cell, ...] = ()  #: given instead: contact cells
+    #: the gear's lumped point from the pinion's, in the pinion's frame, m; by default both lie at
+    #: the middle of the face
     gear_position: Vector | None = None
+    #: loaded_error, unloaded_error: static transmission error under the load of the cells and
+    #: without it, m
     loaded_error: Thickness | None = None
     unloaded_error: Thickness | None = None
+    #: a single number is a constant amplitude, m; needed where it drives a motion
     transmission_error: Error = None
     transmission_error_status: Status = "assumed"
+    #: stiffness over a mesh cycle; of nonlinear motion alone
     stiffness_cycle: StiffnessCycle | None = None
     line_cycle: LineCycle | None = None
+    #: width of the gap between both flanks along the line of action, m; of nonlinear motion alone
     backlash: Thickness | None = None
+    #: harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
+    #: tooth pitch of the lumped point's seat; by default none, the mean of the seat alone
     local_harmonics: tuple[Harmonic, ...] = ()
 
     @model_validator(mode="after")
@@ -268,14 +204,10 @@ class Mesh(Model):
 
 
 class Losses(Model):
-    """Loss factors eta, dissipated energy over ``2 pi`` times the stored: twice a damping ratio.
+    """Loss factors eta, dissipated energy over ``2 pi`` times the stored: twice a damping ratio."""
 
-    Attributes
-    ----------
-    shafts, bearings, mesh, springs : float
-        Of the material of all shafts, all bearings, the teeth, and the torsional springs.
-    """
-
+    #: shafts, bearings, mesh, springs: of the material of all shafts, all bearings, the teeth, and
+    #: the torsional springs
     shafts: Loss = 0.04
     bearings: Loss = 0.04
     mesh: Loss = 0.12
@@ -284,21 +216,10 @@ class Losses(Model):
 
 
 class TrainAsk(Model):
-    """The questions: up to what frequency, and what counts as the same answer.
+    """The questions: up to what frequency, and what counts as the same answer."""
 
-    Attributes
-    ----------
-    modes : int or None
-        Elastic modes that system-modes lists; by default all up to `max_frequency`.
-    max_frequency : float
-        Hz.
-    tolerance : float
-        Of natural frequencies, relative.
-    decibels : float
-        Of the mesh force.
-    """
-
+    #: elastic modes that system-modes lists; by default all up to `max_frequency`
     modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] | None = None
-    max_frequency: Frequency = 4000.0
-    tolerance: Tolerance = 0.02
-    decibels: Annotated[float, Field(gt=0, le=60)] = 3.0
+    max_frequency: Frequency = 4000.0  #: Hz
+    tolerance: Tolerance = 0.02  #: of natural frequencies, relative
+    decibels: Annotated[float, Field(gt=0, le=60)] = 3.0  #: of the mesh force

@@ -33,18 +33,11 @@ _KNOWN = (
 
 
 class Uncertain(Model):
-    """An entry with its range.
-
-    Attributes
-    ----------
-    said : str
-        The range as the file states it.
-    low, high : float
-        Times what the scene says; 1 lies between.
-    """
+    """An entry with its range."""
 
     path: str
-    said: str
+    said: str  #: the range as the file states it
+    #: low, high: times what the scene says; 1 lies between
     low: float
     high: float
 

@@ -26,21 +26,13 @@ from solidgear.solve.statics import condense, flexibility
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A displacement of a body with its bearings.
+    """A displacement of a body with its bearings."""
 
-    Attributes
-    ----------
-    vectors : dict of int to (n,) ndarray
-        By block.
-    forces, motions : (6 p,) ndarray
-        On and of all ports.
-    eigenvalue : float
-        Of a mode, rad^2/s^2; 0 of a static one.
-    """
-
-    vectors: dict[int, np.ndarray]
+    vectors: dict[int, np.ndarray]  #: by block
+    #: forces, motions: (6 p,) on and of all ports
     forces: np.ndarray
     motions: np.ndarray
+    #: along, around, shear: of a mode, rad^2/s^2; 0 of a static one
     eigenvalue: float = 0.0
 
 

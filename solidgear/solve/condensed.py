@@ -14,28 +14,18 @@ from solidgear.frames import DOF_NAMES
 
 @dataclass(frozen=True, repr=False)
 class Condensed(Displayed):
-    """Static behaviour seen from one port, bearings included.
-
-    Attributes
-    ----------
-    stiffness : (6, 6) ndarray
-        N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero.
-    compliance : (6, 6) ndarray
-        Motions under loads; NaN in rows and columns that a free motion moves.
-    free : (6, k) ndarray
-        Motions of the port that nothing resists.
-    evidence : dict
-        Asymmetry, refinement residual, back end.
-    """
+    """Static behaviour seen from one port, bearings included."""
 
     shown: ClassVar[str] = "condensed"
 
     port: str
     attachment: str
+    #: (6, 6) N/m, N/rad, N m/rad; rows of unresisted motions are exactly zero
     stiffness: np.ndarray
+    #: (6, 6) motions under loads; NaN in rows and columns that a free motion moves
     compliance: np.ndarray
-    free: np.ndarray
-    evidence: dict = field(default_factory=dict)
+    free: np.ndarray  #: (6, k) motions of the port that nothing resists
+    evidence: dict = field(default_factory=dict)  #: asymmetry, refinement residual, back end
 
     @property
     def free_names(self) -> tuple[str, ...]:
@@ -62,20 +52,6 @@ class Condensed(Displayed):
 class Coupled(Displayed):
     """Static behaviour seen from several ports together, bearings included.
 
-    Attributes
-    ----------
-    stiffness : (6 n, 6 n) ndarray
-        Loads that hold all ports at given motions, port by port, SI. NaN where ports move as one:
-        then none exists. Rows of motions that nothing resists at any of them are exactly zero.
-    compliance : (6 n, 6 n) ndarray
-        Motions of all ports under loads at them. NaN in rows and columns that a free motion moves.
-    free : (6 n, k) ndarray
-        Motions of all ports together that nothing resists; of a shaft that turns freely one,
-        with thy of every port.
-    evidence : dict
-        Asymmetry, refinement residual, back end, and ``stiffness_error``: the relative error that
-        inverting leaves in the stiffness.
-
     Examples
     --------
     >>> import solidgear as sg
@@ -93,9 +69,18 @@ class Coupled(Displayed):
 
     ports: tuple[str, ...]
     attachments: tuple[str, ...]
+    #: (6 n, 6 n) loads that hold all ports at given motions, port by port, SI. NaN where ports move
+    #: as one: then none exists. Rows of motions that nothing resists at any of them are exactly
+    #: zero.
     stiffness: np.ndarray
+    #: (6 n, 6 n) motions of all ports under loads at them. NaN in rows and columns that a free
+    #: motion moves.
     compliance: np.ndarray
+    #: (6 n, k) motions of all ports together that nothing resists; of a shaft that turns freely
+    #: one, with thy of every port
     free: np.ndarray
+    #: asymmetry, refinement residual, back end, and ``stiffness_error``: the relative error that
+    #: inverting leaves in the stiffness
     evidence: dict = field(default_factory=dict)
 
     def between(self, one: str, other: str, kind: str = "compliance") -> np.ndarray:

@@ -39,45 +39,28 @@ TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
 
 @dataclass(frozen=True)
 class Raw:
-    """One eigenpair before it has a name.
+    """One eigenpair before it has a name."""
 
-    Attributes
-    ----------
-    value : float
-        rad^2/s^2.
-    vectors : dict
-        Block index -> (n,) vector.
-    residual, error : float
-        See :class:`solidgear.solve.refine.Refined`; both relative, of the eigenvalue.
-    """
-
-    value: float
-    vectors: dict[int, np.ndarray]
+    value: float  #: rad^2/s^2
+    vectors: dict[int, np.ndarray]  #: block index -> (n,) vector
+    #: residual, error: see :class:`solidgear.solve.refine.Refined`; both relative, of the
+    #: eigenvalue
     residual: float
     error: float
 
 
 @dataclass(frozen=True)
 class Solved:
-    """Eigenpairs of one group.
+    """Eigenpairs of one group."""
 
-    Attributes
-    ----------
-    elastic, free : list of Raw
-        Elastic modes in ascending order, and rigid motions that nothing resists.
-    orthogonality : float
-        Largest entry of ``U' M U - I``.
-    method : str
-        ``lanczos``, ``krylov-schur (SLEPc)``, ``arpack`` or ``dense``, with the reason where one stands in for another.
-    steps : int
-        Corrections by :func:`solidgear.solve.refine.refine`.
-    """
-
+    #: elastic, free: elastic modes in ascending order, and rigid motions that nothing resists
     elastic: list[Raw]
     free: list[Raw]
-    orthogonality: float
+    orthogonality: float  #: largest entry of ``U' M U - I``
+    #: ``lanczos``, ``krylov-schur (SLEPc)``, ``arpack`` or ``dense``, with the reason where one
+    #: stands in for another
     method: str
-    steps: int = 0
+    steps: int = 0  #: corrections by :func:`solidgear.solve.refine.refine`
 
 
 def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
@@ -209,22 +192,14 @@ def _arpack(supported: Supported, wanted: int):
 class Count:
     """Number of eigenvalues below a bound, from the inertia of a factor that shares nothing with
     the eigensolver.
-
-    Attributes
-    ----------
-    below : float
-        Bound, rad^2/s^2.
-    found, counted : int
-        Modes the eigensolver gave below it, and modes there are.
-    distance : float
-        Of the nearest eigenvalue from the bound, relative.
     """
 
-    below: float
+    below: float  #: bound, rad^2/s^2
+    #: found, counted: modes the eigensolver gave below it, and modes there are
     found: int
     counted: int
     backend: str
-    distance: float
+    distance: float  #: of the nearest eigenvalue from the bound, relative
 
 
 def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:

@@ -89,22 +89,12 @@ def factorise(
 
 @dataclass(frozen=True)
 class Planned:
-    """A factor that is not made yet.
-
-    Attributes
-    ----------
-    backend : str
-        That will make it.
-    estimate_mb : float
-        Memory that it will take, by the back end's own analysis where it has one.
-    make : callable
-        The :class:`Factor`; once.
-    """
+    """A factor that is not made yet."""
 
     unknowns: int
-    backend: str
-    estimate_mb: float
-    make: Callable[[], Factor]
+    backend: str  #: that will make it
+    estimate_mb: float  #: memory that it will take, by the back end's own analysis where it has one
+    make: Callable[[], Factor]  #: the :class:`Factor`; once
 
 
 def planned(

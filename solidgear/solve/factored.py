@@ -22,34 +22,16 @@ LONG = 5_000
 
 @dataclass
 class Factor:
-    """Result of :func:`solidgear.solve.factor.factorise`.
+    """Result of :func:`solidgear.solve.factor.factorise`."""
 
-    Attributes
-    ----------
-    backend : str
-        ``pardiso``, ``cholmod``, ``mumps`` or ``superlu``.
-    reason : str
-        Why this back end was taken.
-    estimate_mb : float or None
-        Memory it was expected to need, MB.
-    nnz : int or None
-        Entries of the factor, where the back end reports them.
-    factoring : Factoring
-        Precision, and where it is kept.
-    refining : Refining or None
-        Of a factor in single precision.
-    ranks : Ranks or None
-        Of a factor by MUMPS in PETSc, which finds modes as well.
-    """
-
-    backend: str
-    reason: str
+    backend: str  #: ``pardiso``, ``cholmod``, ``mumps`` or ``superlu``
+    reason: str  #: why this back end was taken
     _solve: Callable[[np.ndarray], np.ndarray]
-    estimate_mb: float | None = None
-    nnz: int | None = None
-    factoring: Factoring = Factoring()
-    refining: Refining | None = None
-    ranks: Ranks | None = None
+    estimate_mb: float | None = None  #: memory it was expected to need, MB
+    nnz: int | None = None  #: entries of the factor, where the back end reports them
+    factoring: Factoring = Factoring()  #: precision, and where it is kept
+    refining: Refining | None = None  #: of a factor in single precision
+    ranks: Ranks | None = None  #: of a factor by MUMPS in PETSc, which finds modes as well
 
     @property
     def said(self) -> str:
@@ -66,15 +48,9 @@ class Factor:
 
 @dataclass
 class Indefinite(Factor):
-    """Result of :func:`solidgear.solve.factor.indefinite`.
+    """Result of :func:`solidgear.solve.factor.indefinite`."""
 
-    Attributes
-    ----------
-    negative : int
-        Number of negative eigenvalues.
-    """
-
-    negative: int = 0
+    negative: int = 0  #: number of negative eigenvalues
 
 
 def heard(n, function, *arguments, **options):

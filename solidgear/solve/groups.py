@@ -31,29 +31,16 @@ DOUBT = 0.01
 
 @dataclass
 class Part:
-    """Blocks that belong together, what was asked of them and found.
-
-    Attributes
-    ----------
-    ask : int
-        Number of modes to search for.
-    solved : Solved
-        Set by the first search.
-    twins : list of int
-        Lone blocks that repeat it in the other plane.
-    first : int
-        Added to block indices: that of a further circumferential family stands apart from those of
-        the body's own.
-    verdict : dict or None
-        Result of the count, see :func:`complete`.
-    """
+    """Blocks that belong together, what was asked of them and found."""
 
     supported: Supported
-    ask: int
-    solved: Solved = field(init=False)
-    twins: list[int] = field(default_factory=list)
+    ask: int  #: number of modes to search for
+    solved: Solved = field(init=False)  #: set by the first search
+    twins: list[int] = field(default_factory=list)  #: lone blocks that repeat it in the other plane
+    #: added to block indices: that of a further circumferential family stands apart from those of
+    #: the body's own
     first: int = 0
-    verdict: dict | None = None
+    verdict: dict | None = None  #: result of the count, see :func:`complete`
 
     @property
     def blocks(self) -> list[Block]:
@@ -84,21 +71,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Uncounted:
-    """A family that was left alone.
+    """A family that was left alone."""
 
-    Attributes
-    ----------
-    n : int
-        Waves around the axis.
-    begins_hz : float
-        The family begins above this frequency.
-    and_above : bool
-        Whether it stands for all families of more waves too.
-    """
-
-    n: int
-    begins_hz: float
-    and_above: bool = False
+    n: int  #: waves around the axis
+    begins_hz: float  #: the family begins above this frequency
+    and_above: bool = False  #: whether it stands for all families of more waves too
 
 
 def solved_parts(

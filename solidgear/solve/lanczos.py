@@ -18,21 +18,11 @@ from solidgear.solve.inertia_relief import Linear
 
 @dataclass(frozen=True)
 class Found:
-    """Eigenpairs of ``A^-1 M u = theta u``.
+    """Eigenpairs of ``A^-1 M u = theta u``."""
 
-    Attributes
-    ----------
-    theta : (k,) ndarray
-        Descending.
-    vectors : (n, k) ndarray
-        Mass-orthonormal.
-    columns : int
-        Solves that were spent.
-    """
-
-    theta: np.ndarray
-    vectors: np.ndarray
-    columns: int
+    theta: np.ndarray  #: (k,) descending
+    vectors: np.ndarray  #: (n, k) mass-orthonormal
+    columns: int  #: solves that were spent
     converged: bool
 
 

@@ -22,22 +22,13 @@ CLOSE = 0.15
 
 
 class Mixture(NamedTuple):
-    """Two modes that are mixtures of the same two motions.
+    """Two modes that are mixtures of the same two motions."""
 
-    Attributes
-    ----------
-    name, other : str
-        Of the modes.
-    share : float
-        Of the modal mass of the first that moves as its family does.
-    apart : float
-        Frequency of the other over that of the first, less one.
-    """
-
+    #: name, other: of the modes
     name: str
     other: str
-    share: float
-    apart: float
+    share: float  #: of the modal mass of the first that moves as its family does
+    apart: float  #: frequency of the other over that of the first, less one
 
     @property
     def sentence(self) -> str:

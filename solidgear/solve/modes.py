@@ -42,41 +42,27 @@ STATIONS = 13
 
 @dataclass(frozen=True)
 class Mode:
-    """One natural frequency with all its shapes.
+    """One natural frequency with all its shapes."""
 
-    Attributes
-    ----------
-    name : ModeName
-        Such as ``bending 1``, ``axial 1``, ``rigid torsion``.
-    multiplicity : int
-        2 for a degenerate pair.
-    vectors : tuple of dict
-        One per shape: block index -> (n,) vector, mass-normalised over all blocks.
-    motions : (multiplicity, s, 6) ndarray
-        Section motions along the axis (mass-weighted projection).
-    captured : float
-        Share of the modal mass that section motions describe; small for ovalising modes and for
-        discs that bend.
-    waves : int
-        Waves around the axis: 0 for axial, breathing and torsion, 1 for bending, 2 and more for
-        ovalising.
-    error : float
-        Bound on the relative error of the frequency that the solution of the eigenproblem leaves
-        (not that of the mesh).
-    split : float
-        Relative distance of the frequencies of a pair that the mesh, or unequal bearings, have split;
-        `frequency_hz` is between them.
-    """
-
-    name: ModeName
+    name: ModeName  #: such as ``bending 1``, ``axial 1``, ``rigid torsion``
     family: str
     frequency_hz: float
-    multiplicity: int
+    multiplicity: int  #: 2 for a degenerate pair
+    #: one per shape: block index -> (n,) vector, mass-normalised over all blocks
     vectors: tuple[dict[int, np.ndarray], ...]
+    #: (multiplicity, s, 6) section motions along the axis (mass-weighted projection)
     motions: np.ndarray
+    #: share of the modal mass that section motions describe; small for ovalising modes and for
+    #: discs that bend
     captured: float
+    #: waves around the axis: 0 for axial, breathing and torsion, 1 for bending, 2 and more for
+    #: ovalising
     waves: int = 0
+    #: bound on the relative error of the frequency that the solution of the eigenproblem leaves
+    #: (not that of the mesh)
     error: float = 0.0
+    #: relative distance of the frequencies of a pair that the mesh, or unequal bearings, have
+    #: split; `frequency_hz` is between them
     split: float = 0.0
 
     @property
@@ -89,41 +75,30 @@ class Mode:
 
 @dataclass(frozen=True, repr=False)
 class ModeSet(Displayed):
-    """Modes in ascending order of frequency, and the evidence for them.
-
-    Attributes
-    ----------
-    stations : (s,) ndarray
-        Places of section motions, m.
-    gram : (6 s, 6 s) ndarray
-        Their mass matrix.
-    evidence : dict
-        ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back
-        from the shifted to the true eigenvalue), ``error`` (largest :attr:`Mode.error`), ``steps``
-        (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
-        ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``,
-        a list of ``{family, n, counted, modes_below, lowest_hz}`` with ``n`` None for a body that
-        holds all motions in one and ``above`` where a row stands for all of more waves, which begin
-        at ``lowest_hz`` at the earliest; ``split_pairs``, names and splits where the mesh has split
-        twins further than meshes like it do. Where asked for, ``count``, ``count_seconds`` and
-        ``counted_below_hz``, below which the body as meshed has no further mode of any family
-        listed.
-    beyond : tuple of Mode
-        Further modes of the body's own blocks that were solved and lie above the end of the list,
-        because ovalising ones took their places.
-    above : tuple of Mode
-        All others that were solved to know that the list is whole, as far as none of their family
-        is missing between: what is near to a mode of the list.
-    """
+    """Modes in ascending order of frequency, and the evidence for them."""
 
     shown: ClassVar[str] = "mode_set"
 
     fidelity: str
     modes: tuple[Mode, ...]
-    stations: np.ndarray
-    gram: np.ndarray
+    stations: np.ndarray  #: (s,) places of section motions, m
+    gram: np.ndarray  #: (6 s, 6 s) their mass matrix
+    #: ``residual`` (largest ``|A^-1 r|_A / |u|_A`` of a mode and its residual force, brought back
+    #: from the shifted to the true eigenvalue), ``error`` (largest :attr:`Mode.error`), ``steps``
+    #: (corrections that were needed), ``orthogonality`` (largest entry of ``U'MU - I``),
+    #: ``rigid_modes``, ``shift_rad2``, ``coupling_bound``, ``backend``, ``method``; ``families``, a
+    #: list of ``{family, n, counted, modes_below, lowest_hz}`` with ``n`` None for a body that
+    #: holds all motions in one and ``above`` where a row stands for all of more waves, which begin
+    #: at ``lowest_hz`` at the earliest; ``split_pairs``, names and splits where the mesh has split
+    #: twins further than meshes like it do. Where asked for, ``count``, ``count_seconds`` and
+    #: ``counted_below_hz``, below which the body as meshed has no further mode of any family
+    #: listed.
     evidence: dict = field(default_factory=dict)
+    #: further modes of the body's own blocks that were solved and lie above the end of the list,
+    #: because ovalising ones took their places
     beyond: tuple[Mode, ...] = ()
+    #: all others that were solved to know that the list is whole, as far as none of their family is
+    #: missing between: what is near to a mode of the list
     above: tuple[Mode, ...] = ()
 
     @property

@@ -38,32 +38,18 @@ OVAL_TOLERANCE = 1e-2
 
 @dataclass
 class Shape:
-    """A shape before it has a name.
-
-    Attributes
-    ----------
-    waves : int
-        Around the axis.
-    motion : (stations, 6) ndarray
-        Section motions.
-    captured : float
-        Share of the modal mass they describe.
-    profile : ndarray or dict of int to ndarray
-        What :meth:`Names.overlap` compares.
-    double : bool
-        Whether it stands for its twin as well, as a block of two waves and more does for its cosine
-        and its sine form.
-    plane : str
-        ``z`` or ``x`` where bending stays in one plane of a part that has a mirror plane but is not
-        round, else empty.
-    """
+    """A shape before it has a name."""
 
     family: str
-    waves: int
-    motion: np.ndarray
-    captured: float
-    profile: np.ndarray | dict[int, np.ndarray]
+    waves: int  #: around the axis
+    motion: np.ndarray  #: (stations, 6) section motions
+    captured: float  #: share of the modal mass they describe
+    profile: np.ndarray | dict[int, np.ndarray]  #: what :meth:`Names.overlap` compares
+    #: whether it stands for its twin as well, as a block of two waves and more does for its cosine
+    #: and its sine form
     double: bool = False
+    #: ``z`` or ``x`` where bending stays in one plane of a part that has a mirror plane but is not
+    #: round, else empty
     plane: str = ""
 
     @property

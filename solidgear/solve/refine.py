@@ -33,31 +33,17 @@ ASKEW = 1e-5
 
 @dataclass(frozen=True)
 class Refined:
-    """Eigenpairs in ascending order.
+    """Eigenpairs in ascending order."""
 
-    Attributes
-    ----------
-    value : (k,) ndarray
-        rad^2/s^2.
-    vectors : (n, k) ndarray
-        Mass-orthonormal.
-    residual : (k,) ndarray
-        ``|A^-1 r|_A / |u|_A``, brought from the shifted to the true eigenvalue.
-    error : (k,) ndarray
-        Bound on the relative error of each value: what the residual allows, and the rounding of its
-        energy.
-    noise : (k,) ndarray
-        The second part of it.
-    steps : int
-        Corrections that were made.
-    """
-
-    value: np.ndarray
-    vectors: np.ndarray
+    value: np.ndarray  #: (k,) rad^2/s^2
+    vectors: np.ndarray  #: (n, k) mass-orthonormal
+    #: (k,) ``|A^-1 r|_A / |u|_A``, brought from the shifted to the true eigenvalue
     residual: np.ndarray
+    #: (k,) bound on the relative error of each value: what the residual allows, and the rounding of
+    #: its energy
     error: np.ndarray
-    noise: np.ndarray
-    steps: int
+    noise: np.ndarray  #: (k,) the second part of it
+    steps: int  #: corrections that were made
 
     def worst(self, needed: int) -> float:
         """Largest error of so many of the lowest pairs, rounding left out: no step would mend

@@ -20,15 +20,9 @@ SHIFT = 0.03
 
 @dataclass(frozen=True)
 class Factored:
-    """Factors of the shifted stiffness of a body.
+    """Factors of the shifted stiffness of a body."""
 
-    Attributes
-    ----------
-    of_block : list of Factor
-        One per block, twins sharing theirs.
-    """
-
-    of_block: list[Factor]
+    of_block: list[Factor]  #: one per block, twins sharing theirs
 
 
 def factors(body: Body) -> list[Factor]:

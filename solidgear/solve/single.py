@@ -36,13 +36,6 @@ class Refining:
     rough : callable
         ``A^-1 f``, roughly.
 
-    Attributes
-    ----------
-    steps : int
-        Most corrections that a solution took so far.
-    left : float
-        Largest estimated relative error of a solution so far, in the energy norm.
-
     Examples
     --------
     >>> a = np.array([[4.0, 1.0], [1.0, 3.0]])
@@ -53,7 +46,8 @@ class Refining:
 
     product: Linear
     rough: Linear
-    steps: int = field(default=0, init=False)
+    steps: int = field(default=0, init=False)  #: most corrections that a solution took so far
+    #: largest estimated relative error of a solution so far, in the energy norm
     left: float = field(default=0.0, init=False)
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:

@@ -46,24 +46,14 @@ SOLVED = 1e-26
 
 @dataclass(frozen=True)
 class Flexibility:
-    """Inertia-relief flexibility of a free body at its ports.
+    """Inertia-relief flexibility of a free body at its ports."""
 
-    Attributes
-    ----------
-    matrix : (6 p, 6 p) ndarray
-        Symmetric positive semidefinite, SI.
-    asymmetry : float
-        Relative asymmetry of the computed matrix before it was symmetrised.
-    residual : float
-        Estimated relative error that refinement left: the square of what the displacements miss.
-    fields : dict of int to ndarray
-        Elastic displacements under unit loads on the ports, by planar blocks.
-    """
-
-    matrix: np.ndarray
-    asymmetry: float
+    matrix: np.ndarray  #: (6 p, 6 p) symmetric positive semidefinite, SI
+    asymmetry: float  #: relative asymmetry of the computed matrix before it was symmetrised
+    #: estimated relative error that refinement left: the square of what the displacements miss
     residual: float
     backend: str
+    #: elastic displacements under unit loads on the ports, by planar blocks
     fields: Mapping[int, np.ndarray] = field(default_factory=dict)
 
 

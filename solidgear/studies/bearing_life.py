@@ -19,25 +19,14 @@ Place = tuple[Catalogued, np.ndarray]
 
 @dataclass(frozen=True)
 class BearingLife:
-    """Life of one bearing, and its range.
-
-    Attributes
-    ----------
-    life : Life
-        At the middle of what is not known.
-    speed : float
-        rad/s; 0 where none is known.
-    told : str
-        What is not known of this bearing or of those that share the load; empty where all is.
-    ends : tuple of Life
-        At the ends of that, each with the other.
-    """
+    """Life of one bearing, and its range."""
 
     name: str
-    life: Life
-    speed: float
+    life: Life  #: at the middle of what is not known
+    speed: float  #: rad/s; 0 where none is known
+    #: what is not known of this bearing or of those that share the load; empty where all is
     told: str
-    ends: tuple[Life, ...]
+    ends: tuple[Life, ...]  #: at the ends of that, each with the other
 
     def range(self, kind: str) -> tuple[float, float]:
         """Least and largest life, revolutions, ``basic``, ``reference`` or ``modified`` (that also

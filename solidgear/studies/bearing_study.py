@@ -23,23 +23,12 @@ FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
 
 @dataclass(frozen=True)
 class BearingFacts:
-    """One catalogue bearing at its load.
+    """One catalogue bearing at its load."""
 
-    Attributes
-    ----------
-    bearing : Bearing
-        With its stiffness there.
-    made : Catalogued
-        Its rows, by its data.
-    motion : (6,) ndarray
-        Of its inner ring.
-    spread : (ndarray, ndarray) or None
-        Diagonal of the stiffness: least and largest of an estimated inside and its two ends.
-    """
-
-    bearing: Bearing
-    made: Catalogued
-    motion: np.ndarray
+    bearing: Bearing  #: with its stiffness there
+    made: Catalogued  #: its rows, by its data
+    motion: np.ndarray  #: (6,) of its inner ring
+    #: diagonal of the stiffness: least and largest of an estimated inside and its two ends
     spread: tuple[np.ndarray, np.ndarray] | None
 
     @property
@@ -143,20 +132,11 @@ def _named(found: Solved, name: str) -> Bearing:
 
 @dataclass(frozen=True)
 class OverLoad:
-    """Stiffness of a bearing over the load.
+    """Stiffness of a bearing over the load."""
 
-    Attributes
-    ----------
-    factors : (n,) ndarray
-        Times the load of the scene.
-    load : (n, 6) ndarray
-        On the bearing.
-    middle, low, high : (n, 6) ndarray
-        Diagonal of its stiffness, and its range by an estimated inside.
-    """
-
-    factors: np.ndarray
-    load: np.ndarray
+    factors: np.ndarray  #: (n,) times the load of the scene
+    load: np.ndarray  #: (n, 6) on the bearing
+    #: middle, low, high: (n, 6) diagonal of its stiffness, and its range by an estimated inside
     middle: np.ndarray
     low: np.ndarray
     high: np.ndarray

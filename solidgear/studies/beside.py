@@ -19,14 +19,9 @@ NAMED = 3
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """One of the two.
+    """One of the two."""
 
-    Attributes
-    ----------
-    letter, name : str
-        ``A`` or ``B``, and what it is called.
-    """
-
+    #: letter, name: ``A`` or ``B``, and what it is called
     letter: str
     name: str
     cautions: tuple[str, ...]
@@ -43,23 +38,13 @@ M = TypeVar("M", bound=BarredMode)
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Beside(Generic[S, M]):
-    """Two of a kind beside each other.
-
-    Attributes
-    ----------
-    inputs : tuple of Difference
-        Of their files, or fields.
-    modes : tuple of ModePair
-        By frequency.
-    pairing : str
-        How modes belong together, in words.
-    """
+    """Two of a kind beside each other."""
 
     a: S
     b: S
-    inputs: tuple[Difference, ...]
-    modes: tuple[ModePair[M], ...]
-    pairing: str
+    inputs: tuple[Difference, ...]  #: of their files, or fields
+    modes: tuple[ModePair[M], ...]  #: by frequency
+    pairing: str  #: how modes belong together, in words
     seconds: float
 
     @property

@@ -12,11 +12,6 @@ from solidgear.judge.deviations import resolution
 class Change:
     """A number of one thing beside that of another, in SI.
 
-    Attributes
-    ----------
-    bar_a, bar_b : float or None
-        Error bars of both, in the unit of the number; None of one that has none.
-
     Examples
     --------
     >>> one = Change(100.0, 101.0, 0.2, 0.3)
@@ -28,6 +23,7 @@ class Change:
 
     a: float
     b: float
+    #: bar_a, bar_b: error bars of both, in the unit of the number; None of one that has none
     bar_a: float | None = None
     bar_b: float | None = None
 
@@ -61,17 +57,11 @@ class Change:
 
 @dataclass(frozen=True)
 class BarredMode:
-    """An elastic mode of one of two things.
-
-    Attributes
-    ----------
-    bar : float or None
-        Largest relative error of its frequency; None where nothing tells it.
-    """
+    """An elastic mode of one of two things."""
 
     name: str
     frequency_hz: float
-    bar: float | None
+    bar: float | None  #: largest relative error of its frequency; None where nothing tells it
 
     @property
     def width(self) -> float | None:
@@ -84,17 +74,12 @@ M = TypeVar("M", bound=BarredMode)
 
 @dataclass(frozen=True)
 class ModePair(Generic[M]):
-    """A mode of one thing and its partner in the other; either may be missing.
-
-    Attributes
-    ----------
-    mac : float or None
-        Modal assurance criterion of their motions; None for a mode alone, and for modes that belong
-        together by name.
-    """
+    """A mode of one thing and its partner in the other; either may be missing."""
 
     a: M | None
     b: M | None
+    #: modal assurance criterion of their motions; None for a mode alone, and for modes that belong
+    #: together by name
     mac: float | None = None
 
     @property

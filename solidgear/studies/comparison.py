@@ -47,21 +47,13 @@ Progress = Callable[[str], None]
 
 @dataclass(repr=False)
 class Comparison(Displayed):
-    """Everything a comparison found.
-
-    Attributes
-    ----------
-    record : Record
-        What ``results.json`` holds.
-    solutions : dict of str to Solution
-        The bodies and mode shapes behind it.
-    """
+    """Everything a comparison found."""
 
     shown: ClassVar[str] = "comparison"
 
     scene: Scene
-    record: Record
-    solutions: dict[str, Solution]
+    record: Record  #: what ``results.json`` holds
+    solutions: dict[str, Solution]  #: the bodies and mode shapes behind it
 
     @property
     def results(self) -> dict:

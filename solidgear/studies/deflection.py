@@ -39,34 +39,17 @@ FIRM = 1e15
 
 @dataclass(frozen=True, eq=False)
 class BearingState:
-    """A bearing and what it carries.
-
-    Attributes
-    ----------
-    place : float
-        Along the shaft, m.
-    load : (6,) ndarray
-        Of the shaft on it, N and N m.
-    relative : (6,) ndarray
-        Motion of its inner ring against the outer one, m and rad.
-    stiffness : (6, 6) ndarray
-        Tangent at that point.
-    clearance : float or None
-        Radial, at work, m; None of a bearing without catalogue data.
-    rows : tuple of Contacts
-        Loads of rolling elements, row by row; none without catalogue data.
-    life : Life or None
-        With its static safety; None without catalogue data.
-    """
+    """A bearing and what it carries."""
 
     name: str
-    place: float
-    load: np.ndarray
-    relative: np.ndarray
-    stiffness: np.ndarray
-    clearance: float | None
+    place: float  #: along the shaft, m
+    load: np.ndarray  #: (6,) of the shaft on it, N and N m
+    relative: np.ndarray  #: (6,) motion of its inner ring against the outer one, m and rad
+    stiffness: np.ndarray  #: (6, 6) tangent at that point
+    clearance: float | None  #: radial, at work, m; None of a bearing without catalogue data
+    #: loads of rolling elements, row by row; none without catalogue data
     rows: tuple[Contacts, ...]
-    life: Life | None
+    life: Life | None  #: with its static safety; None without catalogue data
 
     @property
     def radial(self) -> float:
@@ -129,23 +112,13 @@ def _finite(value: float) -> float | None:
 
 @dataclass(frozen=True, eq=False)
 class ShaftDeflection:
-    """One shaft at rest under load, by one model.
-
-    Attributes
-    ----------
-    stations : (s,) ndarray
-        Along the shaft, m; empty of a model without a body.
-    line : (s, 6) ndarray
-        Motions of cross-sections there (mean, weighted by mass), m and rad.
-    ports : dict of str to (6,) ndarray
-        Motions of lumped points, bearings and other stations.
-    """
+    """One shaft at rest under load, by one model."""
 
     name: str
     model: str
-    stations: np.ndarray
-    line: np.ndarray
-    ports: dict[str, np.ndarray]
+    stations: np.ndarray  #: (s,) along the shaft, m; empty of a model without a body
+    line: np.ndarray  #: (s, 6) motions of cross-sections there (mean, weighted by mass), m and rad
+    ports: dict[str, np.ndarray]  #: motions of lumped points, bearings and other stations
     bearings: tuple[BearingState, ...]
 
     @property
@@ -168,19 +141,11 @@ class ShaftDeflection:
 
 @dataclass(frozen=True, eq=False)
 class SceneDeflection:
-    """A shaft at rest under the load of its scene, by several models.
-
-    Attributes
-    ----------
-    load : (6,) ndarray
-        At the lumped point, N and N m.
-    shafts : tuple of ShaftDeflection
-        One a model, the finest last.
-    """
+    """A shaft at rest under the load of its scene, by several models."""
 
     title: str
-    load: np.ndarray
-    shafts: tuple[ShaftDeflection, ...]
+    load: np.ndarray  #: (6,) at the lumped point, N and N m
+    shafts: tuple[ShaftDeflection, ...]  #: one a model, the finest last
 
     def as_dict(self) -> dict:
         """Plain data in SI that JSON can hold."""

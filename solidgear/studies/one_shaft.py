@@ -27,29 +27,15 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class OneShaft(Side):
-    """A shaft, solved with bars.
-
-    Attributes
-    ----------
-    values : dict of Quantity to float
-        SI.
-    modes : ModeSet
-        The list that the scene asks for, and what was solved above it.
-    bars : dict of str to float
-        Relative, of quantities and modes.
-    mass : float
-        Of the shaft without what sits on it, kg.
-    mass_bar : float or None
-        Relative; that of rounding where it has a closed form, None elsewhere.
-    """
+    """A shaft, solved with bars."""
 
     scene: Scene
     settled: Settled
-    values: Values
+    values: Values  #: SI
     modes: ModeSet
-    bars: dict[str, float]
-    mass: float
-    mass_bar: float | None
+    bars: dict[str, float]  #: relative, of quantities and modes
+    mass: float  #: of the shaft without what sits on it, kg
+    mass_bar: float | None  #: relative; that of rounding where it has a closed form, None elsewhere
 
     @property
     def title(self) -> str:

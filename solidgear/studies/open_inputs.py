@@ -41,27 +41,15 @@ THREE = tuple((place, 1 / 3) for place in (1 / 6, 0.5, 5 / 6))
 
 @dataclass(frozen=True)
 class OpenInput:
-    """An input with its range.
-
-    Attributes
-    ----------
-    path : str
-    source : str
-        What it belongs to: ``bearings``, ``load`` or ``material``.
-    said : str
-        The range in words.
-    low, high : float
-        Factors of what the scene says; places, 0 and 1, of an inside and of a clearance.
-    usual : float
-        Place in the range, 0 to 1, of what the scene says.
-    """
+    """An input with its range."""
 
     path: str
-    source: str
-    said: str
+    source: str  #: what it belongs to: ``bearings``, ``load`` or ``material``
+    said: str  #: the range in words
+    #: low, high: factors of what the scene says; places, 0 and 1, of an inside and of a clearance
     low: float = 0.0
     high: float = 1.0
-    usual: float = 0.5
+    usual: float = 0.5  #: place in the range, 0 to 1, of what the scene says
 
     def value(self, place: float) -> float:
         """The factor, or the place, at a place of the range."""

@@ -14,63 +14,32 @@ from solidgear.studies.wishes import Wish
 
 @dataclass(frozen=True)
 class Design:
-    """A design that was solved.
+    """A design that was solved."""
 
-    Attributes
-    ----------
-    number : int
-        In order; 0 is the file as it is.
-    values : dict of str to float
-        Of what varies, SI.
-    value, bar : float or None
-        Of the goal.
-    kept : bool
-        Whether every limit is kept with its bar.
-    status : str
-        ``ok``, or why it has no numbers.
-    row : dict
-        All numbers.
-    """
-
-    number: int
-    values: dict[str, Any]
+    number: int  #: in order; 0 is the file as it is
+    values: dict[str, Any]  #: of what varies, SI
+    #: value, bar: of the goal
     value: float | None
     bar: float | None
-    kept: bool
-    status: str
-    row: dict[str, Any]
+    kept: bool  #: whether every limit is kept with its bar
+    status: str  #: ``ok``, or why it has no numbers
+    row: dict[str, Any]  #: all numbers
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Optimum(Displayed):
-    """Result of a search.
-
-    Attributes
-    ----------
-    goal : Wish
-    keep : tuple of Wish
-    path : tuple of Design
-        All designs, the file as it is first.
-    best : Design or None
-        None where no design keeps every limit.
-    at_end : tuple of str
-        Entries of the best design that are at an end of their range.
-    how : str
-        What was searched.
-    model : str or None
-        That was given, and has no bars.
-    """
+    """Result of a search."""
 
     shown: ClassVar[str] = "optimum"
 
     scene: str
     goal: Wish
     keep: tuple[Wish, ...]
-    path: tuple[Design, ...]
-    best: Design | None
-    at_end: tuple[str, ...]
-    how: str = ""
-    model: str | None = None
+    path: tuple[Design, ...]  #: all designs, the file as it is first
+    best: Design | None  #: none where no design keeps every limit
+    at_end: tuple[str, ...]  #: entries of the best design that are at an end of their range
+    how: str = ""  #: what was searched
+    model: str | None = None  #: that was given, and has no bars
 
     @property
     def gain(self) -> Change | None:

@@ -28,21 +28,13 @@ _NO_FREQUENCY = ("rpm", "1/min", "r/min", "cpm", "order", "khz", "rad", "time")
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """A measured spectrum.
+    """A measured spectrum."""
 
-    Attributes
-    ----------
-    name : str
-        Of the file.
-    what, unit : str
-        Of the amplitude, as the first line of the file says; empty without one.
-    frequency_hz, amplitude : (n,) ndarray
-        Frequencies ascend.
-    """
-
-    name: str
+    name: str  #: of the file
+    #: what, unit: of the amplitude, as the first line of the file says; empty without one
     what: str
     unit: str
+    #: frequency_hz, amplitude: (n,) frequencies ascend
     frequency_hz: np.ndarray
     amplitude: np.ndarray
 

@@ -51,26 +51,15 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class NumberChange:
-    """A number of both shafts.
+    """A number of both shafts."""
 
-    Attributes
-    ----------
-    name : str
-        Quantity, or ``mass``.
-    unit : str
-        SI.
-    scale : float
-        What its difference is relative to: of couplings the geometric mean of both diagonal entries
-        of A, of all else the number of A.
-    partner : str
-        Name of the mode of B where that is another one, else nothing.
-    """
-
-    name: str
-    unit: str
+    name: str  #: quantity, or ``mass``
+    unit: str  #: SI
     change: Change
+    #: what its difference is relative to: of couplings the geometric mean of both diagonal entries
+    #: of A, of all else the number of A
     scale: float
-    partner: str = ""
+    partner: str = ""  #: name of the mode of B where that is another one, else nothing
 
     @property
     def relative(self) -> float | None:
@@ -107,22 +96,15 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
         By frequency.
     pairing : str
         How modes belong together, in words.
-    tolerance : float
-        Relative, that every bar was brought to.
-    changes : tuple of NumberChange
-        Mass, entries of C and K at the lumped points, first frequencies.
-    alone : dict of str to tuple of str
-        Numbers that one has and the other does not, by letter.
-    open : tuple of OpenNumbers
-        What the data of each leave open.
     """
 
     shown: ClassVar[str] = "two_shafts"
 
-    tolerance: float
+    tolerance: float  #: relative, that every bar was brought to
+    #: mass, entries of C and K at the lumped points, first frequencies
     changes: tuple[NumberChange, ...]
-    alone: dict[str, tuple[str, ...]]
-    open: tuple[OpenNumbers, OpenNumbers]
+    alone: dict[str, tuple[str, ...]]  #: numbers that one has and the other does not, by letter
+    open: tuple[OpenNumbers, OpenNumbers]  #: what the data of each leave open
 
     @property
     def asks(self) -> bool:

@@ -20,21 +20,11 @@ _FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
 
 @dataclass(frozen=True)
 class Wish:
-    """A number of a design that is to be large or small, or to stay beyond a limit.
+    """A number of a design that is to be large or small, or to stay beyond a limit."""
 
-    Attributes
-    ----------
-    name : str
-        ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``.
-    upward : bool
-        Large is good.
-    limit : float or None
-        SI; None of a goal.
-    """
-
-    name: str
-    upward: bool
-    limit: float | None = None
+    name: str  #: ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``
+    upward: bool  #: large is good
+    limit: float | None = None  #: SI; None of a goal
 
     def of(self, row: dict[str, Any]) -> tuple[float, float | None] | None:
         """Value of a design and its bar, SI; None where it has no number, or no bar."""

@@ -123,30 +123,19 @@ class PlanetError:
 
 @dataclass(frozen=True, eq=False)
 class CarrierTurn:
-    """Forces of a planetary stage over a turn of its carrier.
+    """Forces of a planetary stage over a turn of its carrier."""
 
-    Attributes
-    ----------
-    angle : (a,) ndarray
-        Of the carrier, rad.
-    sun_mesh, ring_mesh : (a, N) ndarray
-        Of every planet, N; negative ones would need teeth that pull.
-    pin_load : (a, N, 6) ndarray
-        Force and moment of every planet on the carrier, in the planet's axes, N and N m.
-    shift : mapping of str to (a, 6) ndarray
-        Of members on fixed supports, in space, m and rad.
-    support : mapping of str to (a, 6) ndarray
-        Force and moment of those members on their supports, in space, N and N m.
-    torque : mapping of str to (a,) ndarray
-        Of the planets on sun, ring and carrier, N m; their sum is zero.
-    """
-
-    angle: np.ndarray
+    angle: np.ndarray  #: (a,) of the carrier, rad
+    #: sun_mesh, ring_mesh: (a, N) of every planet, N; negative ones would need teeth that pull
     sun_mesh: np.ndarray
     ring_mesh: np.ndarray
+    #: (a, N, 6) force and moment of every planet on the carrier, in the planet's axes, N and N m
     pin_load: np.ndarray
+    #: of members on fixed supports, in space, m and rad
     shift: Mapping[str, np.ndarray] = field(repr=False)
+    #: force and moment of those members on their supports, in space, N and N m
     support: Mapping[str, np.ndarray] = field(repr=False)
+    #: of the planets on sun, ring and carrier, N m; their sum is zero
     torque: Mapping[str, np.ndarray] = field(repr=False)
 
     @property

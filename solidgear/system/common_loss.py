@@ -41,21 +41,11 @@ SAME = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class CommonLoss:
-    """Loss that all springs share, and the rest that some have beside it.
+    """Loss that all springs share, and the rest that some have beside it."""
 
-    Attributes
-    ----------
-    eta : float
-        Above zero.
-    rows : (r, N) ndarray
-        Strain rows of those that differ.
-    more : (r,) ndarray
-        Their loss factors less the common one.
-    """
-
-    eta: float
-    rows: np.ndarray
-    more: np.ndarray
+    eta: float  #: above zero
+    rows: np.ndarray  #: (r, N) strain rows of those that differ
+    more: np.ndarray  #: (r,) their loss factors less the common one
 
 
 def common_loss(system: System, loss: Mapping[str, float]) -> CommonLoss | None:

@@ -32,15 +32,6 @@ from solidgear.errors import SolidgearError
 class ContactWrench:
     """The force and moment of contact cells, and the mesh points that stand for them.
 
-    Attributes
-    ----------
-    force : (3,) ndarray
-        F, N.
-    moment : (3,) ndarray
-        M about the origin of the cells, N m.
-    centre : (3,) ndarray
-        Mean place of the cells, weighted by force, m.
-
     Examples
     --------
     Two cells of one normal: a force at their middle, and nothing is left:
@@ -51,9 +42,9 @@ class ContactWrench:
     (array([0.2, 0. , 0. ]), 0.0)
     """
 
-    force: np.ndarray
-    moment: np.ndarray
-    centre: np.ndarray
+    force: np.ndarray  #: (3,) F, N
+    moment: np.ndarray  #: (3,) M about the origin of the cells, N m
+    centre: np.ndarray  #: (3,) mean place of the cells, weighted by force, m
 
     @property
     def normal(self) -> np.ndarray:

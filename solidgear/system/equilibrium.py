@@ -47,24 +47,13 @@ ROUNDING = 1e-10
 
 @dataclass(frozen=True)
 class Seats:
-    """Bearings of one part.
-
-    Attributes
-    ----------
-    bearings : tuple of Mounted
-        On ports of the part.
-    places : tuple of float
-        Of the bearings along the shaft, m.
-    housing : float or Housing or None
-        Between all of them and ground, or what they stand in.
-    stands_in : tuple of str
-        Ports of another part that the outer rings move rigidly with; ground without any.
-    """
+    """Bearings of one part."""
 
     part: str
-    bearings: tuple[Mounted, ...]
-    places: tuple[float, ...]
-    housing: float | Housing | None = None
+    bearings: tuple[Mounted, ...]  #: on ports of the part
+    places: tuple[float, ...]  #: of the bearings along the shaft, m
+    housing: float | Housing | None = None  #: between all of them and ground, or what they stand in
+    #: ports of another part that the outer rings move rigidly with; ground without any
     stands_in: tuple[str, ...] = ()
 
     @property
@@ -75,27 +64,16 @@ class Seats:
 
 @dataclass(frozen=True, eq=False)
 class SystemEquilibrium:
-    """A system at rest under loads; by ports of the system, ``part.port``.
+    """A system at rest under loads; by ports of the system, ``part.port``."""
 
-    Attributes
-    ----------
-    coordinates : (N,) ndarray
-        Motions times rows of the system give displacements from where nothing is loaded.
-    relative : dict of str to (6,) ndarray
-        Motion of each bearing's inner ring against its outer one, m and rad.
-    load : dict of str to (6,) ndarray
-        What each bearing carries: the load of the shaft on it, N and N m.
-    tangent : dict of str to (6, 6) ndarray
-        Of each bearing alone, at that point.
-    lost : tuple of str
-        Bearings that carry nothing.
-    """
-
+    #: (N,) motions times rows of the system give displacements from where nothing is loaded
     coordinates: np.ndarray
+    #: motion of each bearing's inner ring against its outer one, m and rad
     relative: dict[str, np.ndarray]
+    #: what each bearing carries: the load of the shaft on it, N and N m
     load: dict[str, np.ndarray]
-    tangent: dict[str, np.ndarray]
-    lost: tuple[str, ...]
+    tangent: dict[str, np.ndarray]  #: of each bearing alone, at that point
+    lost: tuple[str, ...]  #: bearings that carry nothing
     _state: np.ndarray = field(repr=False, default_factory=lambda: np.zeros(0))
 
 

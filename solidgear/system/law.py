@@ -69,26 +69,6 @@ class Gap:
     and c(d) grows from zero to `damper` over the depth `ramp` as ``3 u^2 - 2 u^3``, so that an impact
     begins without a jump; :meth:`impact` has it as multi-body programs do.
 
-    Attributes
-    ----------
-    drive : float
-        Stiffness k of the side of positive stretch, N/m^exponent.
-    half_gap : float
-        b, m: the gap is 2 b wide, around the stretch zero.
-    coast : float, optional
-        Stiffness of the other side; that of the first without it, 0 for none.
-    exponent : float
-        1 for straight pieces, 1.5 for Hertz.
-    damper : float
-        N s/m, in contact alone.
-    ramp : float
-        Depth of full damping, m.
-    rounding : float
-        Width over which the edge is rounded, m; the force is then off by ``rounding / 2`` times its
-        slope at most, at the edge itself.
-    pulls : bool
-        Whether the damper may hold back what leaves; without it sides that touch only ever press.
-
     Raises
     ------
     SolidgearError
@@ -103,13 +83,17 @@ class Gap:
     250000000.0
     """
 
-    drive: float
-    half_gap: float
+    drive: float  #: stiffness k of the side of positive stretch, N/m^exponent
+    half_gap: float  #: b, m: the gap is 2 b wide, around the stretch zero
+    #: stiffness of the other side; that of the first without it, 0 for none
     coast: float | None = None
-    exponent: float = 1.0
-    damper: float = 0.0
-    ramp: float = 0.0
+    exponent: float = 1.0  #: 1 for straight pieces, 1.5 for Hertz
+    damper: float = 0.0  #: N s/m, in contact alone
+    ramp: float = 0.0  #: depth of full damping, m
+    #: width over which the edge is rounded, m; the force is then off by ``rounding / 2`` times its
+    #: slope at most, at the edge itself
     rounding: float = 0.0
+    #: whether the damper may hold back what leaves; without it sides that touch only ever press
     pulls: bool = True
 
     @classmethod
@@ -263,13 +247,6 @@ class Gap:
 class RadialGap:
     """Clearance all around, of a bearing or a seal that rubs, on two rows across each other.
 
-    Attributes
-    ----------
-    radial : float
-        Stiffness of the contact, N/m.
-    clearance : float
-        m, from the middle to contact.
-
     Examples
     --------
     >>> seat = RadialGap(1e7, 20e-6)
@@ -277,8 +254,8 @@ class RadialGap:
     array([[60., 80.]])
     """
 
-    radial: float
-    clearance: float
+    radial: float  #: stiffness of the contact, N/m
+    clearance: float  #: m, from the middle to contact
 
     def __post_init__(self):
         positive("the stiffness of a seat with clearance", self.radial)

@@ -255,16 +255,10 @@ class PortInertia:
 
 @dataclass(frozen=True, eq=False)
 class HousedSprings:
-    """Springs of several ports to ground that act on one another, such as bearings in one housing.
-
-    Attributes
-    ----------
-    supports : Supports
-        Of as many ports, in their order.
-    """
+    """Springs of several ports to ground that act on one another, such as bearings in one housing."""
 
     at: tuple[str, ...]
-    supports: Supports
+    supports: Supports  #: of as many ports, in their order
 
     @property
     def ends(self) -> tuple[str, ...]:

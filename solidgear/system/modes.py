@@ -16,28 +16,16 @@ TINY = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class SystemModes:
-    """Undamped modes of a :class:`System`.
+    """Undamped modes of a :class:`System`."""
 
-    Attributes
-    ----------
-    frequency_hz : (k,) ndarray
-        Ascending; rigid motions are exactly 0.0.
-    shapes : (N, k) ndarray
-        On the coordinates of the system, mass-normalised.
-    energy : dict of str to (k,) ndarray
-        Fraction of each mode's strain energy in every elastic part and link; zero in rigid motions.
-    error_bound : (k,) ndarray
-        Largest relative error of each frequency that the reduction of parts leaves, proven
-        (:mod:`solidgear.system.bound`); infinite where nothing can be promised.
-    residual : float
-        Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``.
-    """
-
-    frequency_hz: np.ndarray
-    shapes: np.ndarray
+    frequency_hz: np.ndarray  #: (k,) ascending; rigid motions are exactly 0.0
+    shapes: np.ndarray  #: (N, k) on the coordinates of the system, mass-normalised
+    #: fraction of each mode's strain energy in every elastic part and link; zero in rigid motions
     energy: Mapping[str, np.ndarray]
+    #: (k,) largest relative error of each frequency that the reduction of parts leaves, proven
+    #: (:mod:`solidgear.system.bound`); infinite where nothing can be promised
     error_bound: np.ndarray
-    residual: float
+    residual: float  #: largest ``|K u - w^2 M u|`` relative to ``|K| |u|``
 
     @property
     def rigid(self) -> int:

@@ -136,13 +136,6 @@ class Inertia:
 class PlanarBody:
     """A rigid body that moves across its axis and turns about it: x, z and thy.
 
-    Attributes
-    ----------
-    mass : (3, 3) array_like
-        Symmetric positive definite, at the origin of the part, order x z thy, kg and kg m^2.
-    points : mapping of str to (3,) array_like
-        Ports and where they are, m; by default one, ``centre``, on the axis.
-
     Examples
     --------
     >>> import numpy as np
@@ -151,7 +144,9 @@ class PlanarBody:
     array([ 0. ,  1. , -0.1])
     """
 
+    #: (3, 3) symmetric positive definite, at the origin of the part, order x z thy, kg and kg m^2
     mass: np.ndarray
+    #: ports and where they are, m; by default one, ``centre``, on the axis
     points: Mapping[str, ArrayLike] = field(default_factory=lambda: {"centre": (0.0, 0.0, 0.0)})
 
     def __post_init__(self):

@@ -47,29 +47,20 @@ NAMES = (
 
 
 class PlanetaryMode(NamedTuple):
-    """Modes of a stage at one natural frequency.
+    """Modes of a stage at one natural frequency."""
 
-    Attributes
-    ----------
-    kind : str
-        ``rotational`` (central members turn only), ``translational`` (they shift only), ``planet``
-        (they rest); ``axial``, ``tilting``, ``planet-tilting`` (the same out of the plane);
-        ``rotational-axial``, ``translational-tilting`` (helical teeth couple both); ``ring``
-        (nothing but the waves of an elastic ring); or ``mixed``, which a stage of equal planets at
-        equal angles has none of.
-    number : int
-        Among those of its kind, from 1.
-    multiplicity : int
-        Of equal frequencies; 2 of ``translational``, N - 3 of ``planet`` in a stage of N equal
-        planets at equal angles.
-    shapes : (n, multiplicity) ndarray
-        On the coordinates of the stage's system, mass-normalised.
-    """
-
+    #: ``rotational`` (central members turn only), ``translational`` (they shift only), ``planet``
+    #: (they rest); ``axial``, ``tilting``, ``planet-tilting`` (the same out of the plane);
+    #: ``rotational-axial``, ``translational-tilting`` (helical teeth couple both); ``ring``
+    #: (nothing but the waves of an elastic ring); or ``mixed``, which a stage of equal planets at
+    #: equal angles has none of
     kind: str
-    number: int
+    number: int  #: among those of its kind, from 1
     frequency_hz: float
+    #: of equal frequencies; 2 of ``translational``, N - 3 of ``planet`` in a stage of N equal
+    #: planets at equal angles
     multiplicity: int
+    #: (n, multiplicity) on the coordinates of the stage's system, mass-normalised
     shapes: np.ndarray
 
     @property

@@ -43,38 +43,22 @@ STILL = 1e-6
 
 
 class TurningTerms(NamedTuple):
-    """Matrices (N, N) of ``M q'' + G q' + (K - C + P) q`` on the coordinates of the stage's system.
+    """Matrices (N, N) of ``M q'' + G q' + (K - C + P) q`` on the coordinates of the stage's system."""
 
-    Attributes
-    ----------
-    gyroscopic, centrifugal, pull : ndarray
-        G, skew-symmetric, kg/s and kg m^2/s; C and P, symmetric, N/m and N m/rad.
-    """
-
+    #: gyroscopic, centrifugal, pull: G, skew-symmetric, kg/s and kg m^2/s; C and P, symmetric, N/m
+    #: and N m/rad
     gyroscopic: np.ndarray
     centrifugal: np.ndarray
     pull: np.ndarray
 
 
 class TurningMode(NamedTuple):
-    """Mode of a stage whose carrier turns.
+    """Mode of a stage whose carrier turns."""
 
-    Attributes
-    ----------
-    kind : str
-        As of :class:`solidgear.system.planetary_modes.PlanetaryMode`.
-    frequency_hz : float
-        In axes that turn with the carrier.
-    growth : float
-        1/s; 0 but for rounding where the stage is stable.
-    shape : (N,) complex ndarray
-        Amplitudes of ``exp(i w t)``, of unit ``q* M q``.
-    """
-
-    kind: str
-    frequency_hz: float
-    growth: float
-    shape: np.ndarray
+    kind: str  #: as of :class:`solidgear.system.planetary_modes.PlanetaryMode`
+    frequency_hz: float  #: in axes that turn with the carrier
+    growth: float  #: 1/s; 0 but for rounding where the stage is stable
+    shape: np.ndarray  #: (N,) amplitudes of ``exp(i w t)``, of unit ``q* M q``
 
 
 def speeds(stage: PlanetaryStage, carrier: float, ring: float) -> dict[str, float]:

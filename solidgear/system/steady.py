@@ -69,14 +69,6 @@ ON_A_POLE = 8 * float(np.finfo(float).eps)
 class SteadyState:
     """A system with its losses, ready for many loads and frequencies.
 
-    Attributes
-    ----------
-    loss : mapping of str to float
-        Loss factor eta of parts and links.
-    kind : {'hysteretic', 'viscous', 'modal'}
-    matched_hz : float
-        Where viscous losses have their loss factor, Hz.
-
     Raises
     ------
     SolidgearError
@@ -94,9 +86,9 @@ class SteadyState:
     """
 
     system: System
-    loss: Mapping[str, float] = field(default_factory=dict)
+    loss: Mapping[str, float] = field(default_factory=dict)  #: loss factor eta of parts and links
     kind: str = "hysteretic"
-    matched_hz: float = 0.0
+    matched_hz: float = 0.0  #: where viscous losses have their loss factor, Hz
 
     def __post_init__(self):
         if self.kind not in KINDS:

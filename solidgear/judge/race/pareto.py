@@ -23,46 +23,25 @@ AUTOMATIC = "automatic"
 
 @dataclass
 class Row:
-    """One discretisation and its result.
+    """One discretisation and its result."""
 
-    Attributes
-    ----------
-    family : str
-        lumped, beam, harmonic, tetrahedra or hexahedra.
-    series : str
-        Cases of ever higher cost belong to one series, such as ``HEX20 graded``.
-    level : int
-        Place in the series, from 1.
-    model : str
-        lumped, euler, timoshenko, harmonic or solid.
-    options : dict
-        Of the builder.
-    status : str
-        ``waiting``, ``ok``, ``failed`` or ``left out``.
-    reason : str
-        Why it failed, was left out, lacks a number or has fewer runs.
-    samples : list of float
-        Wall seconds of every run; of a failed case the seconds until it failed.
-    values, errors, like_for_like : dict of str to float
-        By quantity: SI value; ``|value / reference - 1|``; for beams and lumped models the same
-        against the reference with section ties. ``errors`` also has ``C 6x6``: the largest
-        ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists.
-    taken : list of float
-        Processor seconds of every run, which a budget counts; not written.
-    """
-
-    family: str
-    series: str
-    level: int
-    model: str
-    options: dict
-    status: str = "waiting"
-    reason: str = ""
+    family: str  #: lumped, beam, harmonic, tetrahedra or hexahedra
+    series: str  #: cases of ever higher cost belong to one series, such as ``HEX20 graded``
+    level: int  #: place in the series, from 1
+    model: str  #: lumped, euler, timoshenko, harmonic or solid
+    options: dict  #: of the builder
+    status: str = "waiting"  #: ``waiting``, ``ok``, ``failed`` or ``left out``
+    reason: str = ""  #: why it failed, was left out, lacks a number or has fewer runs
     unknowns: int | None = None
+    #: wall seconds of every run; of a failed case the seconds until it failed
     samples: list[float] = field(default_factory=list)
+    #: values, errors, like_for_like: by quantity: SI value; ``|value / reference - 1|``; for beams
+    #: and lumped models the same against the reference with section ties. ``errors`` also has ``C
+    #: 6x6``: the largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists.
     values: dict[str, float] = field(default_factory=dict)
     errors: dict[str, float] = field(default_factory=dict)
     like_for_like: dict[str, float] = field(default_factory=dict)
+    #: processor seconds of every run, which a budget counts; not written
     taken: list[float] = field(default_factory=list, compare=False)
 
     @property
@@ -73,34 +52,20 @@ class Row:
 
 @dataclass
 class Race:
-    """Rows, and what they are measured against.
-
-    Attributes
-    ----------
-    reference : dict
-        ``model`` (its title), ``options``, ``unknowns``, ``seconds``, and by quantity ``values``, ``bands`` and
-        ``like_for_like``.
-    setup : dict of str to float
-        Seconds a process pays once, by what for.
-    runs, modes : int
-        Runs asked for; elastic shapes that every model is asked for.
-    budget : float
-        Allowed for the rows, s of processor time.
-    seconds : float
-        Used for all, the reference included.
-    complete : bool
-        False after an interrupt.
-    """
+    """Rows, and what they are measured against."""
 
     scene: dict
+    #: ``model`` (its title), ``options``, ``unknowns``, ``seconds``, and by quantity ``values``,
+    #: ``bands`` and ``like_for_like``
     reference: dict
     rows: list[Row]
-    setup: dict[str, float]
+    setup: dict[str, float]  #: seconds a process pays once, by what for
+    #: runs, modes: runs asked for; elastic shapes that every model is asked for
     runs: int
     modes: int
-    budget: float
-    seconds: float = 0.0
-    complete: bool = True
+    budget: float  #: allowed for the rows, s of processor time
+    seconds: float = 0.0  #: used for all, the reference included
+    complete: bool = True  #: false after an interrupt
     environment: dict = field(default_factory=environment)
 
     def error(self, row: Row, quantity: str) -> float | None:

@@ -43,56 +43,28 @@ VOLUMES = ("wedge", "pyramid", "hexahedron", "tetra", "polyhedron", "VTK_LAGRANG
 
 @dataclass(frozen=True)
 class Group:
-    """Elements that a file gives a name.
+    """Elements that a file gives a name."""
 
-    Attributes
-    ----------
-    name : str
-        As one writes it in a scene.
-    elements : (n,) ndarray of int
-        Places in :attr:`Deck.cells`.
-    tells : bool
-        Whether such groups are made to tell materials, and not, say, where loads act.
-    """
-
-    name: str
-    elements: np.ndarray
+    name: str  #: as one writes it in a scene
+    elements: np.ndarray  #: (n,) places in :attr:`Deck.cells`
+    #: whether such groups are made to tell materials, and not, say, where loads act
     tells: bool = True
 
 
 @dataclass(frozen=True)
 class Deck:
-    """A mesh as its file has it.
+    """A mesh as its file has it."""
 
-    Attributes
-    ----------
-    points : (3, n) ndarray
-        In the unit of the file.
-    kind : str
-        Of its cells, one of `KINDS`.
-    cells : (nodes, ne) ndarray of int
-        In VTK's order of nodes.
-    numbers : (ne,) ndarray of int or None
-        By which the file calls its elements.
-    lines : (ne,) ndarray of int or None
-        Where in the file they begin, counted from 1.
-    remarks : tuple of str
-        What is odd about the file, but no fault.
-    patches : dict of str to ndarray
-        Corners (3 or 4, n) of the faces of named groups of surfaces.
-    materials : tuple of FileMaterial
-        That the file says itself, of its groups.
-    """
-
-    points: np.ndarray
-    kind: str
-    cells: np.ndarray
+    points: np.ndarray  #: (3, n) in the unit of the file
+    kind: str  #: of its cells, one of `KINDS`
+    cells: np.ndarray  #: (nodes, ne) in VTK's order of nodes
     groups: tuple[Group, ...] = ()
-    numbers: np.ndarray | None = None
-    lines: np.ndarray | None = None
-    remarks: tuple[str, ...] = ()
+    numbers: np.ndarray | None = None  #: (ne,) by which the file calls its elements
+    lines: np.ndarray | None = None  #: (ne,) where in the file they begin, counted from 1
+    remarks: tuple[str, ...] = ()  #: what is odd about the file, but no fault
+    #: corners (3 or 4, n) of the faces of named groups of surfaces
     patches: Mapping[str, np.ndarray] = field(default_factory=dict)
-    materials: tuple[FileMaterial, ...] = ()
+    materials: tuple[FileMaterial, ...] = ()  #: that the file says itself, of its groups
 
     def named(self, place: int) -> str:
         """An element in a sentence, by its place in :attr:`cells`."""

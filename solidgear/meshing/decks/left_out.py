@@ -78,21 +78,12 @@ def sort_of(name: str, known: Sorts) -> str | None:
 
 @dataclass
 class LeftOut:
-    """Tally of what a deck carries beside its solid elements.
+    """Tally of what a deck carries beside its solid elements."""
 
-    Attributes
-    ----------
-    counts : dict of (str, str) to int
-        By sort and name.
-    masses : list of float
-        In the unit of the deck, of those whose number it says.
-    at : tuple of float or None
-        Of the first of these, in the unit of the file.
-    """
-
-    counts: dict[tuple[str, str], int] = field(default_factory=dict)
+    counts: dict[tuple[str, str], int] = field(default_factory=dict)  #: by sort and name
+    #: in the unit of the deck, of those whose number it says
     masses: list[float] = field(default_factory=list)
-    at: tuple[float, ...] | None = None
+    at: tuple[float, ...] | None = None  #: of the first of these, in the unit of the file
 
     def add(self, sort: str, name: str, count: int = 1) -> None:
         """Count some of one name."""

@@ -22,16 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class BeamLine:
-    """Nodes of a beam along the profile of its shaft.
-
-    Attributes
-    ----------
-    nodes : (n,) ndarray
-        Axial positions, m.
-    """
+    """Nodes of a beam along the profile of its shaft."""
 
     shaft: Shaft
-    nodes: np.ndarray
+    nodes: np.ndarray  #: (n,) axial positions, m
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """The profile of the shaft, each section of it a rigid disc."""

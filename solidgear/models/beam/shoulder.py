@@ -77,20 +77,11 @@ def grown(ratio: float, thin: Material, thick: Material) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Hinge:
-    """Compliance of a shoulder, to be added to the first element of the thick part.
+    """Compliance of a shoulder, to be added to the first element of the thick part."""
 
-    Attributes
-    ----------
-    y : float
-        Of the step, m.
-    ahead : bool
-        Whether the thick part lies at larger y.
-    bend, stretch, twist : float
-        rad/(N m), m/N and rad/(N m).
-    """
-
-    y: float
-    ahead: bool
+    y: float  #: of the step, m
+    ahead: bool  #: whether the thick part lies at larger y
+    #: bend, stretch, twist: rad/(N m), m/N and rad/(N m)
     bend: float
     stretch: float
     twist: float

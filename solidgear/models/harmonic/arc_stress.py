@@ -34,25 +34,16 @@ class ArcStress:
     """Stress along the arc of a fillet, from the cylinder to the face.
 
     Of harmonic n >= 1 these are amplitudes: `shear` goes with sin nt, the others with cos nt.
-
-    Attributes
-    ----------
-    angle : (q,) ndarray
-        From where the arc leaves the cylinder, rad.
-    along, around, shear : (q,) ndarray
-        Normal stress along the meridian and around the axis, and shear between them, Pa.
-    traction : (q,) ndarray
-        Size of what should be no traction, Pa.
-    slope : (2, q) ndarray
-        Derivative of `along` and `shear` along the normal, outwards, Pa/m.
     """
 
-    angle: np.ndarray
+    angle: np.ndarray  #: (q,) from where the arc leaves the cylinder, rad
+    #: along, around, shear: (q,) normal stress along the meridian and around the axis, and shear
+    #: between them, Pa
     along: np.ndarray
     around: np.ndarray
     shear: np.ndarray
-    traction: np.ndarray
-    slope: np.ndarray
+    traction: np.ndarray  #: (q,) size of what should be no traction, Pa
+    slope: np.ndarray  #: (2, q) derivative of `along` and `shear` along the normal, outwards, Pa/m
 
 
 class Arc:

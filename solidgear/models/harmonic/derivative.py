@@ -33,26 +33,15 @@ from solidgear.solve.adjoint import Form, State
 
 @dataclass
 class Push:
-    """Derivatives of one number by all that may move.
+    """Derivatives of one number by all that may move."""
 
-    Attributes
-    ----------
-    nodes : (2, n) ndarray
-        By r and y of the nodes.
-    planes : (p,) ndarray
-        By the reference points of the ports.
-    ends : (p, 2) ndarray
-        By the ends of their seats, beyond what the mesh moves.
-    surface : (2, k, 2) ndarray
-        By the radius of the surface outside and in the bore, at both ends of its cells, beyond that.
-    lame, shear, density : (s,) ndarray
-        By Lame's constants and the density of every segment.
-    """
-
-    nodes: np.ndarray
-    planes: np.ndarray
-    ends: np.ndarray
+    nodes: np.ndarray  #: (2, n) by r and y of the nodes
+    planes: np.ndarray  #: (p,) by the reference points of the ports
+    ends: np.ndarray  #: (p, 2) by the ends of their seats, beyond what the mesh moves
+    #: (2, k, 2) by the radius of the surface outside and in the bore, at both ends of its cells,
+    #: beyond that
     surface: list[np.ndarray]
+    #: lame, shear, density: (s,) by Lame's constants and the density of every segment
     lame: np.ndarray
     shear: np.ndarray
     density: np.ndarray

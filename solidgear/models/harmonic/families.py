@@ -38,15 +38,9 @@ def strains(n: int) -> tuple[np.ndarray, ...]:
 
 @dataclass(frozen=True)
 class Family:
-    """One family of motion.
+    """One family of motion."""
 
-    Attributes
-    ----------
-    waves : int
-        Around the axis; :data:`TORSION` of torsion.
-    """
-
-    waves: int
+    waves: int  #: around the axis; :data:`TORSION` of torsion
 
     @property
     def count(self) -> int:

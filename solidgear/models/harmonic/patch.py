@@ -30,25 +30,14 @@ from solidgear.scene import Scene
 
 @dataclass(frozen=True)
 class Patch:
-    """Patch of a shaft that teeth touch.
+    """Patch of a shaft that teeth touch."""
 
-    Attributes
-    ----------
-    first, last : float
-        Its ends along the shaft, m.
-    angle : float
-        Of its middle, rad; 0 on the z axis, a quarter turn on the x axis.
-    arc : float
-        Of the circumference, rad.
-    inside : bool
-        On the inner surface, as of a ring.
-    """
-
+    #: first, last: its ends along the shaft, m
     first: float
     last: float
-    angle: float
-    arc: float
-    inside: bool = False
+    angle: float  #: of its middle, rad; 0 on the z axis, a quarter turn on the x axis
+    arc: float  #: of the circumference, rad
+    inside: bool = False  #: on the inner surface, as of a ring
 
     @property
     def axes(self) -> np.ndarray:

@@ -42,22 +42,13 @@ _TURN = sp.csr_matrix([[0.0, -1.0], [1.0, 0.0]])
 
 @dataclass(frozen=True)
 class Sector:
-    """Nodes of a sector and how they repeat themselves.
+    """Nodes of a sector and how they repeat themselves."""
 
-    Attributes
-    ----------
-    count : int
-        Sectors around, at least 3.
-    master, slave : (k,) ndarray of int
-        Nodes on both cut faces, one the image of the other.
-    axis : (a,) ndarray of int
-        Nodes on the axis.
-    """
-
-    count: int
+    count: int  #: sectors around, at least 3
+    #: master, slave: (k,) nodes on both cut faces, one the image of the other
     master: np.ndarray
     slave: np.ndarray
-    axis: np.ndarray
+    axis: np.ndarray  #: (a,) nodes on the axis
 
     @property
     def angle(self) -> float:

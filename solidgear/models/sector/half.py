@@ -52,23 +52,15 @@ _MIRROR6 = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 
 @dataclass(frozen=True)
 class HalfSector:
-    """Places of the nodes of half a sector.
+    """Places of the nodes of half a sector."""
 
-    Attributes
-    ----------
-    count : int
-        Sectors around, at least 3.
-    middle, cut, axis : ndarray of int
-        Nodes on the middle plane and on the cut face without the axis, and on the axis.
-    turn : float
-        Angle of the middle of the sector, rad.
-    """
-
-    count: int
+    count: int  #: sectors around, at least 3
+    #: middle, cut, axis: nodes on the middle plane and on the cut face without the axis, and on the
+    #: axis
     middle: np.ndarray
     cut: np.ndarray
     axis: np.ndarray
-    turn: float = 0.0
+    turn: float = 0.0  #: angle of the middle of the sector, rad
 
     @property
     def angle(self) -> float:

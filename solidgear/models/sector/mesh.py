@@ -54,14 +54,9 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[
 
 @dataclass(frozen=True, eq=False)
 class PieceSolid(SolidMesh):
-    """The mesh of a piece of a part, which draws all of it.
+    """The mesh of a piece of a part, which draws all of it."""
 
-    Attributes
-    ----------
-    inner : (k,) ndarray of int
-        Facets inside the whole part: cut faces, and the middle plane of a half.
-    """
-
+    #: (k,) facets inside the whole part: cut faces, and the middle plane of a half
     inner: np.ndarray
     # its shapes are waves of a given order around, not displacements of the whole part
     motion = None  # type: ignore[assignment]

@@ -18,25 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The boundary at rest, and how the motion of its points follows from that of the nodes.
+    """The boundary at rest, and how the motion of its points follows from that of the nodes."""
 
-    Attributes
-    ----------
-    points : (n, 3) ndarray
-        m.
-    quads, triangles, lines : (m, 4), (m, 3), (m, 2) ndarray of int
-    parts : list of ((nb, q), (nb, e)) ndarray
-        Values of the basis in a face, and the unknowns of elements that have such a face.
-    first : (n,) ndarray of int
-        Where each point is found among all points of all faces.
-    """
-
-    points: np.ndarray
+    points: np.ndarray  #: (n, 3) m
     quads: np.ndarray
     triangles: np.ndarray
     lines: np.ndarray
+    #: values of the basis in a face, and the unknowns of elements that have such a face
     parts: list[tuple[np.ndarray, np.ndarray]]
-    first: np.ndarray
+    first: np.ndarray  #: (n,) where each point is found among all points of all faces
 
 
 def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:

@@ -79,16 +79,10 @@ def half_blocks(
 
 @dataclass(frozen=True, eq=False)
 class HalfDrawing:
-    """A whole part drawn from the mesh of its half.
-
-    Attributes
-    ----------
-    axis : int
-        At right angles to the plane.
-    """
+    """A whole part drawn from the mesh of its half."""
 
     mesh: SolidMesh
-    axis: int
+    axis: int  #: at right angles to the plane
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Both halves, the second as a mirror image of the first."""

@@ -28,27 +28,14 @@ PIECES = 12
 
 @dataclass(frozen=True, eq=False)
 class SolidMesh:
-    """An isoparametric volume mesh.
+    """An isoparametric volume mesh."""
 
-    Attributes
-    ----------
-    mesh : skfem mesh
-        Topology; its geometry is that of ``nodes`` for second-order elements.
-    name : str
-        ``tet10`` and so on.
-    element : skfem element
-    dofs : (nb, ne) ndarray of int
-    nodes : (3, n) ndarray
-        m.
-    segment : (ne,) ndarray of int
-    """
-
-    mesh: Mesh
-    name: str
+    mesh: Mesh  #: topology; its geometry is that of ``nodes`` for second-order elements
+    name: str  #: ``tet10`` and so on
     element: Element
-    dofs: np.ndarray
-    nodes: np.ndarray
-    segment: np.ndarray
+    dofs: np.ndarray  #: (nb, ne)
+    nodes: np.ndarray  #: (3, n) m
+    segment: np.ndarray  #: (ne,)
 
     def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n, 3) displacements of the nodes."""

@@ -18,16 +18,6 @@ class BoltCircle(OnSegment):
 
     Attributes
     ----------
-    count : int
-        3 to 400.
-    diameter : float
-        Of a hole, m.
-    circle : float
-        Diameter of the circle of their middles, m.
-    depth : float or None
-        m; None for holes through the whole segment.
-    side : {'start', 'end'}
-        The face of the segment that they are drilled from.
     angle : float
         Where the first hole lies, rad: 0 is +z.
     """
@@ -35,11 +25,11 @@ class BoltCircle(OnSegment):
     sort: ClassVar[str] = "cyclic"
 
     kind: Literal["bolt_circle"] = "bolt_circle"
-    count: Count
-    diameter: PositiveLength
-    circle: PositiveLength
-    depth: PositiveLength | None = None
-    side: Literal["start", "end"] = "start"
+    count: Count  #: 3 to 400
+    diameter: PositiveLength  #: of a hole, m
+    circle: PositiveLength  #: diameter of the circle of their middles, m
+    depth: PositiveLength | None = None  #: m; None for holes through the whole segment
+    side: Literal["start", "end"] = "start"  #: the face of the segment that they are drilled from
 
     def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         middle, radius = self.circle / 2, self.diameter / 2

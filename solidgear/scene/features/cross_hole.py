@@ -37,16 +37,8 @@ class CrossHole(Cut):
     ----------
     y : float
         Along the shaft, where it passes the axis, m.
-    diameter : float
-        m.
     angle : float
         As for :class:`Keyway`.
-    inclination : float
-        Of its axis to the plane at right angles to the shaft, rad: where it looks to, it leans
-        towards the end of the shaft.
-    offset : float
-        By which its axis passes that of the shaft, m, a quarter turn on from where it looks to: at
-        the angle 0 towards +x.
 
     Raises
     ------
@@ -67,9 +59,13 @@ class CrossHole(Cut):
     notched: ClassVar[bool] = False
 
     kind: Literal["cross_hole"] = "cross_hole"
-    diameter: PositiveLength
+    diameter: PositiveLength  #: m
 
+    #: of its axis to the plane at right angles to the shaft, rad: where it looks to, it leans
+    #: towards the end of the shaft
     inclination: Annotated[SignedAngle, AfterValidator(_not_steep)] = 0.0
+    #: by which its axis passes that of the shaft, m, a quarter turn on from where it looks to: at
+    #: the angle 0 towards +x
     offset: Length = 0.0
 
     def reach(self, radius: float) -> tuple[float, float]:

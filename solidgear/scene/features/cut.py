@@ -15,19 +15,12 @@ from solidgear.scene.units import Position, PositiveLength
 
 
 class Frame(NamedTuple):
-    """Frame in which formulas of element size see a cut that looks to some angle.
+    """Frame in which formulas of element size see a cut that looks to some angle."""
 
-    Attributes
-    ----------
-    side, up : str
-        Formulas of the place beside its middle plane, and of the height towards it, m.
-    num : callable
-        A number in a formula.
-    """
-
+    #: side, up: formulas of the place beside its middle plane, and of the height towards it, m
     side: str
     up: str
-    num: Callable[[float], str]
+    num: Callable[[float], str]  #: a number in a formula
 
     @property
     def across(self) -> str:

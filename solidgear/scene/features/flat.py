@@ -19,14 +19,12 @@ class Flat(Long):
     ----------
     y, length : float
         Start and length along the shaft, m.
-    depth : float
-        Below the crown of the cylinder, m.
     angle : float
         As for :class:`Keyway`.
     """
 
     kind: Literal["flat"] = "flat"
-    depth: PositiveLength
+    depth: PositiveLength  #: below the crown of the cylinder, m
 
     def _sized(self, here: Segment) -> Iterator[SceneError]:
         yield from self._deep(here)

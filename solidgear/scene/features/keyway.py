@@ -25,8 +25,6 @@ class Keyway(Long):
         Its start along the shaft, m.
     length : float
         With its round ends, m.
-    width, depth : float
-        m; the depth is that below the crown of the cylinder (t1 of DIN 6885).
     angle : float
         Where it lies around the shaft, rad: 0 is +z, a quarter turn is +x.
 
@@ -40,6 +38,7 @@ class Keyway(Long):
     """
 
     kind: Literal["keyway"] = "keyway"
+    #: width, depth: m; the depth is that below the crown of the cylinder (t1 of DIN 6885)
     width: PositiveLength
     depth: PositiveLength
     ends: Literal["round", "square"] = "round"

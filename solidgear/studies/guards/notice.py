@@ -17,21 +17,12 @@ LUMPED_ON = "timoshenko"
 
 @dataclass(frozen=True)
 class Notice:
-    """One sentence of a guard.
+    """One sentence of a guard."""
 
-    Attributes
-    ----------
-    level : str
-        One of ``LEVELS``.
-    models : tuple of str
-        The models it is about; empty where it is about the data, whatever the model.
-    sentence : str
-        What, where, the value, the limit, and what to do.
-    """
-
-    level: str
+    level: str  #: one of ``LEVELS``
+    #: the models it is about; empty where it is about the data, whatever the model
     models: tuple[str, ...]
-    sentence: str
+    sentence: str  #: what, where, the value, the limit, and what to do
 
 
 Notices = Iterator[Notice]

@@ -58,47 +58,23 @@ ROUNDS, TRIED = 12, 2
 
 @dataclass(frozen=True)
 class Peak:
-    """A measured resonance, or a computed mode, as the pairing sees it.
-
-    Attributes
-    ----------
-    log_frequency : float
-    width : float
-        Standard deviation of that.
-    multiplicity : int or None
-        None where nobody looked.
-    family : str
-        Empty where it is not known.
-    bandwidth : float
-        Of a mode, relative: nearer to another it is under one peak.
-    """
+    """A measured resonance, or a computed mode, as the pairing sees it."""
 
     log_frequency: float
-    width: float
-    multiplicity: int | None = None
-    family: str = ""
-    bandwidth: float = BANDWIDTH
+    width: float  #: standard deviation of that
+    multiplicity: int | None = None  #: none where nobody looked
+    family: str = ""  #: empty where it is not known
+    bandwidth: float = BANDWIDTH  #: of a mode, relative: nearer to another it is under one peak
 
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """Likeness of measured and computed shapes.
+    """Likeness of measured and computed shapes."""
 
-    Attributes
-    ----------
-    mac : (n, m) ndarray
-        Not a number where no shape was measured.
-    components : int
-        Real numbers of a shape.
-    spans : (m,) ndarray of int
-        Of those the shapes of a mode fit whatever they are.
-    noise : float
-        Standard deviation of a component, relative to the root mean square of the shape.
-    """
-
-    mac: np.ndarray
-    components: int
-    spans: np.ndarray
+    mac: np.ndarray  #: (n, m) not a number where no shape was measured
+    components: int  #: real numbers of a shape
+    spans: np.ndarray  #: (m,) of those the shapes of a mode fit whatever they are
+    #: standard deviation of a component, relative to the root mean square of the shape
     noise: float
 
     def log_likelihoods(self, modes: Sequence[Peak], scatter: float) -> np.ndarray:
@@ -134,23 +110,12 @@ class Seen:
 
 @dataclass(frozen=True, eq=False)
 class Alignment:
-    """Probabilities of pairs.
+    """Probabilities of pairs."""
 
-    Attributes
-    ----------
-    pairs : (n, m) ndarray
-        That a measured resonance is a computed mode.
-    spurious : (n,) ndarray
-        That a measured one is none of those computed.
-    missed : (m,) ndarray
-        That a computed one was not measured.
-    shift, scatter : float
-        Of logarithms, measured less computed.
-    """
-
-    pairs: np.ndarray
-    spurious: np.ndarray
-    missed: np.ndarray
+    pairs: np.ndarray  #: (n, m) that a measured resonance is a computed mode
+    spurious: np.ndarray  #: (n,) that a measured one is none of those computed
+    missed: np.ndarray  #: (m,) that a computed one was not measured
+    #: shift, scatter: of logarithms, measured less computed
     shift: float
     scatter: float
 

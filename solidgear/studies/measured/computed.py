@@ -35,29 +35,15 @@ HIGHEST, STEP = 11, 2
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """Modes of a scene.
-
-    Attributes
-    ----------
-    modes : tuple of Mode
-        Elastic ones by frequency.
-    bars : tuple of float
-        Relative; infinite where nothing tells it.
-    rung : str
-        Model.
-    options : dict
-        Of its builder.
-    limit : float
-        Hz, up to which there are all modes.
-    """
+    """Modes of a scene."""
 
     scene: Scene
     body: Body
-    modes: tuple[Mode, ...]
-    bars: tuple[float, ...]
-    rung: str
-    options: dict[str, Any]
-    limit: float
+    modes: tuple[Mode, ...]  #: elastic ones by frequency
+    bars: tuple[float, ...]  #: relative; infinite where nothing tells it
+    rung: str  #: model
+    options: dict[str, Any]  #: of its builder
+    limit: float  #: hz, up to which there are all modes
 
     @property
     def mesh(self) -> str:

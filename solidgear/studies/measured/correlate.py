@@ -36,27 +36,15 @@ SPRINGS = 0.2
 
 @dataclass(frozen=True)
 class Pair:
-    """A measured resonance and the mode it is.
+    """A measured resonance and the mode it is."""
 
-    Attributes
-    ----------
-    number : int
-        Of the resonance in its file, from one.
-    computed : BarredMode or None
-        The likeliest mode; None where it is likelier that there is none.
-    probability : float
-        Of that.
-    others : tuple of (BarredMode, float)
-        Further modes that it may be, or be as well, with their probabilities.
-    mac : float or None
-        Of the measured shape and the mode; None where no shape was measured.
-    """
-
-    number: int
+    number: int  #: of the resonance in its file, from one
     measured: MeasuredMode
-    computed: BarredMode | None
-    probability: float
+    computed: BarredMode | None  #: the likeliest mode; None where it is likelier that there is none
+    probability: float  #: of that
+    #: further modes that it may be, or be as well, with their probabilities
     others: tuple[tuple[BarredMode, float], ...] = ()
+    #: of the measured shape and the mode; None where no shape was measured
     mac: float | None = None
 
     @property
@@ -94,40 +82,23 @@ class Pair:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Correlation(Displayed):
-    """Measured resonances beside computed modes.
-
-    Attributes
-    ----------
-    scene, title : str
-        Of the scene and of the measurement.
-    pairs : tuple of Pair
-        One for every measured resonance.
-    missed : tuple of (BarredMode, float)
-        Modes below the highest resonance that were not measured, with the probability of that.
-    mesh : str
-        Model and mesh.
-    mac : (n, m) ndarray or None
-        Of every measured shape and every mode; None where no shapes were measured.
-    measured : Measured
-    computed : Computed
-        What was held against each other.
-    likeness : Likeness
-        Whether the resonances can be those of this part.
-    of_points : tuple of str
-        Sentences on modes that the measuring points do not tell apart.
-    """
+    """Measured resonances beside computed modes."""
 
     shown: ClassVar[str] = "correlation"
 
+    #: scene, title: of the scene and of the measurement
     scene: str
     title: str
-    pairs: tuple[Pair, ...]
+    pairs: tuple[Pair, ...]  #: one for every measured resonance
+    #: modes below the highest resonance that were not measured, with the probability of that
     missed: tuple[tuple[BarredMode, float], ...]
-    mesh: str
+    mesh: str  #: model and mesh
+    #: (n, m) of every measured shape and every mode; None where no shapes were measured
     mac: np.ndarray | None
     measured: Measured
-    computed: Computed
-    likeness: Likeness
+    computed: Computed  #: what was held against each other
+    likeness: Likeness  #: whether the resonances can be those of this part
+    #: sentences on modes that the measuring points do not tell apart
     of_points: tuple[str, ...] = ()
 
     @property

@@ -96,26 +96,15 @@ ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_uni
 
 
 class MeasuredMode(Model):
-    """A measured resonance.
+    """A measured resonance."""
 
-    Attributes
-    ----------
-    frequency : float
-        Hz.
-    uncertainty : (float, {'relative', 'Hz'}) or None
-        One standard deviation.
-    multiplicity : int or None
-        1 for a single resonance, 2 for a pair at one frequency; None where nobody looked.
-    name : str
-        Of the mode where it is known, such as ``bending 1``, or only its family: ``bending``.
-    shape : int or None
-        Number of its shape among those of the file of shapes, by ascending frequency, from one.
-    """
-
-    frequency: Frequency
-    uncertainty: Uncertainty | None = None
+    frequency: Frequency  #: Hz
+    uncertainty: Uncertainty | None = None  #: one standard deviation
+    #: 1 for a single resonance, 2 for a pair at one frequency; None where nobody looked
     multiplicity: Annotated[int, Field(strict=True, ge=1, le=2)] | None = None
+    #: of the mode where it is known, such as ``bending 1``, or only its family: ``bending``
     name: str = ""
+    #: number of its shape among those of the file of shapes, by ascending frequency, from one
     shape: Annotated[int, Field(strict=True, ge=1)] | None = None
 
     @property
@@ -128,39 +117,21 @@ class MeasuredMode(Model):
 
 
 class Measured(Model):
-    """Measured resonances of a body.
-
-    Attributes
-    ----------
-    title, source : str
-    uncertainty : (float, {'relative', 'Hz'}) or None
-        Of all that say nothing else.
-    shapes : str
-        Universal file of shapes, beside this one.
-    file : str
-        Universal file whose resonances are taken in place of a list.
-    response_unit : (float, int) or None
-        Of the responses of that file, ``m/s^2/N``: SI units in one, and derivatives of displacement.
-    points : PointsTable
-        Where the points of that file lie in the scene.
-    noise : (float, 'relative')
-        Standard deviation of a component of a shape, relative to the root mean square of the shape.
-    damping : (float, 'relative')
-        Ratio; modes nearer to each other than twice that are heard as one peak.
-    mode : tuple of MeasuredMode
-        By ascending frequency.
-    """
+    """Measured resonances of a body."""
 
     title: str = ""
     source: str = ""
-    uncertainty: Uncertainty | None = None
-    shapes: str = ""
-    file: str = ""
+    uncertainty: Uncertainty | None = None  #: of all that say nothing else
+    shapes: str = ""  #: universal file of shapes, beside this one
+    file: str = ""  #: universal file whose resonances are taken in place of a list
+    #: of the responses of that file, ``m/s^2/N``: SI units in one, and derivatives of displacement
     response_unit: ResponseUnit = None
-    points: PointsTable = PointsTable()
+    points: PointsTable = PointsTable()  #: where the points of that file lie in the scene
+    #: standard deviation of a component of a shape, relative to the root mean square of the shape
     noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
+    #: ratio; modes nearer to each other than twice that are heard as one peak
     damping: Annotated[Uncertainty, AfterValidator(_share)] = (BANDWIDTH / 2, "relative")
-    mode: tuple[MeasuredMode, ...] = ()
+    mode: tuple[MeasuredMode, ...] = ()  #: by ascending frequency
     _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)
     _remarks: tuple[str, ...] = PrivateAttr(())

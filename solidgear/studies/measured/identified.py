@@ -25,27 +25,17 @@ FEW = 0.3
 
 @dataclass(frozen=True)
 class Identified:
-    """An entry of the scene.
-
-    Attributes
-    ----------
-    path : str
-    before, value : float
-        SI; as in the file, and what the data say.
-    deviation : float
-        Standard deviation of its logarithm.
-    low, high : float
-        Ends of the interval of 95 %, cut off at bounds.
-    prior : (float, float) or None
-        What was known beforehand: value, and standard deviation of its logarithm.
-    """
+    """An entry of the scene."""
 
     path: str
+    #: before, value: SI; as in the file, and what the data say
     before: float
     value: float
-    deviation: float
+    deviation: float  #: standard deviation of its logarithm
+    #: low, high: ends of the interval of 95 %, cut off at bounds
     low: float
     high: float
+    #: what was known beforehand: value, and standard deviation of its logarithm
     prior: tuple[float, float] | None = None
 
     @property
@@ -61,84 +51,49 @@ class Identified:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A measured resonance and what the identified scene has there.
-
-    Attributes
-    ----------
-    measured, computed : float
-        Hz.
-    left_out : float or None
-        What is predicted where this resonance is left out of the fit, Hz; None where the others do
-        not tell it.
-    """
+    """A measured resonance and what the identified scene has there."""
 
     name: str
+    #: measured, computed: Hz
     measured: float
     computed: float
+    #: what is predicted where this resonance is left out of the fit, Hz; None where the others do
+    #: not tell it
     left_out: float | None
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """A mode beyond the measured ones.
-
-    Attributes
-    ----------
-    frequency_hz : float
-    deviation_hz : float
-        Standard deviation: of the entries, of the scatter of the fit and of the mesh.
-    """
+    """A mode beyond the measured ones."""
 
     name: str
     multiplicity: int
     frequency_hz: float
+    #: standard deviation: of the entries, of the scatter of the fit and of the mesh
     deviation_hz: float
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Identification(Displayed):
-    """Entries identified from measured resonances.
-
-    Attributes
-    ----------
-    entries : tuple of Identified
-    correlations : (p, p) ndarray
-        Between entries.
-    fitted : tuple of Fitted
-        Resonances that were fitted.
-    unpaired : tuple of float
-        Hz; those that were not, since no mode is surely theirs.
-    rms : float
-        Relative differences of fit.
-    rms_left_out : float or None
-        Of each resonance predicted from the others; None where they tell none.
-    predicted : tuple of Predicted
-    tables : mapping
-        Of the scene file with the values put in.
-    likeness : Likeness
-        Whether the resonances can be those of this part.
-    remarks : tuple of str
-        On how the file of resonances was read.
-    alike : tuple of tuple of float
-        Other values of all entries, SI, that fit as well.
-    """
+    """Entries identified from measured resonances."""
 
     shown: ClassVar[str] = "identification"
 
     scene: str
     title: str
     entries: tuple[Identified, ...]
-    correlations: np.ndarray
-    fitted: tuple[Fitted, ...]
-    unpaired: tuple[float, ...]
-    rms: float
+    correlations: np.ndarray  #: (p, p) between entries
+    fitted: tuple[Fitted, ...]  #: resonances that were fitted
+    unpaired: tuple[float, ...]  #: hz; those that were not, since no mode is surely theirs
+    rms: float  #: relative differences of fit
+    #: of each resonance predicted from the others; None where they tell none
     rms_left_out: float | None
     predicted: tuple[Predicted, ...]
     mesh: str
-    tables: Tables
-    likeness: Likeness
-    remarks: tuple[str, ...] = ()
-    alike: tuple[tuple[float, ...], ...] = ()
+    tables: Tables  #: of the scene file with the values put in
+    likeness: Likeness  #: whether the resonances can be those of this part
+    remarks: tuple[str, ...] = ()  #: on how the file of resonances was read
+    alike: tuple[tuple[float, ...], ...] = ()  #: other values of all entries, SI, that fit as well
 
     def __getitem__(self, path: str) -> Identified:
         return next(one for one in self.entries if one.path == path)

@@ -52,21 +52,11 @@ ABOUT = 9
 
 @dataclass(frozen=True, eq=False)
 class ModalFit:
-    """Poles of responses and their residues, by ascending frequency.
+    """Poles of responses and their residues, by ascending frequency."""
 
-    Attributes
-    ----------
-    poles : (n,) ndarray of complex
-        rad/s.
-    covariances : (n, 2, 2) ndarray
-        Of the real and imaginary part of each.
-    residues : (n, m) ndarray of complex
-        Of every response, as accelerance.
-    """
-
-    poles: np.ndarray
-    covariances: np.ndarray
-    residues: np.ndarray
+    poles: np.ndarray  #: (n,) rad/s
+    covariances: np.ndarray  #: (n, 2, 2) of the real and imaginary part of each
+    residues: np.ndarray  #: (n, m) of every response, as accelerance
 
     @property
     def frequencies(self) -> np.ndarray:

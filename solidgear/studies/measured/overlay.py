@@ -26,40 +26,24 @@ AXES = "xyz"
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """Measured and computed responses.
+    """Measured and computed responses."""
 
-    Attributes
-    ----------
-    hertz : (k,) ndarray
-    measured, computed : (n, k) ndarray of complex
-        SI.
-    names : tuple of str
-        Of the responses: point and direction, and where it was driven.
-    kind, unit : str
-    limit : float
-        Hz; stiffer modes are left out.
-    damping : float
-        Ratio of modes that were not measured, the median of those that were.
-    constants : mapping of int to float
-        Number of a pair -> computed modal constant over the measured one, of all responses.
-    band : (n, k) ndarray or None
-        How far computed ones may be off by the bars of frequencies and of static compliance; None
-        where nothing tells them.
-    waves : int or None
-        Around the axis, up to which what is stiffer counts; 0 of a 3D mesh, and None where it is
-        left out.
-    """
-
-    hertz: np.ndarray
+    hertz: np.ndarray  #: (k,)
+    #: measured, computed: (n, k) SI
     measured: np.ndarray
     computed: np.ndarray
-    names: tuple[str, ...]
+    names: tuple[str, ...]  #: of the responses: point and direction, and where it was driven
     kind: str
     unit: str
-    limit: float
-    damping: float
+    limit: float  #: hz; stiffer modes are left out
+    damping: float  #: ratio of modes that were not measured, the median of those that were
+    #: number of a pair -> computed modal constant over the measured one, of all responses
     constants: dict[int, float]
+    #: (n, k) how far computed ones may be off by the bars of frequencies and of static compliance;
+    #: None where nothing tells them
     band: np.ndarray | None
+    #: around the axis, up to which what is stiffer counts; 0 of a 3D mesh, and None where it is
+    #: left out
     waves: int | None
 
     @property

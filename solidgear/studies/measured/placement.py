@@ -41,20 +41,12 @@ KNOWN = {name: UNITS[name] for name in ("m", "mm", "inch", "cm")}
 
 
 class PointsTable(Model):
-    """The table ``points`` of a file of measured resonances.
+    """The table ``points`` of a file of measured resonances."""
 
-    Attributes
-    ----------
-    unit : str or None
-        Of the places.
-    axis : str or None
-        Axis of the file that is y of the scene.
-    origin : float or (float, float, float) or None
-        Where y = 0 of the scene lies in the file, m: along that axis, or a point on it.
-    """
-
-    unit: Unit | None = None
+    unit: Unit | None = None  #: of the places
+    #: axis of the file that is y of the scene
     axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
+    #: where y = 0 of the scene lies in the file, m: along that axis, or a point on it
     origin: Origin = None
 
     def states(self, frame: Frame, length: float | None) -> bool:

@@ -22,21 +22,13 @@ REPEATS = 2e-4
 
 @dataclass(frozen=True, eq=False)
 class ResponseFit:
-    """Responses, and their modes.
-
-    Attributes
-    ----------
-    responses : Responses
-    fit : ModalFit
-    shapes : Shapes or None
-        None where the file gives no places of its points.
-    """
+    """Responses, and their modes."""
 
     repeats: ClassVar[float] = REPEATS
 
     responses: Responses
     fit: ModalFit
-    shapes: Shapes | None
+    shapes: Shapes | None  #: none where the file gives no places of its points
 
     @classmethod
     def of(cls, responses: Responses) -> ResponseFit:

@@ -32,19 +32,13 @@ BELIEVED, FEWEST_FAR = 0.75, 4
 
 @dataclass(frozen=True)
 class Common:
-    """Differences of pairs as a shift that is common to all and a scatter beside it, relative.
-
-    Attributes
-    ----------
-    off, reach : float
-        Shift, computed over measured, and how far it may be off, of 95 % (Student).
-    scatter, low, high : float
-        Standard deviation, and the ends of its interval of 95 % (chi-square).
-    """
+    """Differences of pairs as a shift that is common to all and a scatter beside it, relative."""
 
     count: int
+    #: off, reach: shift, computed over measured, and how far it may be off, of 95 % (Student)
     off: float
     reach: float
+    #: scatter, low, high: standard deviation, and the ends of its interval of 95 % (chi-square)
     scatter: float
     low: float
     high: float
@@ -78,22 +72,13 @@ class Common:
 
 @dataclass(frozen=True)
 class Likeness:
-    """Likeness of measured resonances to those of one part, whatever its modulus.
+    """Likeness of measured resonances to those of one part, whatever its modulus."""
 
-    Attributes
-    ----------
-    resonances, pairs : int
-        Measured, and those of them that have a mode.
-    shift : float
-        Common to all logarithms, measured less computed.
-    scatter : float
-        Standard deviation beside it and beside what is known of each.
-    """
-
+    #: resonances, pairs: measured, and those of them that have a mode
     resonances: int
     pairs: int
-    shift: float
-    scatter: float
+    shift: float  #: common to all logarithms, measured less computed
+    scatter: float  #: standard deviation beside it and beside what is known of each
 
     @classmethod
     def of(cls, alignment: Alignment) -> Likeness:

@@ -48,25 +48,14 @@ class SurfacePoints:
 
 @dataclass(frozen=True)
 class Confused:
-    """Two modes that the measuring points do not tell apart.
+    """Two modes that the measuring points do not tell apart."""
 
-    Attributes
-    ----------
-    first, second : int
-        Modes.
-    mac : float
-        Of both on the points.
-    place : (float, float, float)
-        x, y, z of the point that would tell them best, m.
-    then : float
-        MAC with it.
-    """
-
+    #: first, second: modes
     first: int
     second: int
-    mac: float
-    place: tuple[float, float, float]
-    then: float
+    mac: float  #: of both on the points
+    place: tuple[float, float, float]  #: x, y, z of the point that would tell them best, m
+    then: float  #: MAC with it
 
 
 class OnPoints:

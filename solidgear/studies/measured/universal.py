@@ -33,25 +33,15 @@ _MARK = re.compile(rb"^ {4}-1[ \t]*\r?$", re.MULTILINE)
 
 @dataclass(frozen=True, eq=False)
 class Shapes:
-    """Measured shapes on points.
+    """Measured shapes on points."""
 
-    Attributes
-    ----------
-    numbers : (p,) ndarray of int
-        Of the points in the file.
-    points : (p, 3) ndarray
-        x, y, z, m.
-    values : (n, p, 3) ndarray
-        A shape for every resonance, real or complex, to a factor; what no shape moves was not
-        measured.
-    length : float or None
-        m that a unit of the file was taken for; None where nothing tells it, and places are in units
-        of the file.
-    """
-
-    numbers: np.ndarray
-    points: np.ndarray
+    numbers: np.ndarray  #: (p,) of the points in the file
+    points: np.ndarray  #: (p, 3) x, y, z, m
+    #: (n, p, 3) a shape for every resonance, real or complex, to a factor; what no shape moves was
+    #: not measured
     values: np.ndarray
+    #: m that a unit of the file was taken for; None where nothing tells it, and places are in units
+    #: of the file
     length: float | None = 1.0
 
     def placed(self, placing: Placing) -> Shapes:
@@ -64,38 +54,22 @@ class Shapes:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Measured frequency responses over one axis of frequencies.
+    """Measured frequency responses over one axis of frequencies."""
 
-    Attributes
-    ----------
-    frequencies : (k,) ndarray
-        Hz.
-    values : (n, k) ndarray of complex
-        SI, or to a factor where nothing tells their unit.
-    points, references : tuple of (int, int)
-        Number and direction of the point of each, and of where it was driven: 1, 2, 3 for x, y, z,
-        negative backwards; empty where nothing tells them.
-    places : mapping of int to (float, float, float)
-        Of points by their numbers, m; empty where nothing tells them.
-    derivatives : int or None
-        Times that the displacement is differentiated in what is over a force: 2 for an
-        acceleration; None where nothing tells it.
-    length : float or None
-        m that a unit of the places was taken for, as of shapes.
-    scaled : bool
-        False where nothing tells the unit of the values.
-    remarks : tuple of str
-        Sentences on what of the file was read otherwise than it may be meant.
-    """
-
-    frequencies: np.ndarray
-    values: np.ndarray
+    frequencies: np.ndarray  #: (k,) Hz
+    values: np.ndarray  #: (n, k) SI, or to a factor where nothing tells their unit
+    #: points, references: number and direction of the point of each, and of where it was driven: 1,
+    #: 2, 3 for x, y, z, negative backwards; empty where nothing tells them
     points: tuple[tuple[int, int], ...] = ()
     references: tuple[tuple[int, int], ...] = ()
+    #: of points by their numbers, m; empty where nothing tells them
     places: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
+    #: times that the displacement is differentiated in what is over a force: 2 for an acceleration;
+    #: None where nothing tells it
     derivatives: int | None = None
-    length: float | None = 1.0
-    scaled: bool = True
+    length: float | None = 1.0  #: m that a unit of the places was taken for, as of shapes
+    scaled: bool = True  #: false where nothing tells the unit of the values
+    #: sentences on what of the file was read otherwise than it may be meant
     remarks: tuple[str, ...] = ()
 
     def placed(self, placing: Placing) -> Responses:

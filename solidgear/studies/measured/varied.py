@@ -15,25 +15,16 @@ from solidgear.studies.sweep.amounts import in_si
 
 @dataclass(frozen=True)
 class Varied:
-    """An entry of a scene file; logarithms are of its value over that of the file.
-
-    Attributes
-    ----------
-    label : str
-        Its path.
-    before : float
-        In the file, SI.
-    low, high : float
-        Bounds of the logarithm.
-    middle, deviation : float
-        Of the logarithm, as it is known beforehand; an infinite deviation where it is not.
-    """
+    """An entry of a scene file; logarithms are of its value over that of the file."""
 
     keys: Keys
-    label: str
-    before: float
+    label: str  #: its path
+    before: float  #: in the file, SI
+    #: low, high: bounds of the logarithm
     low: float = -math.inf
     high: float = math.inf
+    #: middle, deviation: of the logarithm, as it is known beforehand; an infinite deviation where
+    #: it is not
     middle: float = 0.0
     deviation: float = math.inf
 

@@ -57,31 +57,16 @@ def _is_number(keys: Keys, tables: Tables) -> bool:
 
 @dataclass(frozen=True)
 class Around:
-    """The scene with an entry a little smaller and a little larger.
+    """The scene with an entry a little smaller and a little larger."""
 
-    Attributes
-    ----------
-    low, high : Scene
-        One of them the scene itself where the file allows no number on that side.
-    step : float
-        Between them, SI.
-    written : str
-        The entry as the file has it.
-    unit : str
-        That the file gives it in; empty for SI.
-    at : float
-        The entry, SI.
-    side : {'', 'larger', 'smaller'}
-        The only way that the entry may go.
-    """
-
+    #: low, high: one of them the scene itself where the file allows no number on that side
     low: Scene
     high: Scene
-    step: float
-    written: str
-    unit: str
-    at: float
-    side: str = ""
+    step: float  #: between them, SI
+    written: str  #: the entry as the file has it
+    unit: str  #: that the file gives it in; empty for SI
+    at: float  #: the entry, SI
+    side: str = ""  #: the only way that the entry may go
 
 
 def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:

@@ -39,36 +39,16 @@ BARS = "from_coarser_mesh is the distance from a coarser mesh where there is one
 
 @dataclass(frozen=True)
 class Derivative:
-    """Of one number by one entry of the file.
+    """Of one number by one entry of the file."""
 
-    Attributes
-    ----------
-    path : str
-        As in :mod:`solidgear.scene.paths`.
-    written : str
-        The entry as the file has it.
-    at : float
-        The entry in SI.
-    unit : str
-        That the file gives it in; empty for SI.
-    by : float
-        Derivative, SI over SI.
-    elasticity : float
-        Relative change of the number over that of the entry.
-    apart : float or None
-        Distance of the elasticity from that on a coarser mesh.
-    side : {'', 'larger', 'smaller'}
-        The only way that the entry may go, and that the derivative is for.
-    """
-
-    path: str
-    written: str
-    at: float
-    unit: str
-    by: float
-    elasticity: float
-    apart: float | None = None
-    side: str = ""
+    path: str  #: as in :mod:`solidgear.scene.paths`
+    written: str  #: the entry as the file has it
+    at: float  #: the entry in SI
+    unit: str  #: that the file gives it in; empty for SI
+    by: float  #: derivative, SI over SI
+    elasticity: float  #: relative change of the number over that of the entry
+    apart: float | None = None  #: distance of the elasticity from that on a coarser mesh
+    side: str = ""  #: the only way that the entry may go, and that the derivative is for
 
     @property
     def by_unit(self) -> float:
@@ -78,26 +58,13 @@ class Derivative:
 
 @dataclass(frozen=True)
 class OfNumber:
-    """Derivatives of one number, the strongest first.
-
-    Attributes
-    ----------
-    name : str
-    value : float
-        SI.
-    unit : str
-    pair : bool
-        Whether it is the mean of a pair of equal frequencies.
-    apart : float or None
-        Distance of the value from that on a coarser mesh.
-    derivatives : tuple of Derivative
-    """
+    """Derivatives of one number, the strongest first."""
 
     name: str
-    value: float
+    value: float  #: SI
     unit: str
-    pair: bool
-    apart: float | None
+    pair: bool  #: whether it is the mean of a pair of equal frequencies
+    apart: float | None  #: distance of the value from that on a coarser mesh
     derivatives: tuple[Derivative, ...]
 
     def __getitem__(self, path: str) -> Derivative:
@@ -110,23 +77,13 @@ class OfNumber:
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """Derivatives of some numbers by entries of a scene file.
-
-    Attributes
-    ----------
-    title, model : str
-    of : tuple of OfNumber
-    without : dict of str to str
-        Entries without a derivative, and why.
-    notes : tuple of str
-        What was held fixed, and how sure derivatives are.
-    """
+    """Derivatives of some numbers by entries of a scene file."""
 
     title: str
     model: str
     of: tuple[OfNumber, ...]
-    without: dict[str, str]
-    notes: tuple[str, ...]
+    without: dict[str, str]  #: entries without a derivative, and why
+    notes: tuple[str, ...]  #: what was held fixed, and how sure derivatives are
 
     def __getitem__(self, name: str) -> OfNumber:
         for one in self.of:

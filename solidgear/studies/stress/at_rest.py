@@ -42,18 +42,10 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Acting:
-    """Everything that acts on a shaft.
+    """Everything that acts on a shaft."""
 
-    Attributes
-    ----------
-    loads : dict of str to (6,) ndarray
-        By port, N and N m.
-    gravity : (3,) ndarray or None
-        m/s^2, in the axes of its scene.
-    """
-
-    loads: dict[str, np.ndarray]
-    gravity: np.ndarray | None = None
+    loads: dict[str, np.ndarray]  #: by port, N and N m
+    gravity: np.ndarray | None = None  #: (3,) m/s^2, in the axes of its scene
 
     def add(self, port: str, load: np.ndarray) -> None:
         """One more load (6,) on a port."""
@@ -62,23 +54,16 @@ class Acting:
 
 @dataclass(frozen=True)
 class StressedShaft:
-    """Stress of one shaft of a scene or a train.
-
-    Attributes
-    ----------
-    open_moment : (float, float) or None
-        Least and largest of the largest bending moment, N m, by what the data of bearings leave
-        open; None where that is nothing.
-    open : dict of str to (float, float)
-        The same of the amplitude on each fillet, Pa.
-    """
+    """Stress of one shaft of a scene or a train."""
 
     name: str
     scene: Scene = field(repr=False)
     acting: Acting
     found: ShaftStress
+    #: least and largest of the largest bending moment, N m, by what the data of bearings leave
+    #: open; None where that is nothing
     open_moment: tuple[float, float] | None
-    open: Mapping[str, tuple[float, float]]
+    open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
 
     @property
     def weak(self) -> tuple[str, ...]:
@@ -91,21 +76,14 @@ class StressedShaft:
 class Asked:
     """Question asked of fillets.
 
-    Attributes
-    ----------
-    tolerance : float
-        Relative bar of form factors at which their meshes stop.
-    conditions : Conditions
-        Of the rating by DIN 743.
-
     Raises
     ------
     SolidgearError
         For a tolerance beyond all meshes.
     """
 
-    tolerance: float = ENOUGH
-    conditions: Conditions = Conditions()
+    tolerance: float = ENOUGH  #: relative bar of form factors at which their meshes stop
+    conditions: Conditions = Conditions()  #: of the rating by DIN 743
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
@@ -113,27 +91,16 @@ class Asked:
 
 @dataclass(frozen=True)
 class StressAtRest:
-    """Stress of a shaft under its load, or of both shafts of a train at an operating point.
-
-    Attributes
-    ----------
-    model : str
-        On which shafts and bearings settled.
-    under : dict
-        Load of a scene, or operating point and mesh force of a train, as plain data in SI.
-    open_by : str
-        What the data of bearings leave open, in words; empty for nothing.
-    cautions : tuple of str
-        Beside the remarks of each shaft.
-    """
+    """Stress of a shaft under its load, or of both shafts of a train at an operating point."""
 
     title: str
-    model: str
+    model: str  #: on which shafts and bearings settled
+    #: load of a scene, or operating point and mesh force of a train, as plain data in SI
     under: Mapping[str, Any]
     asked: Asked
     shafts: tuple[StressedShaft, ...]
-    open_by: str
-    cautions: tuple[str, ...] = ()
+    open_by: str  #: what the data of bearings leave open, in words; empty for nothing
+    cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
 
     @property
     def reached(self) -> bool:

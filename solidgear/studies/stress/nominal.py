@@ -27,14 +27,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CrossSection:
-    """A ring or a disc.
+    """A ring or a disc."""
 
-    Attributes
-    ----------
-    outer, inner : float
-        Radii, m; an inner one of 0 is solid.
-    """
-
+    #: outer, inner: radii, m; an inner one of 0 is solid
     outer: float
     inner: float
 
@@ -63,45 +58,25 @@ class CrossSection:
 
 @dataclass(frozen=True)
 class NominalStress:
-    """Nominal stress of a cross-section at one of its radii, in Pa.
+    """Nominal stress of a cross-section at one of its radii, in Pa."""
 
-    Attributes
-    ----------
-    tension : float
-        N / A, with its sign: a mean.
-    bending : float
-        Not negative: the amplitude where the shaft turns under loads that stand still.
-    torsion : float
-        T a / (2 I), with its sign: a mean.
-    shear : float
-        Of the transverse force, at the neutral axis, not negative.
-    """
-
-    tension: float
+    tension: float  #: N / A, with its sign: a mean
+    #: not negative: the amplitude where the shaft turns under loads that stand still
     bending: float
+    #: loaded_error, unloaded_error: T a / (2 I), with its sign: a mean
     torsion: float
-    shear: float
+    shear: float  #: of the transverse force, at the neutral axis, not negative
 
 
 @dataclass(frozen=True)
 class NominalRow:
-    """A cross-section on one side of a place, with its forces and stress.
+    """A cross-section on one side of a place, with its forces and stress."""
 
-    Attributes
-    ----------
-    y : float
-        m.
-    names : str
-        Of what acts there.
-    forces : (6,) ndarray
-        Q_x, N, Q_z, M_x, T, M_z, N and N m.
-    """
-
-    y: float
+    y: float  #: m
     segment: str
-    names: str
+    names: str  #: of what acts there
     section: CrossSection
-    forces: np.ndarray
+    forces: np.ndarray  #: (6,) Q_x, N, Q_z, M_x, T, M_z, N and N m
     stress: NominalStress
 
 

@@ -49,65 +49,39 @@ UNIT_LOADS = ("tension", "bending", "torsion", "shear")
 
 @dataclass(frozen=True)
 class Factor:
-    """A stress concentration factor.
+    """A stress concentration factor."""
 
-    Attributes
-    ----------
-    value, bar : float
-        Largest stress over nominal stress, and what it may be off.
-    angle : float
-        Where on the arc that is, from the cylinder, rad.
-    gradient, gradient_bar : float
-        Relative stress gradient there into the material, 1/m.
-    """
-
+    #: value, bar: largest stress over nominal stress, and what it may be off
     value: float
     bar: float
-    angle: float
+    angle: float  #: where on the arc that is, from the cylinder, rad
+    #: gradient, gradient_bar: relative stress gradient there into the material, 1/m
     gradient: float
     gradient_bar: float
 
 
 @dataclass(frozen=True)
 class Step:
-    """One order of the sequence that a fillet was solved with.
-
-    Attributes
-    ----------
-    factors : dict of str to float
-        By unit load.
-    """
+    """One order of the sequence that a fillet was solved with."""
 
     order: int
     unknowns: int
-    factors: Mapping[str, float]
+    factors: Mapping[str, float]  #: by unit load
 
 
 @dataclass(frozen=True)
 class FilletFactors:
-    """Stress concentration of a fillet.
-
-    Attributes
-    ----------
-    corner : Corner
-        On the shaft.
-    section : CrossSection
-        That nominal stress is that of: outside, the cylinder that the fillet runs into; in a bore the
-        weaker side of the step.
-    radius : float
-        At which nominal stress is taken, m.
-    factors : dict of str to Factor
-        By unit load: ``tension``, ``bending``, ``torsion``; ``shear`` counts in Q / A.
-    profiles : dict of str to ArcStress
-        Along the arc, over nominal stress.
-    """
+    """Stress concentration of a fillet."""
 
     name: str
-    corner: Corner = field(repr=False)
+    corner: Corner = field(repr=False)  #: on the shaft
+    #: that nominal stress is that of: outside, the cylinder that the fillet runs into; in a bore
+    #: the weaker side of the step
     section: CrossSection
-    radius: float
+    radius: float  #: at which nominal stress is taken, m
+    #: by unit load: ``tension``, ``bending``, ``torsion``; ``shear`` counts in Q / A
     factors: Mapping[str, Factor]
-    profiles: Mapping[str, ArcStress] = field(repr=False)
+    profiles: Mapping[str, ArcStress] = field(repr=False)  #: along the arc, over nominal stress
     steps: tuple[Step, ...]
 
     @property

@@ -27,22 +27,12 @@ ROOM = 3.0
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of a shaft, loaded at its two ends; to builders a shaft of its own.
+    """A piece of a shaft, loaded at its two ends; to builders a shaft of its own."""
 
-    Attributes
-    ----------
-    segments : tuple of Segment
-        From y = 0 on.
-    corner : Corner
-        The one looked at, in the places of the piece.
-    start : float
-        Of the piece on the shaft, m.
-    """
-
-    segments: tuple[Segment, ...]
+    segments: tuple[Segment, ...]  #: from y = 0 on
     outline: Outline[Segment]
-    corner: Corner
-    start: float
+    corner: Corner  #: the one looked at, in the places of the piece
+    start: float  #: of the piece on the shaft, m
 
     @property
     def length(self) -> float:

@@ -79,20 +79,6 @@ FACTORS = {
 class Conditions(Model):
     """Data that a rating by DIN 743 needs beyond the shaft, its loads and its strength.
 
-    Attributes
-    ----------
-    roughness : float or None
-        Rz of the fillet, m.
-    ultimate_at_size, yield_at_size : float or None
-        K_1: strength at the size of the part over the one given.
-    hardening : float or None
-        K_V of the surface.
-    force_share, torque_share : float or None
-        Amplitudes of axial force and torque over their mean; the shaft turns, so that bending is
-        all amplitude.
-    constant_mean : bool
-        Whether mean stress stays as loads grow (case 1 of the norm) or grows with them (case 2).
-
     Raises
     ------
     SceneError
@@ -104,31 +90,30 @@ class Conditions(Model):
     6.3e-06
     """
 
-    roughness: Annotated[PositiveLength, Field(le=ROUGHEST)] | None = None
+    roughness: Annotated[PositiveLength, Field(le=ROUGHEST)] | None = None  #: rz of the fillet, m
+    #: ultimate_at_size, yield_at_size: K_1: strength at the size of the part over the one given
     ultimate_at_size: StrengthFactor | None = None
     yield_at_size: StrengthFactor | None = None
-    hardening: StrengthFactor | None = None
+    hardening: StrengthFactor | None = None  #: K_V of the surface
+    #: force_share, torque_share: amplitudes of axial force and torque over their mean; the shaft
+    #: turns, so that bending is all amplitude
     force_share: Share | None = None
     torque_share: Share | None = None
+    #: whether mean stress stays as loads grow (case 1 of the norm) or grows with them (case 2)
     constant_mean: bool = False
 
 
 @dataclass(frozen=True)
 class FatigueFactor:
-    """Fatigue notch factor of one load: form factor over support number.
+    """Fatigue notch factor of one load: form factor over support number."""
 
-    Attributes
-    ----------
-    form, gradient, support, notch : float
-        Kt and G' (1/m) of the solid, n and Kf = beta.
-    norm_form, norm_gradient, norm_notch : float
-        alpha and G' by the norm's formulas, and what they make of beta.
-    """
-
+    #: form, gradient, support, notch: kt and G' (1/m) of the solid, n and Kf = beta
     form: float
     gradient: float
     support: float
     notch: float
+    #: norm_form, norm_gradient, norm_notch: alpha and G' by the norm's formulas, and what they make
+    #: of beta
     norm_form: float
     norm_gradient: float
     norm_notch: float
@@ -136,44 +121,25 @@ class FatigueFactor:
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of a rating: one value a load, or one for all.
-
-    Attributes
-    ----------
-    values : tuple of float or None
-        Of tension, bending and torsion, SI.
-    unit : str
-        Of SI; empty for a factor.
-    """
+    """A line of a rating: one value a load, or one for all."""
 
     symbol: str
     what: str
     values: tuple[float | None, ...]
-    unit: str
+    unit: str  #: of SI; empty for a factor
     source: str
 
 
 @dataclass(frozen=True)
 class Rating:
-    """Rating of a fillet by DIN 743.
+    """Rating of a fillet by DIN 743."""
 
-    Attributes
-    ----------
-    entries : tuple of Entry
-        All factors, in the order in which they are used.
-    fatigue, yielding : float
-        Safeties S against fatigue and against yielding; infinite without load.
-    fatigue_bar : float
-        What S loses if the form factors lie at the upper end of their bars.
-    assumed : tuple of str
-        Symbols of what was assumed.
-    """
-
-    entries: tuple[Entry, ...]
+    entries: tuple[Entry, ...]  #: all factors, in the order in which they are used
+    #: fatigue, yielding: safeties S against fatigue and against yielding; infinite without load
     fatigue: float
     yielding: float
-    fatigue_bar: float
-    assumed: tuple[str, ...]
+    fatigue_bar: float  #: what S loses if the form factors lie at the upper end of their bars
+    assumed: tuple[str, ...]  #: symbols of what was assumed
 
 
 def fatigue_factors(

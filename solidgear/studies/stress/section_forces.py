@@ -56,37 +56,21 @@ ROUNDING = 1e-13
 
 @dataclass(frozen=True)
 class Load:
-    """A load on a shaft at one place.
-
-    Attributes
-    ----------
-    y : float
-        m.
-    six : (6,) ndarray
-        Forces and moments about the axis at y, N and N m.
-    """
+    """A load on a shaft at one place."""
 
     name: str
-    y: float
-    six: np.ndarray
+    y: float  #: m
+    six: np.ndarray  #: (6,) forces and moments about the axis at y, N and N m
 
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Section forces of a shaft: forces are constant from place to place, moments straight.
+    """Section forces of a shaft: forces are constant from place to place, moments straight."""
 
-    Attributes
-    ----------
-    y : (k,) ndarray
-        Both ends and all places of loads, ascending, m.
-    names : tuple of str
-        Of what acts at each place; empty where nothing does.
-    left, right : (k, 6) ndarray
-        Just before and just beyond each place: Q_x, N, Q_z in N, M_x, T, M_z in N m.
-    """
-
-    y: np.ndarray
-    names: tuple[str, ...]
+    y: np.ndarray  #: (k,) both ends and all places of loads, ascending, m
+    names: tuple[str, ...]  #: of what acts at each place; empty where nothing does
+    #: left, right: (k, 6) just before and just beyond each place: Q_x, N, Q_z in N, M_x, T, M_z in
+    #: N m
     left: np.ndarray
     right: np.ndarray
 

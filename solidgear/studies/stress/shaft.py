@@ -51,65 +51,41 @@ SMOOTH = 1e-9
 
 @dataclass(frozen=True)
 class Local:
-    """Stress on the surface of a fillet where it is largest, Pa.
+    """Stress on the surface of a fillet where it is largest, Pa."""
 
-    Attributes
-    ----------
-    amplitude, amplitude_bar : float
-        Normal stress along the meridian by bending of the turning shaft.
-    mean, mean_bar : float
-        The same by axial force.
-    shear, shear_bar : float
-        By torque, at the same place.
-    angle : float
-        Of that place on the arc, from the cylinder, rad.
-    """
-
+    #: amplitude, amplitude_bar: normal stress along the meridian by bending of the turning shaft
     amplitude: float
     amplitude_bar: float
+    #: mean, mean_bar: the same by axial force
     mean: float
     mean_bar: float
+    #: shear, shear_bar: by torque, at the same place
     shear: float
     shear_bar: float
-    angle: float
+    angle: float  #: of that place on the arc, from the cylinder, rad
 
 
 @dataclass(frozen=True)
 class Notch:
-    """A fillet at the root of a step, with the stress of this shaft under its loads.
-
-    Attributes
-    ----------
-    y : float
-        Where it meets its cylinder, m: forces and nominal stress are those of the section there.
-    radius, small, large : float
-        Of the fillet, and diameters on both sides of the step, m.
-    forces : (6,) ndarray
-        Q_x, N, Q_z, M_x, T, M_z, N and N m.
-    published : dict of str to dict of str to float or None
-        Form factors of solid shafts by their source and load, None where it gives none; empty of a
-        fillet in a bore.
-    fatigue : dict of str to FatigueFactor
-        By load; empty for a material without strength.
-    rating : Rating or None
-        None without strength, or where the norm has no formula: in bores.
-    remark : str
-        Of what disturbs its stress; empty for nothing.
-    """
+    """A fillet at the root of a step, with the stress of this shaft under its loads."""
 
     name: str
+    #: where it meets its cylinder, m: forces and nominal stress are those of the section there
     y: float
+    #: radius, small, large: of the fillet, and diameters on both sides of the step, m
     radius: float
     small: float
     large: float
     found: FilletFactors
-    forces: np.ndarray
+    forces: np.ndarray  #: (6,) Q_x, N, Q_z, M_x, T, M_z, N and N m
     nominal: NominalStress
     local: Local
+    #: form factors of solid shafts by their source and load, None where it gives none; empty of a
+    #: fillet in a bore
     published: Mapping[str, Mapping[LoadKind, float | None]]
-    fatigue: Mapping[LoadKind, FatigueFactor]
-    rating: Rating | None
-    remark: str
+    fatigue: Mapping[LoadKind, FatigueFactor]  #: by load; empty for a material without strength
+    rating: Rating | None  #: none without strength, or where the norm has no formula: in bores
+    remark: str  #: of what disturbs its stress; empty for nothing
 
     @property
     def severity(self) -> tuple[float, float]:
@@ -132,17 +108,11 @@ class SharpCorner(NamedTuple):
 
 @dataclass(frozen=True)
 class ShaftStress:
-    """Stress of a shaft.
-
-    Attributes
-    ----------
-    notches : tuple of Notch
-        Along the shaft.
-    """
+    """Stress of a shaft."""
 
     forces: SectionForces
     nominal: tuple[NominalRow, ...]
-    notches: tuple[Notch, ...]
+    notches: tuple[Notch, ...]  #: along the shaft
     sharp: tuple[SharpCorner, ...]
     remarks: tuple[str, ...]
 

@@ -31,38 +31,28 @@ PROBES = 24
 
 @dataclass(frozen=True)
 class Summary:
-    """Account of a sweep.
-
-    Attributes
-    ----------
-    total, skipped, refused, full : int
-        Variants; of these: rows that were there before, refused ones, and those whose modes were
-        solved on the body itself (the last two of this run).
-    unknowns, seats, basis : int
-        Of the body; seats on it; unknowns of the largest small problem. Zero if there was nothing
-        left to do.
-    seconds_once, seconds_each : float
-        Wall seconds for body and reduction, and per variant of this run.
-    whys : dict of str to int
-        Why variants are refused, and how many for that reason, of this run.
-    repairs : tuple of str
-        What was found damaged in the files and how it was mended, a sentence each.
-    settling : str
-        Of bearings of catalogue data: at which load their stiffness is taken, in a sentence.
-    """
+    """Account of a sweep."""
 
     path: Path
+    #: total, skipped, refused, full: variants; of these: rows that were there before, refused ones,
+    #: and those whose modes were solved on the body itself (the last two of this run)
     total: int
     skipped: int
     refused: int = 0
     full: int = 0
+    #: unknowns, seats, basis: of the body; seats on it; unknowns of the largest small problem. Zero
+    #: if there was nothing left to do.
     unknowns: int = 0
     seats: int = 0
     basis: int = 0
+    #: seconds_once, seconds_each: wall seconds for body and reduction, and per variant of this run
     seconds_once: float = 0.0
     seconds_each: float = 0.0
+    #: what was found damaged in the files and how it was mended, a sentence each
     repairs: tuple[str, ...] = ()
+    #: why variants are refused, and how many for that reason, of this run
     whys: dict[str, int] = field(default_factory=dict)
+    #: of bearings of catalogue data: at which load their stiffness is taken, in a sentence
     settling: str = ""
 
 

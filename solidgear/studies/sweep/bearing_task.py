@@ -54,28 +54,17 @@ def columns(variants: BearingVariants, n: int, barred: bool) -> dict[str, type]:
 class Task:
     """Everything that is needed to turn variants into rows; small, so that it can be sent to other
     processes.
-
-    Attributes
-    ----------
-    n : int
-        Elastic shapes wanted, twins counted twice.
-    tolerance : float
-        Relative error of a frequency that is let pass.
-    bars : mapping of str to float
-        Relative, of the mesh, by the names of numbers and modes; empty where none is known.
-    said : str
-        Where they come from, or why there are none.
-    bases : tuple of Reduced
-        From small to large, tried one after the other while the bound of a variant exceeds the
-        tolerance.
     """
 
     variants: BearingVariants
+    #: from small to large, tried one after the other while the bound of a variant exceeds the
+    #: tolerance
     bases: tuple[Reduced, ...]
-    n: int
-    tolerance: float
+    n: int  #: elastic shapes wanted, twins counted twice
+    tolerance: float  #: relative error of a frequency that is let pass
+    #: relative, of the mesh, by the names of numbers and modes; empty where none is known
     bars: Mapping[str, float] = field(default_factory=dict)
-    said: str = ""
+    said: str = ""  #: where they come from, or why there are none
 
     @pinned
     def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:

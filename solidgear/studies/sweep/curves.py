@@ -36,57 +36,34 @@ def misaligned(name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One number of every row.
-
-    Attributes
-    ----------
-    unit : str
-        SI; ``m moved`` and ``rad moved`` are motions.
-    values : (n,) ndarray
-        Not a number where a row has none.
-    words : tuple of str
-        What is said of each value, such as the name of its mode; empty where nothing is.
-    """
+    """One number of every row."""
 
     name: str
-    unit: str
-    values: np.ndarray
+    unit: str  #: SI; ``m moved`` and ``rad moved`` are motions
+    values: np.ndarray  #: (n,) not a number where a row has none
+    #: what is said of each value, such as the name of its mode; empty where nothing is
     words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Curves over one number.
+    """Curves over one number."""
 
-    Attributes
-    ----------
-    over, unit : str
-        What varies, and in which unit it is told; an empty one is SI.
-    x : (n,) ndarray
-        Ascending.
-    labels : tuple of str
-        Names of the rows where they have some, such as operating points.
-    statics : list of Curve
-        Stiffness at the lumped point of a shaft, to be told in a table.
-    radial, axial : list of Curve
-        Loads of bearings.
-    mesh_force : list of Curve
-        One for each mesh, or none.
-    peak_hz, peak_force : list of Curve
-        One each, or none; of the largest peak of the force of the mesh that drives.
-    """
-
+    #: over, unit: what varies, and in which unit it is told; an empty one is SI
     over: str
     unit: str
     log: bool
-    x: np.ndarray
-    labels: tuple[str, ...]
+    x: np.ndarray  #: (n,) ascending
+    labels: tuple[str, ...]  #: names of the rows where they have some, such as operating points
     frequencies: list[Curve]
-    statics: list[Curve]
-    mesh_force: list[Curve]
+    statics: list[Curve]  #: stiffness at the lumped point of a shaft, to be told in a table
+    mesh_force: list[Curve]  #: one for each mesh, or none
     misalignment: list[Curve]
+    #: radial, axial: loads of bearings
     radial: list[Curve]
     axial: list[Curve]
+    #: peak_hz, peak_force: one each, or none; of the largest peak of the force of the mesh that
+    #: drives
     peak_hz: list[Curve]
     peak_force: list[Curve]
 

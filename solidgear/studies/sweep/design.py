@@ -31,30 +31,15 @@ Further = Callable[[tuple[Entry, ...]], tuple[Entry, ...]]
 
 @dataclass(frozen=True)
 class Design:
-    """Entries that vary in a sweep, and in which combinations.
+    """Entries that vary in a sweep, and in which combinations."""
 
-    Attributes
-    ----------
-    vary : tuple of str
-        ``PATH=VALUES``, see :mod:`solidgear.studies.sweep.entries`.
-    sample : int or None
-        Points of a Latin hypercube, in place of all combinations.
-    seed : int
-        Of the hypercube.
-    one_at_a_time : bool
-        The file as it is, then each value of each entry with all others as in the file.
-    table : Path or None
-        Of variants, in place of `vary`.
-    keep_sum : tuple of str
-        ``PATH+PATH``: sums that stay what they are in the file.
-    """
-
-    vary: tuple[str, ...] = ()
-    sample: int | None = None
-    seed: int = 0
+    vary: tuple[str, ...] = ()  #: ``PATH=VALUES``, see :mod:`solidgear.studies.sweep.entries`
+    sample: int | None = None  #: points of a Latin hypercube, in place of all combinations
+    seed: int = 0  #: of the hypercube
+    #: the file as it is, then each value of each entry with all others as in the file
     one_at_a_time: bool = False
-    table: Path | None = None
-    keep_sum: tuple[str, ...] = ()
+    table: Path | None = None  #: of variants, in place of `vary`
+    keep_sum: tuple[str, ...] = ()  #: ``PATH+PATH``: sums that stay what they are in the file
 
     def points(
         self,

@@ -27,21 +27,11 @@ Owner = Callable[[str], tuple[str, str]]
 
 
 class Place(NamedTuple):
-    """Place of an entry.
+    """Place of an entry."""
 
-    Attributes
-    ----------
-    file : str
-        Which of several files holds it.
-    path : str
-        Within that file.
-    keys : tuple of str and int
-        Where in the tables of the file as it is.
-    """
-
-    file: str
-    path: str
-    keys: Keys
+    file: str  #: which of several files holds it
+    path: str  #: within that file
+    keys: Keys  #: where in the tables of the file as it is
 
     @property
     def label(self) -> str:
@@ -51,29 +41,15 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Entry(Span):
-    """One entry of a file that varies, or several with one value.
-
-    Attributes
-    ----------
-    places : tuple of Place
-    there : object
-        What the file holds at the first of them.
-    unit : str
-        Of the values of a range, as the user wrote it; empty of plain numbers.
-    whole : bool
-        Whether the values of a range are whole numbers.
-    words : tuple
-        What is put in of a list, whose `values` count from 0; empty of a range.
-    text : bool
-        Whether its values are words, whatever they look like.
-    """
+    """One entry of a file that varies, or several with one value."""
 
     places: tuple[Place, ...]
-    there: object = None
-    unit: str = ""
-    whole: bool = False
+    there: object = None  #: what the file holds at the first of them
+    unit: str = ""  #: of the values of a range, as the user wrote it; empty of plain numbers
+    whole: bool = False  #: whether the values of a range are whole numbers
+    #: what is put in of a list, whose `values` count from 0; empty of a range
     words: tuple[str | float | bool, ...] = ()
-    text: bool = False
+    text: bool = False  #: whether its values are words, whatever they look like
 
     @property
     def file(self) -> str:
@@ -240,17 +216,9 @@ def _once(where: str, varied: Sequence[Entry]) -> None:
 
 @dataclass(frozen=True)
 class Kept:
-    """A sum of entries of one file that stays what it is in the file: the last of them gives way.
+    """A sum of entries of one file that stays what it is in the file: the last of them gives way."""
 
-    Attributes
-    ----------
-    places : tuple of Place
-        The one that gives way last.
-    total : float
-        SI.
-    """
-
-    places: tuple[Place, ...]
+    places: tuple[Place, ...]  #: the one that gives way last
     total: float
 
     @property

@@ -82,26 +82,6 @@ class FileTask:
 class Swept(Displayed):
     """Rows of a sweep.
 
-    Attributes
-    ----------
-    columns : dict of str to list
-        Values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
-        numbers as ``f1_hz bar``, in the same unit.
-    varied : tuple of str
-        Columns of what varies.
-    curves : Curves or None
-        Where one number varies.
-    path : Path
-        File that they were written to; of a sweep from Python without one it is gone.
-    skipped : int
-        Rows that were there before.
-    seconds : float
-        Wall seconds of this run.
-    repairs : tuple of str
-        What was found damaged in the files and how it was mended, a sentence each.
-    cautions : tuple of str
-        What does not fit together in variants that were solved, a sentence each.
-
     Examples
     --------
     >>> import solidgear as sg
@@ -112,13 +92,17 @@ class Swept(Displayed):
 
     shown: ClassVar[str] = "swept"
 
+    #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
+    #: numbers as ``f1_hz bar``, in the same unit.
     columns: dict[str, list[Any]]
-    varied: tuple[str, ...]
-    curves: Curves | None
-    path: Path
-    skipped: int
-    seconds: float
+    varied: tuple[str, ...]  #: columns of what varies
+    curves: Curves | None  #: where one number varies
+    path: Path  #: file that they were written to; of a sweep from Python without one it is gone
+    skipped: int  #: rows that were there before
+    seconds: float  #: wall seconds of this run
+    #: what was found damaged in the files and how it was mended, a sentence each
     repairs: tuple[str, ...]
+    #: what does not fit together in variants that were solved, a sentence each
     cautions: tuple[str, ...] = ()
 
     def __len__(self) -> int:

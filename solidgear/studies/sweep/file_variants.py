@@ -34,30 +34,14 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class FileVariants(Generic[T]):
-    """Points of a sweep over entries of files.
+    """Points of a sweep over entries of files."""
 
-    Attributes
-    ----------
-    path : Path
-        Of the file that was asked about.
-    files : mapping of str to mapping
-        Tables by the names of files, those of `path` by an empty name.
-    entries : tuple of Entry
-        What varies.
-    values : (n, len(entries)) ndarray
-        Not a number where a variant leaves an entry as it is in the file.
-    kept : tuple of Kept
-        Sums that stay what they are in the file.
-    design : Design
-        They are the points of.
-    """
-
-    path: Path
-    files: Mapping[str, Tables]
-    entries: tuple[Entry, ...]
-    values: np.ndarray
-    kept: tuple[Kept, ...] = ()
-    design: Design = Design()
+    path: Path  #: of the file that was asked about
+    files: Mapping[str, Tables]  #: tables by the names of files, those of `path` by an empty name
+    entries: tuple[Entry, ...]  #: what varies
+    values: np.ndarray  #: not a number where a variant leaves an entry as it is in the file
+    kept: tuple[Kept, ...] = ()  #: sums that stay what they are in the file
+    design: Design = Design()  #: they are the points of
 
     def __len__(self) -> int:
         return len(self.values)

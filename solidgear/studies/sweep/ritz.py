@@ -51,21 +51,12 @@ COUPLING = 1e-6
 
 @dataclass(frozen=True)
 class RitzModes:
-    """Lowest elastic modes of one variant.
+    """Lowest elastic modes of one variant."""
 
-    Attributes
-    ----------
-    frequency_hz : (n,) ndarray
-        Ascending, twins twice.
-    names : tuple of str
-        Such as ``bending 1``; twins share theirs.
-    error_bound : float
-        Largest relative error of these frequencies against the body itself; infinite where nothing
-        can be promised.
-    """
-
-    frequency_hz: np.ndarray
-    names: tuple[str, ...]
+    frequency_hz: np.ndarray  #: (n,) ascending, twins twice
+    names: tuple[str, ...]  #: such as ``bending 1``; twins share theirs
+    #: largest relative error of these frequencies against the body itself; infinite where nothing
+    #: can be promised
     error_bound: float
 
 

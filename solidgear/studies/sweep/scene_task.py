@@ -34,27 +34,15 @@ MOST_MODES = 30
 class SceneTask(FileTask):
     """Everything that turns variants of a scene into rows: each is read, meshed and solved for
     itself.
-
-    Attributes
-    ----------
-    model : str or None
-        None for the cheapest mesh whose bars are within the tolerance, variant by variant.
-    tolerance : float or None
-        Relative; that of the scene by default.
-    options : mapping
-        Of the builder of a model that is given.
-    n : int
-        Natural frequencies.
-    first : int
-        A variant that can be read.
     """
 
     variants: SceneVariants
+    #: none for the cheapest mesh whose bars are within the tolerance, variant by variant
     model: str | None
-    tolerance: float | None
-    options: Mapping[str, Any]
-    n: int
-    first: int = 0
+    tolerance: float | None  #: relative; that of the scene by default
+    options: Mapping[str, Any]  #: of the builder of a model that is given
+    n: int  #: natural frequencies
+    first: int = 0  #: a variant that can be read
 
     @cached_property
     def _last(self) -> dict[Any, Settled]:

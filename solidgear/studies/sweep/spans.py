@@ -18,19 +18,12 @@ MOST = 10_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Span:
-    """Values of something that varies.
+    """Values of something that varies."""
 
-    Attributes
-    ----------
-    label : str
-        Name of its column, such as ``bearing.2.position``.
-    spacing : {'linear', 'log', 'list'}
-        How values between the listed ones are drawn: along a line, along its logarithm, or not at
-        all.
-    """
-
-    label: str
+    label: str  #: name of its column, such as ``bearing.2.position``
     values: tuple[float, ...]
+    #: how values between the listed ones are drawn: along a line, along its logarithm, or not at
+    #: all
     spacing: str
 
     @property

@@ -51,36 +51,19 @@ CARRIED = ("radial", "axial", "moment")
 
 @dataclass(frozen=True)
 class TrainTask(FileTask):
-    """Everything that turns variants of a train into rows.
-
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft, in the sequence of the file.
-    ask : tuple of str
-        Some of `ASKED`.
-    n : int or None
-        Elastic modes; those up to the highest frequency, `MOST_MODES` at most, by default.
-    max_frequency : float or None
-        Hz; that of the file by default.
-    settings : mapping
-        Builder options by (side, model).
-    mesh : str or None
-        Whose transmission error drives the train; the first by default.
-    first : int
-        A variant that can be read.
-    """
+    """Everything that turns variants of a train into rows."""
 
     variants: TrainVariants
-    models: Mapping[str, str]
-    ask: tuple[str, ...]
+    models: Mapping[str, str]  #: by shaft, in the sequence of the file
+    ask: tuple[str, ...]  #: some of `ASKED`
+    #: elastic modes; those up to the highest frequency, `MOST_MODES` at most, by default
     n: int | None
-    max_frequency: float | None
+    max_frequency: float | None  #: hz; that of the file by default
     reduction: str
     kept: int
-    settings: Mapping[Any, Mapping]
-    mesh: str | None
-    first: int
+    settings: Mapping[Any, Mapping]  #: builder options by (side, model)
+    mesh: str | None  #: whose transmission error drives the train; the first by default
+    first: int  #: a variant that can be read
 
     @cached_property
     def bench(self) -> Bench:

@@ -42,10 +42,9 @@ class TrainVariants(FileVariants[Train]):
         Tables by side, those of the train by an empty name.
     entries : tuple of Entry
         What varies; the last may be the operating points of the file.
-    point : str or None
-        Operating point that is looked at, by its name or number; the first by default.
     """
 
+    #: operating point that is looked at, by its name or number; the first by default
     point: str | None = None
     _scenes: dict[tuple, Scene] = field(default_factory=dict, repr=False, compare=False)
 

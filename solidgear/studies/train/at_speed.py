@@ -31,14 +31,9 @@ ROLLING = (
 
 @dataclass(frozen=True)
 class Line:
-    """An order at the speed.
+    """An order at the speed."""
 
-    Attributes
-    ----------
-    kind, name, source : str
-        As of :class:`solidgear.studies.train.kinematics.Order`.
-    """
-
+    #: kind, name, source: as of :class:`solidgear.studies.train.kinematics.Order`
     kind: str
     name: str
     source: str
@@ -54,42 +49,28 @@ class Line:
 
 @dataclass(frozen=True)
 class Coincidence:
-    """An order near a natural frequency.
-
-    Attributes
-    ----------
-    off : float
-        Of the order from the mode, as a share of the latter.
-    rpm : float
-        Speed of the pinion at which they meet.
-    """
+    """An order near a natural frequency."""
 
     line: str
     mode: str
     line_hz: float
     mode_hz: float
+    #: low, high: of the order from the mode, as a share of the latter
     off: float
     rpm: float
 
 
 @dataclass(frozen=True)
 class MeasuredPeak:
-    """A peak of a measured spectrum.
-
-    Attributes
-    ----------
-    line : Line or None
-        The nearest order within its bar and the resolution, lines of teeth before those of
-        bearings; None where there is none.
-    others : tuple of str
-        Further orders within their bars and the resolution.
-    """
+    """A peak of a measured spectrum."""
 
     frequency_hz: float
     amplitude: float
     resolution_hz: float
+    #: the nearest order within its bar and the resolution, lines of teeth before those of bearings;
+    #: None where there is none
     line: Line | None
-    others: tuple[str, ...]
+    others: tuple[str, ...]  #: further orders within their bars and the resolution
 
     @property
     def name(self) -> str:
@@ -99,33 +80,19 @@ class MeasuredPeak:
 
 @dataclass(frozen=True, eq=False)
 class AtSpeed:
-    """Findings at one speed.
+    """Findings at one speed."""
 
-    Attributes
-    ----------
-    rpm : float
-        Of the shaft `of`.
-    told : str
-        Origin of the speed.
-    within : float
-        Share of a natural frequency within which orders are told.
-    modes : tuple of (str, float)
-        Natural frequencies looked at.
-    coincidences : tuple of Coincidence
-        Of the mesh, of shafts, of sidebands, of bearings; of each the nearest first.
-    covered : float or None
-        Share of the spectrum's range that lines cover with their bars and the resolution: of peaks
-        that are none of ours, so many are called so by chance.
-    """
-
-    rpm: float
-    told: str
-    within: float
+    rpm: float  #: of the shaft `of`
+    told: str  #: origin of the speed
+    within: float  #: share of a natural frequency within which orders are told
     lines: tuple[Line, ...]
     modes: tuple[tuple[str, float], ...]
+    #: of the mesh, of shafts, of sidebands, of bearings; of each the nearest first
     coincidences: tuple[Coincidence, ...]
     spectrum: Spectrum | None = None
     peaks: tuple[MeasuredPeak, ...] = ()
+    #: share of the spectrum's range that lines cover with their bars and the resolution: of peaks
+    #: that are none of ours, so many are called so by chance
     covered: float | None = None
     of: str = "pinion"
 

@@ -24,41 +24,21 @@ REAL = 1e-6
 
 @dataclass(frozen=True)
 class Teeth:
-    """Teeth of a train, beside their stiffness.
-
-    Attributes
-    ----------
-    half_gap : float
-        b, half of the backlash along the line of action, m.
-    mean_force : float
-        N, along the line of action.
-    errors : tuple of float
-        Unloaded transmission error by orders of the mesh, m.
-    source : str
-        Of the mean force.
-    cycle : tuple of (float, float)
-        How the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts.
-    phases : tuple of float
-        Of the transmission error by orders, rad; none where the file gives none.
-    turns : bool
-        The line of action varies over the cycle.
-    contact_loss_hz : float or None
-        Where a damper in contact alone has the loss factor of the mesh.
-    mesh : str
-        Its name.
-    others : tuple of Teeth
-        Of other meshes, which nothing but their motion excites; no gap where they have no backlash.
-    """
+    """Teeth of a train, beside their stiffness."""
 
     half_gap: float
-    mean_force: float
-    errors: tuple[float, ...]
-    source: str
+    mean_force: float  #: N, along the line of action
+    errors: tuple[float, ...]  #: unloaded transmission error by orders of the mesh, m
+    source: str  #: of the mean force
+    #: how the stiffness varies over a mesh cycle, of its mean, by orders: cosine and sine parts
     cycle: tuple[tuple[float, float], ...] = ()
+    #: of the transmission error by orders, rad; none where the file gives none
     phases: tuple[float, ...] = ()
-    turns: bool = False
+    turns: bool = False  #: the line of action varies over the cycle
+    #: where a damper in contact alone has the loss factor of the mesh
     contact_loss_hz: float | None = None
-    mesh: str = "mesh"
+    mesh: str = "mesh"  #: its name
+    #: of other meshes, which nothing but their motion excites; no gap where they have no backlash
     others: tuple[Teeth, ...] = ()
 
     @property
@@ -88,75 +68,39 @@ class Range:
 
 @dataclass(frozen=True)
 class Jump:
-    """A turning point of the branch, where a sweep falls off it.
-
-    Attributes
-    ----------
-    rising : bool
-        Whether it is met as the speed rises.
-    force : float
-        Dynamic mesh force just before, N.
-    """
+    """A turning point of the branch, where a sweep falls off it."""
 
     frequency_hz: float
-    rising: bool
-    force: float
+    rising: bool  #: whether it is met as the speed rises
+    force: float  #: dynamic mesh force just before, N
 
 
 @dataclass(frozen=True)
 class AtForce:
-    """Jumps at another mean force of the teeth.
+    """Jumps at another mean force of the teeth."""
 
-    Attributes
-    ----------
-    mean_force : float
-        N.
-    jumps_hz : tuple of (float, bool)
-        Each with whether the speed rises.
-    largest : float
-        Largest dynamic mesh force of any periodic motion, N.
-    """
-
-    mean_force: float
-    jumps_hz: tuple[tuple[float, bool], ...]
-    largest: float
+    mean_force: float  #: N
+    jumps_hz: tuple[tuple[float, bool], ...]  #: each with whether the speed rises
+    largest: float  #: largest dynamic mesh force of any periodic motion, N
 
 
 @dataclass(frozen=True, eq=False)
 class Backlash:
-    """Periodic motion of a train by models of its shafts, over frequency, told of one mesh.
+    """Periodic motion of a train by models of its shafts, over frequency, told of one mesh."""
 
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    branch : Branch
-        In order; more than one point may lie at one frequency.
-    seconds : float
-        Processor time, of the branch and its stability.
-    law : int
-        Number of the law whose mesh is told: 0 for that whose transmission error drives the train.
-    periods : int
-        Of the driven mesh after which motions repeat themselves.
-    end : str
-        Of a branch apart, as :class:`solidgear.nonlinear.apart.Apart` says.
-    search : Search or None
-        For branches apart; None where they were not looked for.
-    apart : tuple of Backlash
-        Those that were found.
-    """
-
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft
     teeth: Teeth
     remainder: Remainder = field(repr=False)
-    branch: Branch = field(repr=False)
+    branch: Branch = field(repr=False)  #: in order; more than one point may lie at one frequency
     multiplier: np.ndarray = field(repr=False)
-    seconds: float
+    seconds: float  #: processor time, of the branch and its stability
+    #: number of the law whose mesh is told: 0 for that whose transmission error drives the train
     law: int = 0
-    periods: int = 1
-    end: str = ""
+    periods: int = 1  #: of the driven mesh after which motions repeat themselves
+    end: str = ""  #: of a branch apart, as :class:`solidgear.nonlinear.apart.Apart` says
+    #: for branches apart; None where they were not looked for
     search: Search | None = field(default=None, repr=False)
-    apart: tuple[Backlash, ...] = ()
+    apart: tuple[Backlash, ...] = ()  #: those that were found
 
     @property
     def label(self) -> str:

@@ -30,23 +30,13 @@ PICTURES = 4
 
 @dataclass(frozen=True, eq=False)
 class TrainComparison:
-    """Findings about a train.
-
-    Attributes
-    ----------
-    modes : TrainModes
-        Of the judge.
-    orders : OrderMap
-        Of the judge.
-    seconds : float
-        The whole run.
-    """
+    """Findings about a train."""
 
     workshop: Workshop
     verdict: Verdict
-    modes: TrainModes
-    orders: OrderMap
-    seconds: float
+    modes: TrainModes  #: of the judge
+    orders: OrderMap  #: of the judge
+    seconds: float  #: the whole run
 
     @property
     def top(self) -> Loudest:

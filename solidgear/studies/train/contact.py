@@ -52,28 +52,15 @@ USUAL_PRESSURE_ANGLE = np.radians(20.0)
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """The mesh on both shafts, each vector in the axes of that shaft's scene.
+    """The mesh on both shafts, each vector in the axes of that shaft's scene."""
 
-    Attributes
-    ----------
-    pinion, gear : MeshVector
-        Points from each lumped point.
-    stiffness : float
-        N/m.
-    origin : (3,) ndarray
-        The gear's lumped point from the pinion's, in the pinion's frame, m.
-    wrench : ContactWrench or None
-        Of contact cells.
-    cautions : tuple of str
-        What does not fit together but can be solved.
-    """
-
+    #: pinion, gear: points from each lumped point
     pinion: MeshVector
     gear: MeshVector
-    stiffness: float
-    origin: np.ndarray
-    wrench: ContactWrench | None
-    cautions: tuple[str, ...]
+    stiffness: float  #: N/m
+    origin: np.ndarray  #: (3,) the gear's lumped point from the pinion's, in the pinion's frame, m
+    wrench: ContactWrench | None  #: of contact cells
+    cautions: tuple[str, ...]  #: what does not fit together but can be solved
 
 
 def contact(pair: Pair, coast: bool | None = None) -> Contact:

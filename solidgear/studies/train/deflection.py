@@ -34,36 +34,22 @@ MOVED = ("m moved",) * 3 + ("rad moved",) * 3
 
 @dataclass(frozen=True, eq=False)
 class TrainDeflection:
-    """A train at rest at one operating point, by one model of each shaft.
-
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    mesh_forces : dict of str to float
-        N, along the line of action, by mesh.
-    displacement : dict of str to tuple of Measured
-        Of every lumped point, by its shaft, or of one with several gears by shaft and point, six
-        components; rotations about the axis are against the port of the engine's spring. With a
-        housing also of its centre of mass, in the axes of the train.
-    mounts : dict of str to tuple of Measured
-        Load (6) of the housing on each mount, N and N m.
-    seconds : float
-        To settle, once bodies are there.
-    turns : tuple of StageTurn
-        Of planetary stages.
-    """
+    """A train at rest at one operating point, by one model of each shaft."""
 
     point: OperatingPoint
-    models: dict[str, str]
-    mesh_forces: dict[str, float]
+    models: dict[str, str]  #: by shaft
+    mesh_forces: dict[str, float]  #: N, along the line of action, by mesh
     misalignment: tuple[Measured, ...]
+    #: of every lumped point, by its shaft, or of one with several gears by shaft and point, six
+    #: components; rotations about the axis are against the port of the engine's spring. With a
+    #: housing also of its centre of mass, in the axes of the train.
     displacement: dict[str, tuple[Measured, ...]]
     shafts: tuple[ShaftDeflection, ...]
     notes: tuple[str, ...]
-    seconds: float
+    seconds: float  #: to settle, once bodies are there
+    #: load (6) of the housing on each mount, N and N m
     mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
-    turns: tuple[StageTurn, ...] = ()
+    turns: tuple[StageTurn, ...] = ()  #: of planetary stages
 
     @property
     def mesh_force(self) -> float:
@@ -99,46 +85,24 @@ def _each(places: dict[str, tuple[Measured, ...]]) -> dict:
 
 @dataclass(frozen=True)
 class Standing:
-    """A model of both shafts against the judge, for the misalignment.
-
-    Attributes
-    ----------
-    verdict : str
-        ``within``, ``open`` or ``beyond`` the tolerance.
-    worst : str
-        Number that is farthest off, relative to the size of its kind.
-    gap : float
-        By so much, relative.
-    """
+    """A model of both shafts against the judge, for the misalignment."""
 
     model: str
-    verdict: str
-    worst: str
-    gap: float
+    verdict: str  #: ``within``, ``open`` or ``beyond`` the tolerance
+    worst: str  #: number that is farthest off, relative to the size of its kind
+    gap: float  #: by so much, relative
 
 
 @dataclass(frozen=True, eq=False)
 class Deflections:
-    """A train at one operating point, by several models.
-
-    Attributes
-    ----------
-    tolerance : float
-        Of the misalignment, relative.
-    found : tuple of TrainDeflection
-        The judge last.
-    senses : dict of str to str
-        In which each shaft turns, ``+y`` or ``-y`` of its scene.
-    points : tuple of TrainDeflection
-        By the judge, at every operating point of the train; none where one is asked for.
-    """
+    """A train at one operating point, by several models."""
 
     title: str
-    tolerance: float
-    found: tuple[TrainDeflection, ...]
+    tolerance: float  #: of the misalignment, relative
+    found: tuple[TrainDeflection, ...]  #: the judge last
     standings: tuple[Standing, ...]
     cautions: tuple[str, ...]
-    senses: dict[str, str]
+    senses: dict[str, str]  #: in which each shaft turns, ``+y`` or ``-y`` of its scene
     points: tuple[TrainDeflection, ...] = ()
 
     @property

@@ -43,19 +43,13 @@ STRONG = 500e6
 
 @dataclass(frozen=True)
 class Wheel:
-    """A gear by the numbers of its teeth, at the middle of its face.
+    """A gear by the numbers of its teeth, at the middle of its face."""
 
-    Attributes
-    ----------
-    radius, root, tip : float
-        Of the pitch circle, the root circle and the tip circle, m.
-    module, face_width : float
-        Normal module; the face width is zero where it is not known, m.
-    """
-
+    #: radius, root, tip: of the pitch circle, the root circle and the tip circle, m
     radius: float
     root: float
     tip: float
+    #: module, face_width: normal module; the face width is zero where it is not known, m
     module: float
     face_width: float
 

@@ -72,37 +72,20 @@ def mixes_of(shafts: int) -> list[tuple[str, ...]]:
 
 @dataclass(frozen=True)
 class Departure:
-    """Frequencies at which one mix leaves the judge.
+    """Frequencies at which one mix leaves the judge."""
 
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    unknowns : int
-        Of all bodies.
-    seconds : float
-        To build and reduce them.
-    modes_to_hz : float or None
-        Frequency of the judge's first mode that is missed; None for none.
-    mode, error : str, float or None
-        That mode, and by how much it is off, relative; None where it has no counterpart.
-    force_to_hz : float or None
-        Where the mesh force leaves its band in decibels; None for nowhere.
-    close_to_hz : float or None
-        Where the mesh force is off by more than the tolerance, which any peak or dip that moves a
-        little makes it.
-    cause : str
-        The shaft, ``both`` or ``several``, or the assumption of a lumped model; empty for none.
-    """
-
-    models: dict[str, str]
-    unknowns: int
-    seconds: float
-    modes_to_hz: float | None
+    models: dict[str, str]  #: by shaft
+    unknowns: int  #: of all bodies
+    seconds: float  #: to build and reduce them
+    modes_to_hz: float | None  #: frequency of the judge's first mode that is missed; None for none
+    #: mode, error: that mode, and by how much it is off, relative; None where it has no counterpart
     mode: str
     error: float | None
-    force_to_hz: float | None
+    force_to_hz: float | None  #: where the mesh force leaves its band in decibels; None for nowhere
+    #: where the mesh force is off by more than the tolerance, which any peak or dip that moves a
+    #: little makes it
     close_to_hz: float | None
+    #: the shaft, ``both`` or ``several``, or the assumption of a lumped model; empty for none
     cause: str
 
     @property
@@ -129,25 +112,18 @@ class Departure:
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """Mixes of models of a train, judged.
-
-    Attributes
-    ----------
-    mixes : tuple of Departure
-        Cheapest first, by unknowns and then in the sequence of the ladder; the judge is the last.
-    judge_bar : float or None
-        Largest relative error that the judge's meshes leave in its frequencies, by local problems;
-        None where teeth drive families of two waves and more.
-    responses : tuple of TrainResponse
-        The judge's and those of the mixes that were told apart from it, for a chart.
-    """
+    """Mixes of models of a train, judged."""
 
     train: str
     highest_hz: float
     tolerance: float
     decibels: float
+    #: cheapest first, by unknowns and then in the sequence of the ladder; the judge is the last
     mixes: tuple[Departure, ...]
+    #: largest relative error that the judge's meshes leave in its frequencies, by local problems;
+    #: None where teeth drive families of two waves and more
     judge_bar: float | None
+    #: the judge's and those of the mixes that were told apart from it, for a chart
     responses: tuple[TrainResponse, ...]
     unpublished: dict[str, str]
     cautions: tuple[str, ...]

@@ -45,27 +45,15 @@ HARRIS = "Harris and Kotzalas, inner ring turning"
 
 @dataclass(frozen=True)
 class Order:
-    """One harmonic of something that turns, meshes or rolls.
+    """One harmonic of something that turns, meshes or rolls."""
 
-    Attributes
-    ----------
-    kind : str
-        ``shaft``, ``mesh``, ``sideband``, or of a bearing ``cage``, ``outer``, ``inner`` or
-        ``element``.
-    name : str
-        ``gear 2``, ``mesh 1``, ``mesh 1 - pinion 1``, ``pinion bearing A BPFO 1``.
-    source : str
-        Formula and whose it is, and what of it is estimated.
-    per_turn : float
-        Periods in one turn of the pinion.
-    low, high : float
-        Its bar; equal where teeth alone give it.
-    """
-
+    #: ``shaft``, ``mesh``, ``sideband``, or of a bearing ``cage``, ``outer``, ``inner`` or
+    #: ``element``
     kind: str
-    name: str
-    source: str
-    per_turn: float
+    name: str  #: ``gear 2``, ``mesh 1``, ``mesh 1 - pinion 1``, ``pinion bearing A BPFO 1``
+    source: str  #: formula and whose it is, and what of it is estimated
+    per_turn: float  #: periods in one turn of the pinion
+    #: low, high: its bar; equal where teeth alone give it
     low: float
     high: float
 

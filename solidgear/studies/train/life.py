@@ -18,19 +18,11 @@ from solidgear.studies.train.operation import Operating, OperatingState
 
 @dataclass(frozen=True)
 class TrainBearingLife:
-    """Lives of one bearing of a train.
+    """Lives of one bearing of a train."""
 
-    Attributes
-    ----------
-    end : str
-        Shaft and bearing, such as ``pinion.A``.
-    lives : tuple of BearingLife
-        At each of them.
-    """
-
-    end: str
+    end: str  #: shaft and bearing, such as ``pinion.A``
     points: tuple[OperatingPoint, ...]
-    lives: tuple[BearingLife, ...]
+    lives: tuple[BearingLife, ...]  #: at each of them
 
     @cached_property
     def kind(self) -> str:

@@ -22,72 +22,36 @@ HEIGHT = "the height hangs on the losses and has no bar"
 
 @dataclass(frozen=True)
 class Top:
-    """The largest force of a part of a curve.
+    """The largest force of a part of a curve."""
 
-    Attributes
-    ----------
-    frequency_hz : float
-        Of the order of the teeth.
-    force : float
-        Amplitude, N.
-    order : int
-        Of the teeth, counted from 1.
-    mode : str
-        That makes the peak there; empty where the part ends, or rises without a peak.
-    towards : str
-        Where it ends: the mode whose peak follows as the curve rises; empty where none does.
-    """
-
-    frequency_hz: float
-    force: float
-    order: int
-    mode: str
+    frequency_hz: float  #: of the order of the teeth
+    force: float  #: amplitude, N
+    order: int  #: of the teeth, counted from 1
+    mode: str  #: that makes the peak there; empty where the part ends, or rises without a peak
+    #: where it ends: the mode whose peak follows as the curve rises; empty where none does
     towards: str = ""
 
 
 @dataclass(frozen=True)
 class Loudest:
-    """The largest dynamic mesh force of all orders, beside the speeds that the files give.
+    """The largest dynamic mesh force of all orders, beside the speeds that the files give."""
 
-    Attributes
-    ----------
-    top : Top
-        The largest that teeth meet at the speeds given, or of the range where none is.
-    peak : Top or None
-        The largest peak there, where the curve ends higher.
-    beyond : Top or None
-        A larger force that they do not reach.
-    teeth : PerTurn
-        Of the mesh in one turn of the engine's shaft; 0 where a force on a port drives the train,
-        which no speed belongs to.
-    bar : float or None
-        Relative, of the frequency of the mode of `top`; None where a model has no bar.
-    rpm : float or None
-        Highest speed of the engine's shaft in the files.
-    said_by : str
-        Where that speed stands.
-    begin_hz, asked_hz : float
-        Lowest and highest frequency of the range.
-    orders : int
-        Of the teeth.
-    parting : tuple of str
-        Sentences on teeth that part.
-    what : str
-        In words, which of several meshes has it.
-    """
-
-    top: Top
-    peak: Top | None
-    beyond: Top | None
+    top: Top  #: the largest that teeth meet at the speeds given, or of the range where none is
+    peak: Top | None  #: the largest peak there, where the curve ends higher
+    beyond: Top | None  #: a larger force that they do not reach
+    #: of the mesh in one turn of the engine's shaft; 0 where a force on a port drives the train,
+    #: which no speed belongs to
     teeth: PerTurn
+    #: relative, of the frequency of the mode of `top`; None where a model has no bar
     bar: float | None
-    rpm: float | None
-    said_by: str
+    rpm: float | None  #: highest speed of the engine's shaft in the files
+    said_by: str  #: where that speed stands
+    #: begin_hz, asked_hz: lowest and highest frequency of the range
     begin_hz: float
     asked_hz: float
-    orders: int = 1
-    parting: tuple[str, ...] = ()
-    what: str = "mesh force"
+    orders: int = 1  #: of the teeth
+    parting: tuple[str, ...] = ()  #: sentences on teeth that part
+    what: str = "mesh force"  #: in words, which of several meshes has it
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data that JSON can hold."""

@@ -8,30 +8,18 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Measured:
-    """A number of a deflected train.
-
-    Attributes
-    ----------
-    value : float
-        SI.
-    bar : float or None
-        That meshes leave in it, at most, SI; None where it has none to tell.
-    open : (float, float) or None
-        Least and largest value by what the data of its bearings leave open; None where nothing is.
-    mesh : str
-        Of a misalignment where there are several meshes: its name at the end of `name`.
-    face : float or None
-        Width that a meaning over the face is of, m.
-    """
+    """A number of a deflected train."""
 
     name: str
     unit: str
     meaning: str
-    value: float
-    bar: float | None
+    value: float  #: SI
+    bar: float | None  #: that meshes leave in it, at most, SI; None where it has none to tell
+    #: least and largest value by what the data of its bearings leave open; None where nothing is
     open: tuple[float, float] | None = None
+    #: of a misalignment where there are several meshes: its name at the end of `name`
     mesh: str = ""
-    face: float | None = None
+    face: float | None = None  #: width that a meaning over the face is of, m
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data in SI that JSON can hold."""

@@ -28,21 +28,11 @@ AXIAL = 4
 
 @dataclass(frozen=True, eq=False)
 class TurningLine:
-    """A line of action over the mesh cycle.
+    """A line of action over the mesh cycle."""
 
-    Attributes
-    ----------
-    mean : (12,) ndarray
-        Row of the mean line on the pinion, and on the gear.
-    further : (r, 12) ndarray
-        Rows by which it turns.
-    orders : (o, r) complex ndarray
-        How much of each, by orders of the mesh.
-    """
-
-    mean: np.ndarray
-    further: np.ndarray
-    orders: np.ndarray
+    mean: np.ndarray  #: (12,) row of the mean line on the pinion, and on the gear
+    further: np.ndarray  #: (r, 12) rows by which it turns
+    orders: np.ndarray  #: (o, r) how much of each, by orders of the mesh
 
     def mean_of(self, mesh: RowSpring) -> RowSpring:
         """The teeth along the mean line."""

@@ -45,28 +45,14 @@ BEVEL, PARALLELS = ("E", "P", "G", "shaft angle"), ("in plane", "across", "f_sh"
 
 @dataclass(frozen=True, eq=False)
 class Measure:
-    """One number that tells how two gears lie to each other.
-
-    Attributes
-    ----------
-    unit : str
-        ``m moved`` or ``rad moved``.
-    meaning : str
-        In a few words.
-    row : (N,) ndarray
-        On the coordinates of a system.
-    mesh : str
-        Where there are several: its name at the end of `name`.
-    face : float or None
-        Width that a meaning over the face is of, m.
-    """
+    """One number that tells how two gears lie to each other."""
 
     name: str
-    unit: str
-    meaning: str
-    row: np.ndarray
-    mesh: str = ""
-    face: float | None = None
+    unit: str  #: ``m moved`` or ``rad moved``
+    meaning: str  #: in a few words
+    row: np.ndarray  #: (N,) on the coordinates of a system
+    mesh: str = ""  #: where there are several: its name at the end of `name`
+    face: float | None = None  #: width that a meaning over the face is of, m
 
 
 def measured_names(train: Train) -> tuple[str, ...]:

@@ -44,14 +44,6 @@ MESH: dict[str, dict] = {JUDGE: {"order": 4}}
 class Workshop:
     """Models of the shafts of a train, each made once.
 
-    Attributes
-    ----------
-    reduction : {'rubin', 'craig_bampton'}
-    kept : int
-        Modes of each shaft.
-    settings : mapping
-        Builder options of models, by their names; of one shaft by (side, model), before those.
-
     Examples
     --------
     >>> import solidgear as sg
@@ -63,7 +55,8 @@ class Workshop:
 
     train: Train
     reduction: str = "rubin"
-    kept: int = KEPT
+    kept: int = KEPT  #: modes of each shaft
+    #: builder options of models, by their names; of one shaft by (side, model), before those
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
 
     def __post_init__(self):

@@ -27,84 +27,44 @@ RESOLVED = 1e-3
 
 @dataclass(frozen=True)
 class TrainMode:
-    """One mode of a train.
-
-    Attributes
-    ----------
-    rpm : float
-        Speed of the engine's shaft at which the teeth of the first mesh pass at this frequency.
-    strained : str
-        Part or link with most of the strain energy, and its share.
-    bound : float
-        Largest relative error that the reduction leaves, proven; nothing of the mesh of a solid.
-    driven : bool
-        Whether it strains the mesh or a bearing at all.
-    mesh : float or None
-        Largest relative error that the meshes of harmonic shafts leave, by local problems; None
-        where there are none, and where teeth drive families of two waves and more.
-    """
+    """One mode of a train."""
 
     name: str
     frequency_hz: float
+    #: speed of the engine's shaft at which the teeth of the first mesh pass at this frequency
     rpm: float
-    strained: str
+    strained: str  #: part or link with most of the strain energy, and its share
+    #: largest relative error that the reduction leaves, proven; nothing of the mesh of a solid
     bound: float
-    driven: bool = True
+    driven: bool = True  #: whether it strains the mesh or a bearing at all
+    #: largest relative error that the meshes of harmonic shafts leave, by local problems; None
+    #: where there are none, and where teeth drive families of two waves and more
     mesh: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class TrainModes:
-    """Modes of a train by models of its shafts.
-
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    coordinates : int
-        Of the coupled system.
-    kept : dict of str to int
-        Coordinates of each shaft.
-    unknowns : dict of str to int
-        Of the bodies they were reduced from.
-    seconds : float
-        To build and reduce both shafts.
-    rigid : int
-        Motions at exactly 0 Hz.
-    free : tuple of str
-        What moves freely beside the train, in words.
-    contact : tuple of str
-        What contact cells leave over, in words; empty without any.
-    undriven : dict of str to dict of int to tuple of float
-        Free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
-        diameters; they take no part in the train.
-    local : tuple of str
-        What harmonics at a local mesh point add, in words.
-    speeds : str
-        Shaft that the speeds of modes are told of.
-    turn : str
-        What a turn of a carrier changes, in words.
-    hidden : str
-        That a mode above the list may in truth lie within it, in words.
-    """
+    """Modes of a train by models of its shafts."""
 
     train: str
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft
     reduction: str
-    coordinates: int
-    kept: dict[str, int]
-    unknowns: dict[str, int]
-    seconds: float
+    coordinates: int  #: of the coupled system
+    kept: dict[str, int]  #: coordinates of each shaft
+    unknowns: dict[str, int]  #: of the bodies they were reduced from
+    seconds: float  #: to build and reduce both shafts
     modes: tuple[TrainMode, ...]
-    rigid: int
-    free: tuple[str, ...]
-    contact: tuple[str, ...]
+    rigid: int  #: motions at exactly 0 Hz
+    free: tuple[str, ...]  #: what moves freely beside the train, in words
+    contact: tuple[str, ...]  #: what contact cells leave over, in words; empty without any
     unpublished: dict[str, str]
     cautions: tuple[str, ...]
+    #: free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
+    #: diameters; they take no part in the train
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
-    local: tuple[str, ...] = ()
-    speeds: str = "pinion"
-    turn: str = ""
+    local: tuple[str, ...] = ()  #: what harmonics at a local mesh point add, in words
+    speeds: str = "pinion"  #: shaft that the speeds of modes are told of
+    turn: str = ""  #: what a turn of a carrier changes, in words
     hidden: str = ""
 
     def as_dict(self) -> dict:

@@ -318,23 +318,13 @@ def over_force(
 
 @dataclass(frozen=True)
 class InTime:
-    """A motion found in time, beside the nearest of the branch.
-
-    Attributes
-    ----------
-    rising : bool
-        Whether the speed rose to it.
-    cycle : int
-        Periods of the mesh after which it repeats itself; 0 where it never did.
-    branch_force : float
-        N, of the stable motion nearest to it.
-    """
+    """A motion found in time, beside the nearest of the branch."""
 
     frequency_hz: float
-    rising: bool
-    cycle: int
+    rising: bool  #: whether the speed rose to it
+    cycle: int  #: periods of the mesh after which it repeats itself; 0 where it never did
     force: float
-    branch_force: float
+    branch_force: float  #: N, of the stable motion nearest to it
 
     @property
     def off(self) -> float:

@@ -33,59 +33,33 @@ IN_CONTACT = (
 
 @dataclass(frozen=True)
 class Sufficiency:
-    """A mix of models beside the first one.
-
-    Attributes
-    ----------
-    jumps : float or None
-        Largest relative error of the frequency of a jump; None where there are more or fewer.
-    count : int
-        Of its jumps.
-    force : float
-        Relative error of the largest dynamic mesh force, of several meshes the worst in decibels.
-    mesh : str
-        That mesh.
-    at : float
-        Relative error of where that of the driven mesh is.
-    lost : float or None
-        Largest relative error of an end of the ranges in which teeth part; None as above.
-    enough : bool
-        Jumps within the tolerance, all of them there, and the force within the decibels.
-    """
+    """A mix of models beside the first one."""
 
     label: str
+    #: largest relative error of the frequency of a jump; None where there are more or fewer
     jumps: float | None
-    count: int
+    count: int  #: of its jumps
+    #: relative error of the largest dynamic mesh force, of several meshes the worst in decibels
     force: float
-    mesh: str
-    at: float
+    mesh: str  #: that mesh
+    at: float  #: relative error of where that of the driven mesh is
+    #: largest relative error of an end of the ranges in which teeth part; None as above
     lost: float | None
+    #: jumps within the tolerance, all of them there, and the force within the decibels
     enough: bool
     seconds: float
 
 
 @dataclass(frozen=True, eq=False)
 class BacklashTold:
-    """A train with backlash by several mixes of models, the first one the judge of the others.
-
-    Attributes
-    ----------
-    lever : float
-        Torque of the engine's shaft over the force of the driven mesh, m.
-    in_time : tuple of InTime
-        Of the first.
-    over_force : tuple of AtForce
-        Of the first.
-    runs : tuple of SpeedRun
-        Of the first.
-    """
+    """A train with backlash by several mixes of models, the first one the judge of the others."""
 
     train: Train
     found: tuple[Backlash, ...]
-    lever: float
-    in_time: tuple[InTime, ...] = ()
-    over_force: tuple[AtForce, ...] = ()
-    runs: tuple[SpeedRun, ...] = ()
+    lever: float  #: torque of the engine's shaft over the force of the driven mesh, m
+    in_time: tuple[InTime, ...] = ()  #: of the first
+    over_force: tuple[AtForce, ...] = ()  #: of the first
+    runs: tuple[SpeedRun, ...] = ()  #: of the first
 
     @property
     def judge(self) -> Backlash:

@@ -46,34 +46,19 @@ LOOP = (
 
 @dataclass(frozen=True, eq=False)
 class OperatingState:
-    """A train at rest at one operating point.
-
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    mesh_forces : dict of str to float
-        Along the line of action, N, by mesh; zero of one that the torque does not pass.
-    equilibrium : SystemEquilibrium
-        Of all parts; the spring port of the engine does not turn.
-    system : System
-        Without the bearings, in whose coordinates the equilibrium is told.
-    made : dict of str to Catalogued
-        Bearings of catalogue data, by ``side.name``.
-    outside : dict of str to (6,) ndarray
-        Loads from outside on ports of parts: torques of both rotors and other forces.
-    notes : tuple of str
-        What is to be said of it, one sentence each.
-    """
+    """A train at rest at one operating point."""
 
     point: OperatingPoint
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft
+    #: along the line of action, N, by mesh; zero of one that the torque does not pass
     mesh_forces: dict[str, float]
-    equilibrium: SystemEquilibrium
+    equilibrium: SystemEquilibrium  #: of all parts; the spring port of the engine does not turn
+    #: without the bearings, in whose coordinates the equilibrium is told
     system: System = field(repr=False)
-    made: dict[str, Catalogued] = field(repr=False)
+    made: dict[str, Catalogued] = field(repr=False)  #: bearings of catalogue data, by ``side.name``
+    #: loads from outside on ports of parts: torques of both rotors and other forces
     outside: dict[str, np.ndarray] = field(repr=False)
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  #: what is to be said of it, one sentence each
 
     @property
     def mesh_force(self) -> float:

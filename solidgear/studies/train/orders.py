@@ -27,64 +27,38 @@ MOST_ORDERS, SHAFT_ORDERS = 20, (1, 2)
 
 @dataclass(frozen=True, eq=False)
 class OrderLine:
-    """One order over the speed of the pinion.
+    """One order over the speed of the pinion."""
 
-    Attributes
-    ----------
-    name : str
-        ``mesh 1``, ``pinion 1``, ``gear 2``.
-    per_turn : float
-        Periods in one turn of the pinion.
-    rpm, force : (s,) ndarray or None
-        Speeds of the pinion and amplitude of the mesh force, N, where the transmission error has
-        this order.
-    """
-
-    name: str
-    per_turn: float
+    name: str  #: ``mesh 1``, ``pinion 1``, ``gear 2``
+    per_turn: float  #: periods in one turn of the pinion
+    #: rpm, force: (s,) speeds of the pinion and amplitude of the mesh force, N, where the
+    #: transmission error has this order
     rpm: np.ndarray | None = None
     force: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """Crossing of an order and a natural frequency.
-
-    Attributes
-    ----------
-    rpm : float
-        Of the pinion.
-    force : float or None
-        Of the mesh there, N; None for an order that the transmission error does not have.
-    """
+    """Crossing of an order and a natural frequency."""
 
     line: str
     mode: str
     frequency_hz: float
-    rpm: float
+    rpm: float  #: of the pinion
+    #: of the mesh there, N; None for an order that the transmission error does not have
     force: float | None
 
 
 @dataclass(frozen=True, eq=False)
 class OrderMap:
-    """Order lines and natural frequencies of a train.
-
-    Attributes
-    ----------
-    teeth : PerTurn
-        Of the mesh whose error drives the train.
-    modes : tuple of TrainMode
-        Elastic ones.
-    crossings : tuple of Crossing
-        By order, then by frequency.
-    """
+    """Order lines and natural frequencies of a train."""
 
     highest_hz: float
     highest_rpm: float
-    teeth: PerTurn
+    teeth: PerTurn  #: of the mesh whose error drives the train
     lines: tuple[OrderLine, ...]
-    modes: tuple[TrainMode, ...]
-    crossings: tuple[Crossing, ...]
+    modes: tuple[TrainMode, ...]  #: elastic ones
+    crossings: tuple[Crossing, ...]  #: by order, then by frequency
 
 
 def order_map(

@@ -98,17 +98,10 @@ def mac(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class SeenMode(BarredMode):
-    """An elastic mode of one of the trains; it has no bar without a harmonic shaft.
-
-    Attributes
-    ----------
-    driven : bool
-        Whether it moves a port at all.
-    shares : dict of str to float
-        Of its strain energy, as of :func:`solidgear.studies.train.strain.strain_shares`.
-    """
+    """An elastic mode of one of the trains; it has no bar without a harmonic shaft."""
 
     driven: bool
+    #: of its strain energy, as of :func:`solidgear.studies.train.strain.strain_shares`
     shares: dict[str, float]
 
 

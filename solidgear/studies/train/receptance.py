@@ -28,30 +28,17 @@ End = tuple[str, str]
 
 @dataclass(frozen=True, eq=False)
 class TrainReceptance:
-    """Motion of one end for a unit force on another.
+    """Motion of one end for a unit force on another."""
 
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    from_, to : (str, str)
-        Port and direction.
-    unit : str
-        Of the values.
-    frequency_hz : (f,) ndarray
-    value : (f,) complex ndarray
-    peaks : tuple of (float, float, str)
-        Hz, amplitude, and the mode that makes it.
-    """
-
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft
     damping: str
+    #: from_, to: port and direction
     from_: End
     to: End
-    unit: str
-    frequency_hz: np.ndarray
-    value: np.ndarray
-    peaks: tuple[tuple[float, float, str], ...]
+    unit: str  #: of the values
+    frequency_hz: np.ndarray  #: (f,)
+    value: np.ndarray  #: (f,)
+    peaks: tuple[tuple[float, float, str], ...]  #: hz, amplitude, and the mode that makes it
 
     @property
     def label(self) -> str:

@@ -11,71 +11,39 @@ from solidgear.studies.train.shaft import told_mix
 
 @dataclass(frozen=True)
 class Peak:
-    """A peak of the mesh force.
-
-    Attributes
-    ----------
-    force : float
-        Amplitude, N.
-    mode : str
-        That makes it.
-    """
+    """A peak of the mesh force."""
 
     frequency_hz: float
-    force: float
+    force: float  #: amplitude, N
     mode: str
 
 
 @dataclass(frozen=True, eq=False)
 class OrderCurve:
-    """Mesh force by one order of the transmission error.
+    """Mesh force by one order of the transmission error."""
 
-    Attributes
-    ----------
-    order : int
-        Counted from 1.
-    force : (f,) ndarray
-        Amplitude at the frequencies of the response, which are those of the order itself, N.
-    peaks : tuple of Peak
-    """
-
-    order: int
+    order: int  #: counted from 1
+    #: (f,) amplitude at the frequencies of the response, which are those of the order itself, N
     force: np.ndarray
     peaks: tuple[Peak, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class TrainResponse:
-    """Amplitudes over frequency.
+    """Amplitudes over frequency."""
 
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft.
-    frequency_hz : (f,) ndarray
-        Of the excitation; the mesh frequency of its first order.
-    columns : dict of str to (f,) complex ndarray
-        By name and unit, such as ``mesh force [N]``, of the mesh whose error drives the train;
-        harmonics of the mesh over the frequency of the first.
-    orders : tuple of OrderCurve
-        Mesh force order by order.
-    parting : tuple of str
-        Sentences on teeth whose mean force at the operating point is smaller than a dynamic one.
-    seconds : float
-        To build and reduce both shafts.
-    name : str
-        Of the train, where it is shown beside another one.
-    """
-
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft
     damping: str
-    frequency_hz: np.ndarray
+    frequency_hz: np.ndarray  #: (f,) of the excitation; the mesh frequency of its first order
+    #: by name and unit, such as ``mesh force [N]``, of the mesh whose error drives the train;
+    #: harmonics of the mesh over the frequency of the first
     columns: dict[str, np.ndarray]
-    orders: tuple[OrderCurve, ...]
+    orders: tuple[OrderCurve, ...]  #: mesh force order by order
+    #: sentences on teeth whose mean force at the operating point is smaller than a dynamic one
     parting: tuple[str, ...]
     cautions: tuple[str, ...]
-    seconds: float
-    name: str = ""
+    seconds: float  #: to build and reduce both shafts
+    name: str = ""  #: of the train, where it is shown beside another one
 
     @property
     def peaks(self) -> tuple[Peak, ...]:

@@ -73,26 +73,15 @@ def told_mix(models: Mapping[str, str]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class ShaftModel:
-    """One shaft by one model, a part of a system.
-
-    Attributes
-    ----------
-    body : Body
-        What the part was made of.
-    unknowns : int
-        Of the body's mesh.
-    seconds : float
-        To build and reduce it.
-    local : dict
-        The part with harmonics that teeth drive at a mesh point, by these.
-    """
+    """One shaft by one model, a part of a system."""
 
     side: str
     rung: str
     part: Part
-    body: Body
-    unknowns: int
-    seconds: float
+    body: Body  #: what the part was made of
+    unknowns: int  #: of the body's mesh
+    seconds: float  #: to build and reduce it
+    #: the part with harmonics that teeth drive at a mesh point, by these
     local: dict[tuple, Part] = field(default_factory=dict, repr=False)
 
     @cached_property

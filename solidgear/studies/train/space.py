@@ -35,23 +35,14 @@ ALONG, AROUND, FINE, MOST = 9, 72, 6, 500
 
 @dataclass(frozen=True)
 class Piece:
-    """A length of a shaft with straight meridians; pairs are its values at both ends.
+    """A length of a shaft with straight meridians; pairs are its values at both ends."""
 
-    Attributes
-    ----------
-    name : str
-        In words.
-    y, outer, inner : (float, float)
-        m.
-    meshes : frozenset of str
-        Meshes whose teeth it has or carries.
-    """
-
-    name: str
+    name: str  #: in words
+    #: y, outer, inner: m
     y: tuple[float, float]
     outer: tuple[float, float]
     inner: tuple[float, float] = (0.0, 0.0)
-    meshes: frozenset[str] = frozenset()
+    meshes: frozenset[str] = frozenset()  #: meshes whose teeth it has or carries
 
     def radii(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Inner and outer radius at places."""
@@ -60,20 +51,12 @@ class Piece:
 
 @dataclass(frozen=True)
 class Overlap:
-    """Two shafts that take the same space.
-
-    Attributes
-    ----------
-    shafts, pieces : (str, str)
-    depth : float
-        How far the one reaches into the other where that is most, m.
-    places : ((float, float), (float, float))
-        From where to where along each shaft, m.
-    """
+    """Two shafts that take the same space."""
 
     shafts: tuple[str, str]
     pieces: tuple[str, str]
-    depth: float
+    depth: float  #: how far the one reaches into the other where that is most, m
+    #: from where to where along each shaft, m
     places: tuple[tuple[float, float], tuple[float, float]]
 
     def __str__(self) -> str:

@@ -15,15 +15,9 @@ from solidgear.studies.train.backlash import Backlash, Range
 
 @dataclass(frozen=True, eq=False)
 class SpeedRun:
-    """A run through the range of a branch, told of one mesh.
+    """A run through the range of a branch, told of one mesh."""
 
-    Attributes
-    ----------
-    ramp : float
-        Of the mesh frequency, Hz/s; negative as the speed falls.
-    """
-
-    ramp: float
+    ramp: float  #: of the mesh frequency, Hz/s; negative as the speed falls
     run: RunUp = field(repr=False)
     found: Backlash = field(repr=False)
 

@@ -14,18 +14,10 @@ RPM = 30 / pi
 
 @dataclass(frozen=True)
 class Fastest:
-    """The highest speed of the engine's shaft in the files.
+    """The highest speed of the engine's shaft in the files."""
 
-    Attributes
-    ----------
-    rpm : float
-        Zero where all that is given stands still.
-    said_by : str
-        Where it stands.
-    """
-
-    rpm: float
-    said_by: str
+    rpm: float  #: zero where all that is given stands still
+    said_by: str  #: where it stands
 
 
 def fastest(train: Train, scenes: Mapping[str, Scene]) -> Fastest | None:

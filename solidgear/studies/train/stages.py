@@ -35,24 +35,15 @@ FIXED = 1e20
 
 @dataclass(frozen=True, eq=False)
 class StageAtWork:
-    """A planetary stage of a train, on the flanks that carry.
-
-    Attributes
-    ----------
-    stage : Stage
-    way, turns : float
-        1 where the sun drives, and turns, about +y of its scene, else -1; a sun that is driven turns
-        against its torque on the planets.
-    y : float
-        Of the middle of the sun in its scene, m.
-    holds : (str, PortMotion) or None
-        End that holds the ring, and its port in the axes of the stage; ground without it.
-    """
+    """A planetary stage of a train, on the flanks that carry."""
 
     stage: Stage
+    #: way, turns: 1 where the sun drives, and turns, about +y of its scene, else -1; a sun that is
+    #: driven turns against its torque on the planets
     way: float
     turns: float
-    y: float
+    y: float  #: of the middle of the sun in its scene, m
+    #: end that holds the ring, and its port in the axes of the stage; ground without it
     holds: tuple[str, PortMotion] | None = None
 
     @property

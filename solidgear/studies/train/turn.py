@@ -39,19 +39,12 @@ ALIKE = 3
 
 @dataclass(frozen=True, eq=False)
 class StageTurn:
-    """Mesh forces of a stage over a turn of its carrier.
-
-    Attributes
-    ----------
-    angle : (a,) ndarray
-        Of the carrier from its position in the file, the way it turns, rad.
-    force : (a, n) ndarray
-        Of each planet, with the sun and, for it spins freely, with the ring alike, N; less than zero
-        would need teeth that pull.
-    """
+    """Mesh forces of a stage over a turn of its carrier."""
 
     stage: str
-    angle: np.ndarray
+    angle: np.ndarray  #: (a,) of the carrier from its position in the file, the way it turns, rad
+    #: (a, n) of each planet, with the sun and, for it spins freely, with the ring alike, N; less
+    #: than zero would need teeth that pull
     force: np.ndarray
 
     @property

@@ -49,22 +49,13 @@ FORCE = "mesh force [N]"
 
 @dataclass(frozen=True, eq=False)
 class OneTrain(Side):
-    """One of the two, by one model of each shaft.
-
-    Attributes
-    ----------
-    response : TrainResponse
-        Named by the label.
-    modes : tuple of SeenMode
-        Elastic ones, also some above the highest frequency, where partners may lie.
-    loaded : TrainDeflection or None
-        At its operating point.
-    """
+    """One of the two, by one model of each shaft."""
 
     workshop: Workshop
-    response: TrainResponse
+    response: TrainResponse  #: named by the label
+    #: elastic ones, also some above the highest frequency, where partners may lie
     modes: tuple[SeenMode, ...]
-    loaded: TrainDeflection | None
+    loaded: TrainDeflection | None  #: at its operating point
 
     @property
     def title(self) -> str:
@@ -95,24 +86,13 @@ class PeakPair:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class TwoTrains(Beside[OneTrain, SeenMode]):
-    """Two trains beside each other.
+    """Two trains beside each other."""
 
-    Attributes
-    ----------
-    models : dict of str to str
-        By shaft, the same in both.
-    mesh : str
-        By whose transmission error both are driven, as :class:`solidgear.scene.gears.Pair` has it.
-    highest_hz : float
-        One mode of each pair at least lies below it.
-    peaks : tuple of PeakPair
-        Of the mesh force, by frequency.
-    """
-
-    models: dict[str, str]
+    models: dict[str, str]  #: by shaft, the same in both
+    #: by whose transmission error both are driven, as :class:`solidgear.scene.gears.Pair` has it
     mesh: str
-    highest_hz: float
-    peaks: tuple[PeakPair, ...]
+    highest_hz: float  #: one mode of each pair at least lies below it
+    peaks: tuple[PeakPair, ...]  #: of the mesh force, by frequency
 
     def told(self, units: Units = ENGINEERING) -> list[str]:
         """Conclusions, with forces in some units."""
