@@ -58,7 +58,12 @@ def lines_by_kind(path: Path) -> Counter[str]:
 def documented(tree: ast.AST) -> Iterator[ast.expr]:
     """Expressions that are docstrings."""
     holders = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
-    for node in ast.walk(tree):
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        # statements alone: expressions are most of a tree, and hold no docstring
+        for name in ("body", "orelse", "handlers", "finalbody", "cases"):
+            waiting += getattr(node, name, ())
         if isinstance(node, holders):
             match node.body:
                 case [ast.Expr(value=ast.Constant(value=str()) as text), *_]:
