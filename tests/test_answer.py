@@ -114,6 +114,7 @@ def test_only_what_is_asked_is_built_and_the_numbers_are_the_same(scenes):
     assert part["bending 1"] == pytest.approx(full["bending 1"], rel=1e-7)
 
 
+@pytest.mark.long
 def test_from_the_second_mesh_on_only_what_is_open_is_solved(scenes):
     scene = scenes["pinion_overhung"]
     found = answer(scene, 1e-3, ["C_thx", "bending 1", "axial 1"])
@@ -142,6 +143,7 @@ def rod(length=2.0, **rest):
     return sg.Scene.from_parts([bar], port=port, bearings=ends, **rest)
 
 
+@pytest.mark.long
 def test_a_mode_is_found_and_the_same_whatever_else_is_asked():
     """Of a bar 67 diameters long ten bending modes lie below the first along it, and more below its
     twist.

@@ -245,6 +245,7 @@ def test_end_for_end_gives_the_same_frequency(kind):
     assert found[0] == pytest.approx(found[1], rel=1e-11)
 
 
+@pytest.mark.long
 def test_fillet_chamfer_and_cones_enclose_each_other():
     """Stiffness grows with the material in a corner: nothing, chamfer, and a fillet of twice that
     area around it; a chain of cones inside an arc is between.

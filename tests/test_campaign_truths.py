@@ -209,6 +209,7 @@ def test_rigid_motion_strains_nothing_and_energies_are_those_of_the_matrices():
         assert solid.energy(family, moved) == pytest.approx(moved.T @ stiffness @ moved, rel=1e-10)
 
 
+@pytest.mark.long
 def test_a_rigid_seat_stays_round():
     """Rings hold the wall there: no ovalising is as slow as without."""
     loose, kept = (

@@ -165,6 +165,7 @@ def test_the_plane_of_the_key_is_the_softer_one():
     assert other[0, 0] == pytest.approx(compliance[2, 2], rel=1e-3)
 
 
+@pytest.mark.long
 def test_no_plane_no_halves():
     crossed = shaft(KEY, Keyway(**KEY.model_dump() | {"name": "k2", "angle": "50 deg", "y": 0.075}))
     body = sg.build(crossed, "solid", refinement=0.25)

@@ -98,6 +98,7 @@ def test_a_shaft_that_is_turned_around_has_the_same_factors(found):
         assert turned[load].angle == pytest.approx(found.factors[load].angle, abs=1e-9)
 
 
+@pytest.mark.long
 def test_stress_grows_without_end_where_the_radius_goes_to_nothing():
     """As r^-0.456: Williams's exponent of a right-angled corner, 1 - 0.544."""
     values = [

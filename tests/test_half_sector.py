@@ -107,6 +107,7 @@ def test_motions_of_the_half_are_motions_of_the_sector():
     assert abs(k @ np.tile([0.0, 1.0, 0.0], n)).max() < 1e-12 * abs(k).max()
 
 
+@pytest.mark.long
 def test_what_is_uneven_takes_the_whole_sector():
     """Spiral teeth have no plane; holes beside teeth, or beside other holes, lie in one or not."""
     several = TEETH.with_changes(count=14)

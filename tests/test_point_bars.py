@@ -169,6 +169,7 @@ def test_bars_of_the_whole_matrix(settled):
     assert settled.reached and "K_zz@wheel@wheel" not in settled.missing
 
 
+@pytest.mark.long
 def test_stiffness_between_points_carries_what_its_inverse_loses(shaft):
     found = study(shaft, "harmonic", evidence=False, most=1, counted=False)
     here = found.ties["as scene"]

@@ -203,6 +203,7 @@ def test_a_step_that_is_too_coarse_for_the_contact_is_refused():
         run(ideal, 512)
 
 
+@pytest.mark.long
 def test_in_time_the_modulation_is_the_closed_form_within_a_few_per_cent(turned):
     reducer, motion = turned
     settled = motion.force[1024:, 0]

@@ -221,6 +221,7 @@ def test_a_right_hand_turns_about_y_along_y():
         assert (turned[at].max() + turned[at].min()) / 2 == pytest.approx(wanted, abs=1e-9)
 
 
+@pytest.mark.long
 def test_pictures_are_of_all_copies():
     """The surface of the sector's copies moves as that of the whole, point by point."""
     from scipy.spatial import cKDTree

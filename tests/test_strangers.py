@@ -54,6 +54,7 @@ def test_a_thin_tube_ovalises_below_its_bending():
     assert sentence.startswith("No mode of this mesh missed below") and "n = 2" in sentence
 
 
+@pytest.mark.long
 def test_a_flange_warps_below_the_range_asked_for():
     modes = found("hypoid_pinion")
     assert any(
@@ -168,7 +169,7 @@ def test_check_is_never_the_opposite_of_compare(name, compared, checked):
 @pytest.mark.parametrize(
     "name",
     [
-        "input_shaft",
+        pytest.param("input_shaft", marks=pytest.mark.long),
         pytest.param("hypoid_pinion", marks=pytest.mark.slow),
         pytest.param("motor_rotor", marks=pytest.mark.slow),
     ],

@@ -119,6 +119,7 @@ def test_every_bar_is_within_a_tenth_of_the_tolerance(thicker):
             assert 0 < one["bar_a"] <= told["tolerance"] * one["scale"]
 
 
+@pytest.mark.long
 def test_a_shaft_beside_itself_differs_nowhere_and_nothing_is_resolved():
     scene = loose(sg.load(SCENE))
     found = sg.compare(scene, scene)

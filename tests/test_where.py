@@ -97,6 +97,7 @@ def test_cells_cut_at_a_place_take_its_share_of_the_bar_away(scenes, name, quant
         assert 0.75 * row.share < 1 - finer.total / found.total < 1.02 * row.share
 
 
+@pytest.mark.long
 def test_a_stiffness_has_its_error_where_its_own_forces_strain_the_shaft():
     scene, ends = shaft(*STEPPED), {(0.38, 0.02): 3, (0.40, 0.02): 3}
     found, finer = (where(scene, "K_zz", Meshed(cuts=cuts).options()) for cuts in ({}, ends))
@@ -167,6 +168,7 @@ def test_other_ties_have_their_places(attachment):
     assert shares(found)[f"{word} port"] > 0.02 and f"{word} A" in shares(found)
 
 
+@pytest.mark.long
 def test_bearings_that_couple_families_bring_their_loads_along():
     couplings = {"kyz": "2e8 N/m", "kz_thy": "4e6 N/rad"}
     stiff = {**RADIAL, "kyy": "3e8 N/m", "kthy": "1e5 N*m/rad"}
