@@ -113,9 +113,8 @@ class SceneError(SolidgearError, ValueError):
         if not count:
             return self.sentence
         if not self.where:  # a scene made in Python: the rest is in `problems`
-            return (
-                f"{self.sentence} (and {count} more problem{'s' * (count > 1)}: see its problems)"
-            )
+            more = "1 more problem" if count == 1 else f"{count} more problems"
+            return f"{self.sentence} (and {more}: see its problems)"
         lines = [
             f"{count + 1} problems in {printable(_file_name(self.where))}",
             *("  " + one.sentence for one in self.problems[:TOLD]),
@@ -232,13 +231,14 @@ def _pieces(value: Any, width: int) -> Iterator[str]:
     if isinstance(value, Mapping):
         yield "{"
         for k, (key, entry) in enumerate(value.items()):
-            yield ", " * (k > 0) + _quoted(str(key), width) + ": "
+            yield (", " if k > 0 else "") + _quoted(str(key), width) + ": "
             yield from _pieces(entry, width)
         yield "}"
     elif isinstance(value, (list, tuple)):
         yield "["
         for k, entry in enumerate(value):
-            yield ", " * (k > 0)
+            if k > 0:
+                yield ", "
             yield from _pieces(entry, width)
         yield "]"
     elif value is None or isinstance(value, bool):

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from validation.house.floors import MAY_IMPORT
+from validation.house.source import sources
+from validation.house.words import shapes
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
 #: lines of a file
@@ -139,3 +141,9 @@ def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs(
         ours["divide"]()
     with pytest.warns(RuntimeWarning, match="invalid value"):
         theirs["divide"]()
+
+
+def test_no_sentence_is_multiplied_by_a_truth_value_and_no_condition_holds_another():
+    """What a reader would have to parse twice; names are starred in calls still."""
+    forms = shapes(sources(PACKAGE))
+    assert set(forms) <= {"starred name in a call"}

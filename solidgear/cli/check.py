@@ -90,7 +90,7 @@ def thoughts(text: str) -> str:
             parts[-1] += letter
     first, *others = (part.strip() for part in parts)
     begun = [part if part.startswith(COMMAND) else part[:1].upper() + part[1:] for part in others]
-    return ". ".join([first, *begun]) + "." * (not text.endswith("."))
+    return ". ".join([first, *begun]) + ("." if not text.endswith(".") else "")
 
 
 def _spared(record: dict, verdicts: dict) -> bool:

@@ -74,7 +74,7 @@ def _train(
     force = ", ".join(
         shown.text(size, "N", 5)
         + name.removeprefix("mesh")
-        + " (each planet)" * (name in [stage.name for stage in train.stages])
+        + (" (each planet)" if name in [stage.name for stage in train.stages] else "")
         for name, size in judge.mesh_forces.items()
     )
     lead = f"At {at.label}: {force} along the line of action."

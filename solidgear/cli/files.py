@@ -30,7 +30,9 @@ def new(
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
     made = {path.parent / one: content for one, content in start(kind, path.stem).items()}
     _write({one: content.encode() for one, content in made.items()})
-    beside = f" (with {', '.join(str(one) for one in made if one != path)})" * (len(made) > 1)
+    beside = (
+        f" (with {', '.join(str(one) for one in made if one != path)})" if len(made) > 1 else ""
+    )
     typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
 
 

@@ -202,7 +202,8 @@ def refusals(found: Swept | Summary) -> list[str]:
     """Sentences on variants that were refused, if any were: a reason each, the commonest first."""
     most = sorted(found.whys.items(), key=lambda why: -why[1])
     told = [
-        f"Refused{f' ({count} variants)' * (count > 1)}: {why}" for why, count in most[:REASONS]
+        f"Refused{f' ({count} variants)' if count > 1 else ''}: {why}"
+        for why, count in most[:REASONS]
     ]
     if len(most) > REASONS:
         left = sum(count for _, count in most[REASONS:])

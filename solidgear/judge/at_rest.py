@@ -53,7 +53,8 @@ def opened_words(
     beyond = {}
     for name, share in shares.items():
         bar = bars.get(name)
-        if share > (bar if bar is not None and isfinite(bar) else tolerance):
+        limit = bar if bar is not None and isfinite(bar) else tolerance
+        if share > limit:
             beyond[name] = share
     if not beyond:
         return []

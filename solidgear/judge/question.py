@@ -97,9 +97,10 @@ def mesh_words(level: Mapping[str, Any]) -> str:
             continue
         if name == "cuts" and name in level:
             cuts, lines = sum(c for *_, c in level[name]), len(level.get("across", ()))
-            out += [f"{cuts} cut{'s' * (cuts > 1)} at corners"] * bool(cuts) + [
-                f"{lines} line{'s' * (lines > 1)}"
-            ] * bool(lines)
+            if cuts:
+                out.append(f"{cuts} cut{'s' if cuts > 1 else ''} at corners")
+            if lines:
+                out.append(f"{lines} line{'s' if lines > 1 else ''}")
         elif name in level:
             out.append(f"{word} {level[name]}")
     if "coarser" in level:

@@ -170,10 +170,12 @@ class Tied(Loop):
         """Unknowns from which on modes of a mesh of a list are counted."""
         if not self.counted or self.model.bounded:
             return math.inf
-        if k == len(self.plan.levels) - 1 if self.plan.fixed else k >= 2:
+        if self.plan.fixed:
+            return 0 if k == len(self.plan.levels) - 1 else math.inf
+        if k >= 2:
             return 0
         # the second level is counted as well where a third one may be too dear to be solved
-        return HEAVY + 1 if not self.plan.fixed and k == 1 else math.inf
+        return HEAVY + 1 if k == 1 else math.inf
 
     def judge(self) -> float | None:
         if not self.model.bounded:

@@ -221,7 +221,7 @@ def _other_solid(
     text += f", beyond the error bars in {', '.join(beyond)}" * bool(beyond)
     if unknown:
         return [f"{text}; of {', '.join(unknown)} it has no error bar of its own."]
-    return [f"{text}{'; all gaps lie inside the error bars (not resolved)' * (not beyond)}."]
+    return [f"{text}{'; all gaps lie inside the error bars (not resolved)' if not beyond else ''}."]
 
 
 def _points(scene: Scene, names: Sequence[Quantity]) -> list[str]:

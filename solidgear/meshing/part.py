@@ -339,7 +339,7 @@ def _other_axis(table: BodyTable, place: Placing, points, foot, along, share: fl
     return (
         f", which goes through ({given}) mm of the file, and {100 * share:.0f} % about "
         f"{'one' if same else said} through ({', '.join(f'{1e3 * v:.10g}' for v in (x, y, z))}) mm: "
-        f"write that point as origin{', and that axis' * (not same)}"
+        f"write that point as origin{', and that axis' if not same else ''}"
     )
 
 

@@ -35,7 +35,7 @@ def read_solids(gmsh: Any, path: str, place: Placing, *, several: bool) -> list[
         raise MeshError(_no_solid(gmsh, solids))
     for tag in solids:
         # measured before anything is meshed: without a size, nothing below makes sense
-        volume, which = occ.getMass(3, tag), f" {tag}" * (len(solids) > 1)
+        volume, which = occ.getMass(3, tag), (f" {tag}" if len(solids) > 1 else "")
         if not np.isfinite(volume) or abs(volume) < 1e-18:
             raise MeshError(f"its solid{which} has a volume of {volume:.3g} m^3")
         if volume < 0:
@@ -105,7 +105,7 @@ def fragmented(gmsh: Any, solids: list[int], tools: list[tuple[int, int]]) -> li
         _, made = occ.fragment([(3, solids[0])], [*others, *tools])
     except Exception as error:
         what = "its solids cannot be joined" if others else "the ends of seats cannot be cut"
-        raise MeshError(f"{what}{' into the surface' * (not others)} ({error})") from error
+        raise MeshError(f"{what}{' into the surface' if not others else ''} ({error})") from error
     occ.synchronize()
     for dimension in (2, 1):
         loose = [

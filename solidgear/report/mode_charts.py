@@ -47,7 +47,9 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
         if key in models
     }
     pairs = {name for key in models for name, m in modes[key].items() if m.multiplicity > 1}
-    labels = {float(i): name + "\n(pair)" * (name in pairs) for i, name in enumerate(names)}
+    labels = {
+        float(i): name + ("\n(pair)" if name in pairs else "") for i, name in enumerate(names)
+    }
     families = [known[name].family for name in names]
     legend = {"orient": "top", "columns": 5 if width > NARROW else 2}
     turned = len(names) > (9 if width > NARROW else 3)

@@ -306,7 +306,7 @@ def remarks(found: ShaftStress, units: Units = ENGINEERING) -> list[str]:
     out = []
     for chamfered, what in ((False, "sharp corners"), (True, "chamfers, two obtuse corners each")):
         places = [
-            f"y = {units.text(one.y, 'm')} ({'in the bore, ' * (one.surface == 'bore')}"
+            f"y = {units.text(one.y, 'm')} ({'in the bore, ' if one.surface == 'bore' else ''}"
             f"{' to '.join(one.between)})"
             for one in found.sharp
             if one.chamfered == chamfered

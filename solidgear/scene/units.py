@@ -196,7 +196,8 @@ def _read_text(text: str, dimension: str) -> float:
         raise wrong(f'unknown unit {show(unit)}; write for example "{example}"')
     factor, radians, dimensionality = known
     own = si_factor(si) if si else None
-    if dimensionality != (own[2] if own else ()) or radians not in powers:
+    wanted = own[2] if own else ()
+    if dimensionality != wanted or radians not in powers:
         what = dimension.replace("_", " ")
         kind = f"not a unit of {what}" if si else "a unit, but this is a plain ratio"
         raise wrong(f'{show(unit)} is {kind}; write for example "{example}"')

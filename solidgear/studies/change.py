@@ -102,7 +102,7 @@ class ModePair(Generic[M]):
         """
         if self.change is None:
             return None
-        return self.change.verdict + ", by name" * (self.mac is None)
+        return self.change.verdict + (", by name" if self.mac is None else "")
 
     def within(self, highest: float) -> bool:
         """Tell whether either of them lies below a frequency, Hz."""

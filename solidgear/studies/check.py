@@ -310,7 +310,7 @@ def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
         (),
         f"{scene.name}: length {1e3 * scene.length:.6g} mm, mass {exact.mass:.4g} kg, centre at y = "
         f"{1e3 * exact.centre:.4g} mm, polar inertia {exact.iyy:.4g}, transverse {exact.ixx:.4g} "
-        f"kg m^2 (closed form{' of the round part' * (scene.body is not None)})",
+        f"kg m^2 (closed form{' of the round part' if scene.body is not None else ''})",
     )
     if scene.masses:
         each = listed(

@@ -120,7 +120,7 @@ def against_the_part(
             bars = [r.error_bars.get(SCENE, {}).get(name) for r in (mine, theirs)]
             bar = sum(b.width for b in bars if b is not None)
             told.append(
-                f"{name} {mine.quantities[name]:.5g} {name.unit} ({'+' * (gap > 0)}{percent(gap)}"
+                f"{name} {mine.quantities[name]:.5g} {name.unit} ({'+' if gap > 0 else ''}{percent(gap)}"
                 + (f" +- {percent(bar)})" if all(bars) else ", part without an error bar)")
             )
             verdicts.append(gap_verdict(gap, bar, tolerance))

@@ -351,7 +351,8 @@ def cylindrical_mesh(
     """
     _angle("pressure_angle", pressure_angle)
     _angle("base_helix, its sign apart,", abs(base_helix))
-    if not 0 < mate_radius < (radius if internal else np.inf):
+    largest = radius if internal else np.inf
+    if not 0 < mate_radius < largest:
         raise SolidgearError(
             f"a base circle of {mate_radius} m does not mesh with one of {radius} m; "
             "radii are positive, and a ring is larger than what turns in it"

@@ -50,7 +50,8 @@ def spd(name: str, value: Any, definite: bool = True) -> np.ndarray:
     if (np.abs(scaled - scaled.T) > ROUNDING * np.maximum(1.0, np.abs(scaled))).any():
         raise SolidgearError(f"{name} is not symmetric; entry (i, j) must equal (j, i)")
     least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
-    if least < (ROUNDING if definite else -ROUNDING):
+    allowed = ROUNDING if definite else -ROUNDING
+    if least < allowed:
         kind = "definite" if definite else "semidefinite"
         raise SolidgearError(
             f"{name} is not positive {kind}; "

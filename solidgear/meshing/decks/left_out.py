@@ -113,5 +113,5 @@ class LeftOut:
         place = ""
         if self.at is not None:
             where = ", ".join(f"{value:.5g}" for value in self.at)
-            place = f", {'the first ' * (len(self.masses) > 1)}at ({where}) of the file"
+            place = f", {'the first ' if len(self.masses) > 1 else ''}at ({where}) of the file"
         return f" (mass {sum(self.masses):.6g} in the unit of the deck{place})"

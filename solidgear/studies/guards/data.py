@@ -79,7 +79,7 @@ def doubtful_data(probe: Probe) -> Notices:
             doubtful.setdefault(b.status, []).append(repr(b.name))
     if doubtful:
         told = (
-            f"bearing{'s' * (len(names) > 1)} {listed(names)} ({status})"
+            f"bearing{'s' if len(names) > 1 else ''} {listed(names)} ({status})"
             for status, names in doubtful.items()
         )
         yield Notice("caution", (), f"data not measured or published: {', '.join(told)}")
@@ -194,8 +194,10 @@ def axial_support(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             (),
-            f"along y {listed(locating)} locate{'s' * (len(locating) == 1)} the shaft"
-            + (f", {listed(floating)} float{'s' * (len(floating) == 1)}" if floating else ""),
+            f"along y {listed(locating)} locate{'s' if len(locating) == 1 else ''} the shaft"
+            + (
+                f", {listed(floating)} float{'s' if len(floating) == 1 else ''}" if floating else ""
+            ),
         )
 
 

@@ -145,7 +145,8 @@ def shoulder(probe: Probe) -> Notices:
         lacking = float(np.interp(ratio, STEPS[:, 0], STEPS[:, 1]))
         lacking = more * lacking / (1 - lacking + more * lacking)
         alike = abs(more - 1) < 0.1
-        if ratio < STEP if alike else lacking < 0.01:
+        small = ratio < STEP if alike else lacking < 0.01
+        if small:
             continue
         missing = more * float(np.interp(ratio, MISSING[:, 0], MISSING[:, 1]))
         own = f"{more:.2g} times as much as of one material, by E of both parts"
@@ -162,7 +163,7 @@ def shoulder(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             stiff,
-            f"shoulder{'s' * (len(steps) > 1)} between {places} {sharp}, ratio of diameters "
+            f"shoulder{'s' if len(steps) > 1 else ''} between {places} {sharp}, ratio of diameters "
             f"{ratios}: a beam lacks {missed} mm of thin shaft, {shares} % of the deflection of an "
             f"overhang of one diameter; {why}; use {better}",
         )

@@ -115,7 +115,9 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
         normal, point = _given_line(pair), np.array(mesh.point)
     else:
         normal, point = _of_teeth(pair, mesh.pressure_angle), mesh_point(_mean_radius(pair))
-    if coast if coast is not None else pair.point is not None and pair.point.coast:
+    if coast is None:
+        coast = pair.point is not None and pair.point.coast
+    if coast:
         normal = _other_flank(pair, normal, point)
     origin = _gear_position(pair, point)
     n_gear = to_gear_frame(normal, mesh.shaft_angle)

@@ -93,7 +93,7 @@ class TrainModes:
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         lines.append(
             "Bound: largest relative error that the reduction leaves, proven"
-            + "; it says nothing of the meshes of the shafts." * (not meshed)
+            + ("; it says nothing of the meshes of the shafts." if not meshed else "")
             + "; mesh: that the meshes of harmonic shafts leave, by local problems." * meshed
         )
         return lines + list(self.contact) + unpublished_lines(self.unpublished)

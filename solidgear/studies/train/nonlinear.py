@@ -90,7 +90,7 @@ def teeth_of(
     gaps = {one.name: one.mesh.backlash for one in train.pairs if one.mesh.backlash}
     for name in (pair.name, *gaps):
         if not forces[name] > 0:
-            of = f" of the {name}" * (len(forces) > 1)
+            of = f" of the {name}" if len(forces) > 1 else ""
             raise SolidgearError(
                 f"a mean force of {forces[name]:g} N holds no teeth{of}; give more than 0"
             )

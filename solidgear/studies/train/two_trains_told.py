@@ -49,7 +49,7 @@ def _models(found: TwoTrains) -> str:
     words += f", driven by the {driver.name}" * bool(driver.label)
     damping = found.a.response.damping
     asked = {one.workshop.train.ask.max_frequency for one in found.both}
-    lower = " (the lower of what both files ask for)" * (len(asked) > 1)
+    lower = " (the lower of what both files ask for)" if len(asked) > 1 else ""
     return (
         f"Models of both trains: {words}, {damping} losses, up to {found.highest_hz:g} Hz{lower}."
     )
@@ -135,7 +135,7 @@ def _at_rest(found: TwoTrains, units: Units) -> Iterator[str]:
         return
     told = [
         f"{name} {units.number(c.a, unit, 3)} to {units.text(c.b, unit, 3)}"
-        + f" ({c.verdict})" * (c.band is not None)
+        + (f" ({c.verdict})" if c.band is not None else "")
         for name, unit, _, c in changes
     ]
     label = points[0].label
