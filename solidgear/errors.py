@@ -333,7 +333,7 @@ def _plain_words(one: Mapping, data: Any) -> str:
     near = nearest(word, re.findall(r"'([^']*)'", expected)) if isinstance(word, str) else ""
     written = WRITE.get(str(one["loc"][0]), "") if len(one["loc"]) == 1 else ""
     words = {
-        "missing": f"this key is missing{'; ' * bool(written)}{written}",
+        "missing": f"this key is missing{'; ' if written else ''}{written}",
         "string_type": "must be a text in quotes",
         "string_unicode": "must be a text of plain letters",
         "int_type": "must be a whole number",

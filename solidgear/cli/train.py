@@ -197,7 +197,7 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
     port, _, dof = text.partition(":")
     if not port or dof not in DOF_NAMES:
         raise SolidgearError(
-            f"{option} {show(text, 40)}: write PORT:COMPONENT{'=VALUE' * bool(more)}, such as "
+            f"{option} {show(text, 40)}: write PORT:COMPONENT{'=VALUE' if more else ''}, such as "
             f"gear.gear:z{more}; components are {' '.join(DOF_NAMES)}"
         )
     return port, dof

@@ -218,7 +218,7 @@ def _other_solid(
     if len(unknown) == len(mine):
         return [f"{text}; it has no error bars of its own, which would tell whose the gaps are."]
     beyond = [g.quantity for g in mine if g.quantity in own and g.verdict == "resolved"]
-    text += f", beyond the error bars in {', '.join(beyond)}" * bool(beyond)
+    text += f", beyond the error bars in {', '.join(beyond)}" if beyond else ""
     if unknown:
         return [f"{text}; of {', '.join(unknown)} it has no error bar of its own."]
     return [f"{text}{'; all gaps lie inside the error bars (not resolved)' if not beyond else ''}."]
@@ -236,7 +236,7 @@ def _points(scene: Scene, names: Sequence[Quantity]) -> list[str]:
     told = [f"at {_all_of(at)}"] if at else []
     told += [f"between {a} and {b}" for a, b in dict.fromkeys(pairs)]
     where = f"Compliances are judged {', '.join(told)}" if told else "No compliance is judged"
-    return [f"{where}{'; not at ' * bool(left)}{_all_of(left)}."]
+    return [f"{where}{'; not at ' if left else ''}{_all_of(left)}."]
 
 
 def _all_of(names: list[str]) -> str:

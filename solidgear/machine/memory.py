@@ -50,7 +50,7 @@ def require(need_mb: float, what: str, by: str = "", free: float | None = None) 
     """
     free = available_mb() if free is None else free
     if free is not None and need_mb > max(free, SMALL_MB):
-        needs = f"{what} need about {megabytes(need_mb)} MB{f' to factor by {by}' * bool(by)}"
+        needs = f"{what} need about {megabytes(need_mb)} MB{f' to factor by {by}' if by else ''}"
         raise NoRoom(f"{needs}, {megabytes(free)} MB are free", need_mb, free)
 
 

@@ -270,7 +270,7 @@ def limits(option: Option) -> str:
             )
             if limit is not None
         )
-    return words + f" ({option.why})" * bool(option.why)
+    return words + (f" ({option.why})" if option.why else "")
 
 
 def _usable_number(model: str, name: str, value: Any, option: Option) -> Any:

@@ -232,7 +232,7 @@ def fit_cautions(fit: ToothFit, sides: tuple[str, str]) -> Iterator[str]:
                 "with teeth of ISO 53: profile shifts and centre distance ask for shorter tips"
             )
     if fit.contact_ratio + fit.overlap_ratio < 1:
-        helical = f" and {fit.overlap_ratio:.2f} by their helix" * bool(fit.helix_angle)
+        helical = f" and {fit.overlap_ratio:.2f} by their helix" if fit.helix_angle else ""
         yield (
             f"the contact ratio is {fit.contact_ratio:.2f}{helical}, below 1: no teeth touch for a "
             "part of each pitch; correct centre distance, profile shifts, module or teeth"

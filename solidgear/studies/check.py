@@ -334,7 +334,7 @@ def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
     due = mass_properties(Outline(scene.segments)) if beam else exact
     # of what is cut there is no closed form; of a part there is what its file says
     closed = [("mass", matrix[0, 0], due.mass), ("polar inertia", matrix[4, 4], due.iyy)]
-    bare = " without fillets and chamfers" * bool(beam and scene.outline.corners)
+    bare = " without fillets and chamfers" if beam and scene.outline.corners else ""
     where, off = f"closed form{bare}", f"the closed form{bare}"
     if not body.mesh.get("round", True):
         whole = scene.body
@@ -353,7 +353,7 @@ def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
                 own,
                 f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: mesh finer",
             )
-    against = f"{' and '.join(told)} against {where}, " * bool(told)
+    against = f"{' and '.join(told)} against {where}, " if told else ""
     yield Notice(
         "fact",
         own,

@@ -109,7 +109,7 @@ def against_the_part(
     if scene.body is None or scene.body.round:
         return
     names, tolerance = judged(scene), scene.ask.tolerance
-    of_mean = ", with one mean material across," * bool(scene.body.mixed)
+    of_mean = ", with one mean material across," if scene.body.mixed else ""
     for model in (m for m in LADDER.of(SOLID) if m in solutions and PARTS in LADDER[m].holds):
         mine, theirs = probe.solution(ROUND_MODEL), solutions[model]
         told, verdicts = [], []

@@ -77,7 +77,7 @@ def _shapes(node: ast.AST) -> Iterator[str]:
     match node:
         case ast.BinOp(op=ast.Mult(), left=left, right=right):
             for text, factor in ((left, right), (right, left)):
-                if _is_text(text) and isinstance(factor, ast.Compare | ast.BoolOp | ast.UnaryOp):
+                if _is_text(text) and _is_truth(factor):
                     yield "text times a truth value"
         case ast.AugAssign(op=ast.Mult(), value=ast.Compare() | ast.BoolOp()):
             yield "text times a truth value"
@@ -90,6 +90,15 @@ def _shapes(node: ast.AST) -> Iterator[str]:
         case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test):
             if any(isinstance(inner, ast.IfExp) for inner in ast.walk(test)):
                 yield "conditional inside a condition"
+
+
+def _is_truth(node: ast.AST) -> bool:
+    match node:
+        case ast.Compare() | ast.BoolOp() | ast.UnaryOp(op=ast.Not()):
+            return True
+        case ast.Call(func=ast.Name(id="bool")):
+            return True
+    return False
 
 
 def _is_text(node: ast.AST) -> bool:

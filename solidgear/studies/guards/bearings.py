@@ -55,7 +55,7 @@ def width_of(data: Catalogue) -> float:
 
 def called(bearing: Bearing, data: Catalogue) -> str:
     """A bearing in words, with its designation."""
-    return f"bearing {bearing.name!r}" + f" ({data.designation})" * bool(data.designation)
+    return f"bearing {bearing.name!r}" + (f" ({data.designation})" if data.designation else "")
 
 
 def _on_its_seat(scene: Scene, bearing: Bearing, data: Catalogue) -> Iterator[str]:

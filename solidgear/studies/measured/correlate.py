@@ -289,7 +289,7 @@ def _sentences(found: Correlation) -> Iterator[str]:
     yield (
         f"{len(paired)} of {len(found.pairs)} measured resonances have a mode, {len(sure)} of them "
         f"with a probability of {100 * SURE:.0f} % and no other in question"
-        f"{', if they are of this part' * bool(doubt)}."
+        f"{', if they are of this part' if doubt else ''}."
     )
     worst = found.worst
     if worst is not None and worst.computed is not None and worst.relative is not None:

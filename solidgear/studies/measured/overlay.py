@@ -49,7 +49,7 @@ class Overlay:
     @property
     def told(self) -> str:
         """Model of the computed ones, in words."""
-        around = f", up to {self.waves} waves around" * bool(self.waves)
+        around = f", up to {self.waves} waves around" if self.waves else ""
         stiffer = (
             f"What is stiffer counts with its static compliance{around}: at the point that is driven "
             "it rests on how wide the force is, and is sure to its own size only."

@@ -198,7 +198,9 @@ def _inside(geometry: Geometry, angles: Sequence[float]) -> str:
     told += f", a {angled} deg {'at work' if angles else 'nominal'}"
     # an estimated groove changes no frequency
     guessed = [word for word in geometry.estimated if word not in ("conformity", "element_length")]
-    return told + f"; estimated {', '.join(guessed)}".replace("_", " ") * bool(guessed)
+    if not guessed:
+        return told
+    return told + f"; estimated {', '.join(guessed)}".replace("_", " ")
 
 
 def settled_angles(scene: Scene) -> dict[str, tuple[float, ...]]:

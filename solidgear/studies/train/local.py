@@ -145,7 +145,7 @@ def _told(workshop: Workshop, system: System, pair: Pair) -> str:
     listed = ", ".join(map(str, sorted(pair.mesh.local_harmonics)))
     if not give:
         return (
-            f"Local harmonics {listed} are asked for{' of' * bool(of)}{of}, and neither shaft is a "
+            f"Local harmonics {listed} are asked for{' of' if of else ''}{of}, and neither shaft is a "
             "harmonic solid: they are left out."
         )
     share = 100 * sum(give.values()) * workshop.contacts[pair.name].stiffness

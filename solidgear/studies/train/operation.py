@@ -353,5 +353,7 @@ def named_point(train: Train, word: str | int | None) -> OperatingPoint:
     for k, point in enumerate(train.operation, start=1):
         if word in (point.name, k, str(k)) and word != "":
             return point
-    known = [f"{k}" + f" {p.name!r}" * bool(p.name) for k, p in enumerate(train.operation, start=1)]
+    known = [
+        f"{k}" + (f" {p.name!r}" if p.name else "") for k, p in enumerate(train.operation, start=1)
+    ]
     raise SolidgearError(f"no operating point {word!r}; there are {listed(known)}")

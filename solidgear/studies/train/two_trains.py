@@ -201,7 +201,7 @@ def two_trains(
     pairs = mode_pairs([one.modes for one in trains], seen, highest, by_shape=not mirrored)
     left_out = sorted({*ports_of(first), *ports_of(other)} - {*ends[0], *ends[1]})
     paired = "by the motions of the ports that both trains have"
-    paired += f" (all but {', '.join(left_out)})" * bool(left_out)
+    paired += f" (all but {', '.join(left_out)})" if left_out else ""
     if mirrored:
         paired = "by the motion that names them: hands or apexes differ, which mirrors shapes"
     return TwoTrains(

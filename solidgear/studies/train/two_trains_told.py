@@ -46,7 +46,7 @@ def _models(found: TwoTrains) -> str:
         of_bodies = {*found.models.values()} <= {*LADDER.bodies}
         words = f"{every} shafts as {title}s" if of_bodies else f"{every} {title}"
     driver = found.a.workshop.train.named_mesh(found.mesh)
-    words += f", driven by the {driver.name}" * bool(driver.label)
+    words += f", driven by the {driver.name}" if driver.label else ""
     damping = found.a.response.damping
     asked = {one.workshop.train.ask.max_frequency for one in found.both}
     lower = " (the lower of what both files ask for)" if len(asked) > 1 else ""
