@@ -93,14 +93,19 @@ class FileVariants(Generic[T]):
             except SolidgearError as error:
                 refusal = refusal or self.located(error, index)
         self.refuse_hopeless()
-        if isinstance(refusal, SceneError) and not self._touched(refusal):
-            raise refusal
+        self._refuse_as_it_is()
         raise SolidgearError(f"no variant can be solved; the first one is refused: {refusal}")
 
-    def _touched(self, refusal: SceneError) -> bool:
-        """True where what varies has a part in a refusal, which else is of the file as it is."""
-        paths = [problem.path for problem in refusal.problems]
-        return any(_meets(path, entry.keys) for path in paths for entry in self.entries)
+    def _refuse_as_it_is(self) -> None:
+        """Refuse a file for what does not vary, in the words of the file."""
+        try:
+            self.read((), ())
+        except SceneError as error:
+            paths = [problem.path for problem in error.problems]
+            if not any(_meets(path, entry.keys) for path in paths for entry in self.entries):
+                if not error.where:
+                    error = error.located(self.files[OWN], where=str(self.path))
+                raise error from None
 
     def refuse_hopeless(self) -> None:
         """Refuse an entry that no file may have, whatever its value.
