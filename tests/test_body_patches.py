@@ -87,6 +87,7 @@ def by_hexahedra():
     return dict(zip(ways, np.sum(moved * loads[free], axis=0)))
 
 
+@pytest.mark.long
 def test_bars_of_a_cantilever_on_two_meshes_hold_what_independent_hexahedra_say(beam):
     loaded = sg.load(scene(beam, "2.msh", "4.msh"))
     settled = settle(loaded, 0.2, "stiffness")

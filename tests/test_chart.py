@@ -238,6 +238,7 @@ def test_an_unknown_family_is_drawn_in_grey_and_named_in_the_legend(raced):
 
 
 # ------------------------------------------------------------------------------------------------- report
+@pytest.mark.long
 def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, tmp_path):
     results = {"scene": raced.scene, "models": {}}
     assert SPEED not in render_page(results, tmp_path)

@@ -393,6 +393,7 @@ def test_when_every_model_fails_there_is_still_a_report(overhung, monkeypatch, t
     assert "No model could be solved." in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
     from solidgear.ladder import build
 
@@ -481,6 +482,7 @@ def folder(found, tmp_path_factory):
     return out
 
 
+@pytest.mark.long
 def test_without_a_renderer_numbers_and_report_are_there(folder, found):
     stored = strict((folder / "results.json").read_text(encoding="utf-8"))
     assert stored["images"] == {}
@@ -586,6 +588,7 @@ def lumped(overhung):
     return found
 
 
+@pytest.mark.long
 def test_lumped_model_rests_on_a_body(lumped):
     found = lumped(False).results
     record = found["models"]["lumped"]
@@ -641,6 +644,7 @@ def test_a_lumped_model_on_a_solid_lacks_nothing_that_a_beam_lacks(overhung):
     assert said == {"timoshenko": ["lumped", "timoshenko"], "harmonic": []}
 
 
+@pytest.mark.long
 def test_a_lumped_model_on_a_solid_is_not_called_cheaper_than_it():
     """It is made from the solved solid, and costs as much."""
     found = compare(scene_of("shaft_stepped"), ("lumped", "harmonic"), settings=LIGHTEST).results

@@ -40,6 +40,7 @@ def shape(found, name):
     return found.named(name).frequency_hz
 
 
+@pytest.mark.long
 def test_the_effect_of_a_keyway(scene, plain, body):
     """DIN 6885 A 25 x 9 x 100 between the bearings. Of a half model with 200,000 unknowns: C_zz
     +1.88 %, bending pair -1.49 % and -0.07 %, torsion 1 -1.98 %, axial 1 +0.49 %, its own error

@@ -192,6 +192,7 @@ def test_an_arc_is_asked_for_where_there_is_one():
         Arc(piece, sg.build(shoulder().with_changes(blends=()), "harmonic", order=2), piece.corner)
 
 
+@pytest.mark.long
 def test_a_load_that_enters_beside_a_fillet_is_told(loaded):
     scene = shoulder()
     shift = scene.port.lo - scene.segments[0].y1 - 0.01

@@ -57,6 +57,7 @@ def test_spoilt_scenes_are_refused_or_solved(fuzz):
     assert len(sorts) > cases // 7
 
 
+@pytest.mark.long
 def test_command_lines_are_refused_or_answered(fuzz):
     case, commands, _ = fuzz
     cases = 6

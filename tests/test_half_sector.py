@@ -235,6 +235,7 @@ def test_half_the_memory():
     assert same[0] == same[1]
 
 
+@pytest.mark.long
 def test_thin_wedges_are_straightened_until_none_folds():
     """Sixty teeth: elements that fill a wedge of three degrees fold where edges are curved, and
     straight ones fold their neighbours in turn.

@@ -50,6 +50,7 @@ def test_a_modulus_of_a_material_by_name_is_found(tmp_path):
     assert modulus.value == pytest.approx(203e9, rel=2 * TOLERANCE)
 
 
+@pytest.mark.long
 def test_a_factor_on_a_bearing_is_found_though_the_file_leaves_it_out(tmp_path):
     measured = peaks(tmp_path, SHAFT % ('"steel"', BEARINGS % "scale = 1.4,"))
     scene = SHAFT % ('"steel"', BEARINGS % "")

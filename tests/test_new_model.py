@@ -71,6 +71,7 @@ def printed(renderable):
     return console.export_text()
 
 
+@pytest.mark.long
 def test_it_is_compared_and_judged(found):
     record = found.record
     assert (record.models["coarse"].colour, record.models["coarse"].marker) == ("#123456", "X")

@@ -177,6 +177,7 @@ def test_a_part_of_revolution_is_its_segments(tmp_path):
     assert -7e-3 < error[0] < 0 and (0 < error[1:]).all() and (error[1:] < 4e-3).all()
 
 
+@pytest.mark.long
 def test_rungs_say_whether_they_hold_a_part(shipped):
     scene, _ = shipped
     for name in ("euler", "timoshenko", "harmonic"):
@@ -238,6 +239,7 @@ def test_twenty_node_hexahedra_of_a_mesh_file(stepped, tmp_path):
     assert numbers(own, scene) == pytest.approx(numbers(body, plain), rel=1e-7)
 
 
+@pytest.mark.long
 def test_first_order_tetrahedra_of_a_file_are_solved_as_second_order_ones(stepped, tmp_path):
     """Same cells and so the same mass, and softer: what locks in bending does so no more."""
     (tmp_path / "part.step").write_bytes(stepped)

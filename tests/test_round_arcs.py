@@ -64,6 +64,7 @@ def test_a_filleted_shaft_from_a_file_is_the_one_written_down(tmp_path):
     assert abs(without / true["bending 1"] - 1) > 2 * (own.bar + true.bar)
 
 
+@pytest.mark.long
 def test_a_keyway_into_a_fillet_is_not_round(tmp_path):
     key = Keyway(name="key", segment="c", y=0.09, length=0.03, width=0.008, depth=0.004)
     scene = part(tmp_path, [key])

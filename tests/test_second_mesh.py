@@ -47,6 +47,7 @@ def test_the_second_mesh_may_be_left_out(run):
     assert code == 0 and "No bars: --no-bars leaves the second mesh out." in out
 
 
+@pytest.mark.long
 def test_statics_of_a_mesh_that_is_set_have_bars_that_hold_the_truth(run, tmp_path):
     """On tetrahedra, whose error is 1 % here and more, and on the same commands without a bar."""
     path = tmp_path / "shaft.toml"

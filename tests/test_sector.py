@@ -169,6 +169,7 @@ def test_volume_mass_and_inertia(name):
         assert polar == pytest.approx(section_polar(TEETH) * 0.04 * fourth, rel=tight)
 
 
+@pytest.mark.long
 def test_a_cone_without_teeth_is_the_harmonic_solid():
     """Two elements of order two across a radius and graded seat ends: the harmonic solid, which
     shares no mesh with it, lies within 2.5 % of the compliance (tilt is the worst) and 0.5 % of
@@ -199,6 +200,7 @@ def coupling(feature):
     return c[1, 4] / math.sqrt(c[1, 1] * c[4, 4])
 
 
+@pytest.mark.long
 def test_spiral_teeth_couple_axial_motion_and_torsion():
     """A mirror plane through the axis forbids C_y,thy, and the other hand turns its sign."""
     right, left = (coupling(SPIRAL.with_changes(hand=hand)) for hand in ("right", "left"))
@@ -515,6 +517,7 @@ def keyed_and_bare(**teeth):
     return scene, *(featured_body(scene, wanted, made, 0.3, plain=p) for p in (True, False))
 
 
+@pytest.mark.long
 def test_teeth_and_a_keyway_in_one_solid():
     """Volumes of both are closed, tips lie where teeth do, and what is gone where the keyway looks."""
     scene, bare, cut = keyed_and_bare()

@@ -79,6 +79,7 @@ def test_an_axis_that_is_none_is_refused(axis, tmp_path):
         sg.load(path)
 
 
+@pytest.mark.long
 def test_an_axis_a_little_beside_the_one_that_is_written_is_taken_and_told(tmp_path):
     """0.7 um is more than seats of 30 mm allow; the mesh then lies about the axis of the part."""
     write_step(tmp_path / "part.step", shaft_step()[0], shift=(7e-7, 0, 0))

@@ -135,6 +135,7 @@ def checked():
     return verdicts
 
 
+@pytest.mark.long
 def test_euler_is_not_valid_behind_ties_that_differ(compared):
     results = compared("false_valid_port_section")
     assert results["verdict"]["trust"] == "harmonic" and not results["models"]["euler"]["valid"]

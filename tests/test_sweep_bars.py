@@ -19,6 +19,7 @@ def rows(tmp_path_factory):
     return numbers(path)
 
 
+@pytest.mark.long
 def test_bars_beside_numbers_of_a_sweep_of_bearings_hold_a_much_finer_mesh(rows):
     """The bound of the reduction says nothing of the mesh, whose error is a thousand times as large."""
     scene = sg.load(SHAFT)

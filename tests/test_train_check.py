@@ -26,6 +26,7 @@ def said(lines, *words):
     return [line for line in lines if all(word in line for word in words)]
 
 
+@pytest.mark.long
 def test_both_shafts_are_heard_up_to_what_the_train_asks(found):
     assert said(found["pinion"]["facts"], "15.91 kg")
     assert said(found["gear"]["facts"], "79.82 kg")

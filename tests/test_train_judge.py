@@ -27,6 +27,7 @@ def verdict():
     return shop, judge_train(shop, 3000.0)
 
 
+@pytest.mark.long
 def test_the_ring_gear_decides_and_not_the_pinion(verdict):
     _, found = verdict
     gear, pinion = found.of(JUDGE, "timoshenko"), found.of("timoshenko", JUDGE)

@@ -47,6 +47,7 @@ def solids(shop, teeth):
     return with_backlash(shop, SOLIDS, teeth, 1100.0, 300.0)
 
 
+@pytest.mark.long
 def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
     first, second = solids.lost
     assert first.low == pytest.approx(572.0, abs=1.0)

@@ -504,6 +504,7 @@ def test_a_point_that_is_not_there_is_named(gearbox):
 
 
 # ----------------------------------------------------------------------- command
+@pytest.mark.long
 def test_deflect_writes_what_it_says(tmp_path, run):
     data = json.loads(run("deflect", GEARBOX, "-f", "euler", "-f", "timoshenko", "--json")[1])
     how = "-f", "euler", "-f", "timoshenko", "--out", tmp_path

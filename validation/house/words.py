@@ -69,7 +69,7 @@ def shapes(files: Sequence[Source]) -> Counter[str]:
     count: Counter[str] = Counter()
     for source in files:
         for node in ast.walk(source.tree):
-            count += Counter(_shapes(node))
+            count.update(_shapes(node))
     return count
 
 
