@@ -381,6 +381,7 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "umfpack", "superlu")
 
 
+@pytest.mark.long
 def test_modules_run_as_programs(tmp_path):
     done = python("-m", "solidgear", "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""

@@ -174,6 +174,7 @@ def test_no_plane_no_halves():
     assert max(sg.modes(body, crossed, n=6).multiplicity) == 1
 
 
+@pytest.mark.long
 def test_a_cross_hole_and_a_bore():
     hole = CrossHole(name="oil", segment="rod", y=0.1, diameter=0.008)
     scene = shaft(hole, bore=0.02)

@@ -157,6 +157,7 @@ def test_the_piece_has_the_stress_of_the_whole_shaft(turned):
     assert abs(notch.local.amplitude / plain - 1) > 0.015
 
 
+@pytest.mark.long
 def test_a_fillet_in_a_bore_has_factors_of_its_own():
     scene = shoulder(1.2, 0.05)
     thick = scene.segments[1].with_changes(inner0=0.012, inner1=0.012)

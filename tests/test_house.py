@@ -143,6 +143,7 @@ def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs(
         theirs["divide"]()
 
 
+@pytest.mark.long
 def test_no_sentence_is_multiplied_by_a_truth_value_and_no_condition_holds_another():
     """What a reader would have to parse twice; names are starred in calls still."""
     forms = shapes(sources(PACKAGE))

@@ -192,6 +192,7 @@ def test_what_a_thread_made_is_freed_by_that_thread(made_by_worker):
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+@pytest.mark.long
 def test_factors_of_superlu_are_given_back():
     # SciPy frees what SuperLU took only in the thread that took it: 40 factors of 1.2 MB each would
     # stay.

@@ -210,6 +210,7 @@ def test_two_nodal_diameters_add_less_than_a_decibel(train, usual):
     assert bound.max() < 1e-6
 
 
+@pytest.mark.long
 def test_on_rigid_shafts_they_add_nothing(train, usual):
     def rigid(scene):
         material = scene.segments[0].material.with_changes(E=scene.segments[0].material.E * 1e4)

@@ -107,6 +107,7 @@ def test_it_is_drawn_and_written(found, ladder, tmp_path):
         pytest.skip(f"no pictures here: {error}")
 
 
+@pytest.mark.long
 def test_guards_have_a_verdict_on_it(ladder, scene):
     verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
     # what is made for features alone has no verdict on a scene without

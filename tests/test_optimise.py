@@ -95,6 +95,7 @@ def test_bad_words_end_in_a_sentence(vary, goal, keep, said):
         sg.optimise(SHAFT, vary, goal, keep, **BEAM)
 
 
+@pytest.mark.long
 def test_the_command_writes_its_path_and_says_where_no_design_will_do(tmp_path):
     out = tmp_path / "out"
     words = ["optimise", SHAFT, "--vary", "bearing.B.position=-40 mm:-30 mm", "-f", "euler"]

@@ -151,6 +151,7 @@ def test_uniform_means_no_grading(scene):
 
 
 # ------------------------------------------------------------------------------------------------- race
+@pytest.mark.long
 def test_a_failure_is_a_row_with_its_reason_and_stops_nothing(raced):
     _, beam, good, bad, _ = raced.rows
     assert [beam.status, bad.status, good.status] == ["ok", "failed", "ok"]

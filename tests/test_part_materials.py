@@ -339,6 +339,7 @@ def test_check_tells_materials(tmp_path):
     assert any("several materials lie side by side" in t for t in said(sleeve))
 
 
+@pytest.mark.long
 def test_gmsh_writes_what_is_read_here(tmp_path):
     """Order of nodes and numbers of groups, as another program writes them: the same volumes from
     every format, second-order tetrahedra and bricks.

@@ -370,6 +370,7 @@ def test_seats_that_are_not_there(tmp_path):
             sg.load(path)
 
 
+@pytest.mark.long
 def test_two_solids_and_an_open_shell(tmp_path):
     """Named by number and place."""
     from validation.step_parts import write_open, write_two

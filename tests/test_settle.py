@@ -60,6 +60,7 @@ def apart(matrix, exact):
 
 
 # --------------------------------------------------------------------------- stiffness
+@pytest.mark.long
 def test_stiffness_is_that_of_the_mesh_it_names_and_the_truth_is_within_its_bars(run, scene, truth):
     code, out, err = run("stiffness", SCENE, "--tol", "0.01", "--json")
     found = json.loads(out)

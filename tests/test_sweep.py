@@ -122,6 +122,7 @@ def test_bearings_of_no_stiffness_leave_the_shaft_free(tmp_path):
     assert row["f1_hz"] == pytest.approx(free.frequency_hz[free.frequency_hz > 0][0], rel=1e-6)
 
 
+@pytest.mark.long
 def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, monkeypatch):
     vary = ["bearing.1.scale=1,2"]
     monkeypatch.setattr(runner, "LEVELS", runner.LEVELS[:1])

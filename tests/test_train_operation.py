@@ -393,6 +393,7 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
         assert fine.bar < mine.bar < 0.05 * abs(mine.value), mine.name
 
 
+@pytest.mark.long
 def test_verdict_names_the_cheapest_model_that_holds(helical):
     loose = helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5))
     shop = Workshop(loose, settings={"harmonic": {"order": 2}})

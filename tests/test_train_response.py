@@ -155,6 +155,7 @@ def test_without_any_loss_a_peak_has_no_height():
 ARGS = ["response", str(OVERHUNG), "--pinion", "euler", "--gear", "timoshenko"]
 
 
+@pytest.mark.long
 def test_the_command_writes_a_table_and_charts(tmp_path):
     out = tmp_path / "out"
     done = command(*ARGS, "--out", str(out), "--against", "euler+euler")

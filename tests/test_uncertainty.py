@@ -42,6 +42,7 @@ def test_a_body_of_its_own_takes_a_modulus_without_being_built_again():
         assert (own.low, own.high) == approx((built.low, built.high), rel=1e-6)
 
 
+@pytest.mark.long
 def test_ranges_of_catalogue_bearings_hold_samples_of_all_their_data(gearbox):
     for one in gearbox.numbers:
         # rounding of what does not move is 1e-9

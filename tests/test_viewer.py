@@ -65,6 +65,7 @@ def test_what_is_drawn_is_closed_and_has_the_volume_of_the_shaft(kind, drawable,
     assert len(np.unique(triangles)) == len(points)
 
 
+@pytest.mark.long
 def test_edges_are_drawn_where_the_surface_is_sharp(drawable):
     mesh = turned(*drawable("harmonic")).mesh
     # both ends, and both rims of the head where it meets cone and shaft, in 48 pieces each

@@ -243,6 +243,7 @@ def test_the_picture_is_of_the_mesh_and_names_the_places(tmp_path):
     assert f">1, {wide:.2g} mm wide<" in file.read_text() and wide < 5
 
 
+@pytest.mark.long
 def test_command_line(tmp_path):
     def run(*arguments):
         return command("answer", *map(str, arguments))
