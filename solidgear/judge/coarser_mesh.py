@@ -67,7 +67,7 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
     shapes = sum(mode.multiplicity for mode in found.modes if mode.frequency_hz > 0)
     coarse = modes(before, scene, shapes + MORE)
     nested = scene.body is not None and scene.body.kind == "block" and not scene.bearings
-    falls = _falls(scene, before, options, shapes + MORE) if nested else {}
+    falls = _falls(scene, before, coarse, options) if nested else {}
     unseen = body.mesh["element"].startswith("hex") and not _fewer_around(options)
     bars = {}
     for mode in found.modes:
@@ -84,16 +84,17 @@ def coarser_bars(scene: Scene, body: Body, found: ModeSet, options: Options) -> 
     return bars
 
 
-def _falls(scene: Scene, before: Body, options: Options, shapes: int) -> dict[str, float]:
+def _falls(scene: Scene, before: Body, coarse: ModeSet, options: Options) -> dict[str, float]:
     """Relative falls of frequencies of a block from a mesh of a quarter as many cells along every edge
-    to one of half as many, which `before` is, by the names of their modes.
+    to one of half as many, which `before` is with its modes `coarse`, by the names of these.
     """
     half = {**options, "refinement": HALF * options.get("refinement", 1.0)}
     coarsest = _before(scene, before, half)
     if coarsest is None:
         return {}
+    shapes = sum(mode.multiplicity for mode in coarse.modes if mode.frequency_hz > 0)
     quarter = modes(coarsest, scene, shapes)
-    pairs = ((mode, quarter.named(mode.name)) for mode in modes(before, scene, shapes).modes)
+    pairs = ((mode, quarter.named(mode.name)) for mode in coarse.modes)
     return {
         str(mode.name): named.frequency_hz / mode.frequency_hz - 1
         for mode, named in pairs
