@@ -13,7 +13,7 @@ from validation.house.words import shapes
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
 #: lines of a file
-LONGEST = 400
+LONGEST = 700
 
 
 def statements(body):
