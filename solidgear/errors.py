@@ -90,8 +90,8 @@ class SceneError(SolidgearError, ValueError):
     @classmethod
     def of(cls, problems: Iterable[SceneError]) -> SceneError:
         """One error of several (at least one), each of which may itself hold several."""
-        first, *rest = (one for error in problems for one in error.problems)
-        return first._changed(others=rest)
+        first, *others = (problem for error in problems for problem in error.problems)
+        return first._changed(others=others)
 
     @property
     def problems(self) -> tuple[SceneError, ...]:
@@ -117,7 +117,7 @@ class SceneError(SolidgearError, ValueError):
             return f"{self.sentence} (and {more}: see its problems)"
         lines = [
             f"{count + 1} problems in {printable(_file_name(self.where))}",
-            *("  " + one.sentence for one in self.problems[:TOLD]),
+            *("  " + problem.sentence for problem in self.problems[:TOLD]),
         ]
         if count + 1 > TOLD:
             lines.append(f"  and {count + 1 - TOLD} more")
@@ -144,24 +144,24 @@ class SceneError(SolidgearError, ValueError):
         SceneError
         """
         return type(self).of(
-            one._located(data, where, (*prefix, *one.path) if path is None else path)
-            for one in self.problems
+            problem._located(data, where, (*prefix, *problem.path) if path is None else path)
+            for problem in self.problems
         )
 
-    def _located(self, data: Any, where: str, path: tuple) -> SceneError:
-        field, found, known = _name_and_value(path, data)
+    def _located(self, data: Any, source: str, path: tuple) -> SceneError:
+        field, entry, exists = _name_and_value(path, data)
         return self._changed(
             path=path,
-            value=show(found) if known else self.value,
+            value=show(entry) if exists else self.value,
             field=field,
-            where=where or self.where,
+            where=source or self.where,
         )
 
     def _changed(self, **changes: Any) -> SceneError:
-        given = {
+        fields = {
             name: getattr(self, name) for name in ("path", "value", "field", "where", "others")
         }
-        return type(self)(self.reason, **(given | changes))
+        return type(self)(self.reason, **(fields | changes))
 
 
 # --------------------------------------------------------------------------- texts
@@ -186,8 +186,8 @@ def for_terminal(error: Exception) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
 
 
-def _file_name(where: str) -> str:
-    return where if len(where) <= 300 else f"...{where[-200:]}"
+def _file_name(file: str) -> str:
+    return file if len(file) <= 300 else f"...{file[-200:]}"
 
 
 def _escaped(text: str) -> str:
@@ -256,7 +256,7 @@ def _quoted(text: str, width: int) -> str:
     return _escaped(json.dumps(text[: width + 1], ensure_ascii=False))
 
 
-def nearest(word: Any, known: Iterable[str]) -> str:
+def nearest(word: Any, candidates: Iterable[str]) -> str:
     """``'; did you mean "x"?'``, or an empty text when no known word is near.
 
     Examples
@@ -266,7 +266,7 @@ def nearest(word: Any, known: Iterable[str]) -> str:
     >>> nearest("c_zz", ["K_zz", "C_zz"])  # not the first that differs by one letter
     '; did you mean "C_zz"?'
     """
-    return did_you_mean(near(word, known))
+    return did_you_mean(near(word, candidates))
 
 
 def did_you_mean(word: str | None) -> str:
@@ -274,12 +274,14 @@ def did_you_mean(word: str | None) -> str:
     return f'; did you mean "{word}"?' if word else ""
 
 
-def near(word: Any, known: Iterable[str]) -> str:
+def near(word: Any, candidates: Iterable[str]) -> str:
     """The known word that is nearest to `word`: in other capitals, of its own parts; or an empty text."""
-    asked, words = str(word)[:60], list(known)
-    alike = [one for one in words if one.casefold() == asked.casefold()]
-    turned = [one for one in words if sorted(one.split("_")) == sorted(asked.split("_"))]
-    return next(iter(alike or turned or difflib.get_close_matches(asked, words, 1)), "")
+    text, names = str(word)[:60], list(candidates)
+    same_letters = [candidate for candidate in names if candidate.casefold() == text.casefold()]
+    same_parts = [
+        candidate for candidate in names if sorted(candidate.split("_")) == sorted(text.split("_"))
+    ]
+    return next(iter(same_letters or same_parts or difflib.get_close_matches(text, names, 1)), "")
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:
@@ -306,15 +308,17 @@ def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
     where : str
         File or scene name put in front.
     """
-    return SceneError.of(_plain_error(one, data, where) for one in error.errors(include_url=False))
+    return SceneError.of(
+        _plain_error(entry, data, where) for entry in error.errors(include_url=False)
+    )
 
 
-def _plain_error(one: Mapping, data: Any, where: str) -> SceneError:
-    path = (*one["loc"], "kind") if one["type"].startswith("union_tag") else one["loc"]
-    cause = one.get("ctx", {}).get("error")
+def _plain_error(entry: Mapping, data: Any, where: str) -> SceneError:
+    path = (*entry["loc"], "kind") if entry["type"].startswith("union_tag") else entry["loc"]
+    cause = entry.get("ctx", {}).get("error")
     if isinstance(cause, SceneError):
         return cause.located(data, where=where, prefix=path)
-    return SceneError(_plain_words(one, data)).located(data, where=where, path=path)
+    return SceneError(_plain_words(entry, data)).located(data, where=where, path=path)
 
 
 #: what a whole file cannot do without, and how it is written
@@ -326,14 +330,14 @@ WRITE = {
 }
 
 
-def _plain_words(one: Mapping, data: Any) -> str:
-    kind, ctx = one["type"], one.get("ctx", {})
+def _plain_words(entry: Mapping, data: Any) -> str:
+    kind, ctx = entry["type"], entry.get("ctx", {})
     expected = str(ctx.get("expected", ""))
-    word = one.get("input")
-    near = nearest(word, re.findall(r"'([^']*)'", expected)) if isinstance(word, str) else ""
-    written = WRITE.get(str(one["loc"][0]), "") if len(one["loc"]) == 1 else ""
+    word = entry.get("input")
+    hint = nearest(word, re.findall(r"'([^']*)'", expected)) if isinstance(word, str) else ""
+    example = WRITE.get(str(entry["loc"][0]), "") if len(entry["loc"]) == 1 else ""
     words = {
-        "missing": f"this key is missing{'; ' if written else ''}{written}",
+        "missing": f"this key is missing{'; ' if example else ''}{example}",
         "string_type": "must be a text in quotes",
         "string_unicode": "must be a text of plain letters",
         "int_type": "must be a whole number",
@@ -345,37 +349,39 @@ def _plain_words(one: Mapping, data: Any) -> str:
         "union_tag_not_found": "this key is missing; "
         + (
             'it says what the feature is, such as kind = "keyway"'
-            if one["loc"][0] == "feature"
+            if entry["loc"][0] == "feature"
             else 'it says which shape the segment has, such as kind = "cylinder"'
         ),
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
-        "literal_error": f"must be {expected}{near}",
+        "literal_error": f"must be {expected}{hint}",
     }
     if kind in ("model_type", "model_attributes_type", "dict_type") and isinstance(
-        _name_and_value(one["loc"], data)[1], list
+        _name_and_value(entry["loc"], data)[1], list
     ):
-        return f"must be a table of keys, given once: write [{one['loc'][-1]}] with single brackets"
-    if kind == "list_type" and isinstance(_name_and_value(one["loc"], data)[1], Mapping):
-        return f"must be a list: write [[{one['loc'][-1]}]] with double brackets before each"
-    return words.get(kind) or one["msg"].replace("Input should be", "must be").replace(
+        return (
+            f"must be a table of keys, given once: write [{entry['loc'][-1]}] with single brackets"
+        )
+    if kind == "list_type" and isinstance(_name_and_value(entry["loc"], data)[1], Mapping):
+        return f"must be a list: write [[{entry['loc'][-1]}]] with double brackets before each"
+    return words.get(kind) or entry["msg"].replace("Input should be", "must be").replace(
         "Value error, ", ""
     )
 
 
 def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
     """Readable name of `path` in `data`, the value found there, and whether there is one."""
-    field, known = "", True
+    field, exists = "", True
     for key in path:
-        known, data = _child(data, key) if known else (False, None)
+        exists, data = _child(data, key) if exists else (False, None)
         if isinstance(key, int):
             field += f"[{key + 1}]"  # engineers count from one
-            named, name = _child(data, "name") if known else (False, None)
-            field += f" {show(name, 40)}" if named and isinstance(name, str) else ""
+            has_name, name = _child(data, "name") if exists else (False, None)
+            field += f" {show(name, 40)}" if has_name and isinstance(name, str) else ""
         else:
             plain = len(str(key)) <= 40 and str(key).replace("_", "").isalnum()
             text = str(key) if plain else show(str(key), 40)
             field += f".{text}" if field else text
-    return field, data, known and bool(path)
+    return field, data, exists and bool(path)
 
 
 def _child(data: Any, key: Any) -> tuple[bool, Any]:

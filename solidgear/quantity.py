@@ -77,9 +77,9 @@ class Quantity(Name):
         self = super().__new__(cls, text)
         self.symbol, *points = text.split(AT)
         letter, _, entry = self.symbol.partition("_")
-        known = letter in _KINDS and entry in _PLACES
-        self.kind = _KINDS[letter] if known else FREQUENCY
-        self.row, self.column = _PLACES[entry] if known else (None, None)
+        is_entry = letter in _KINDS and entry in _PLACES
+        self.kind = _KINDS[letter] if is_entry else FREQUENCY
+        self.row, self.column = _PLACES[entry] if is_entry else (None, None)
         self.points = tuple(points)
         return self
 
@@ -118,7 +118,7 @@ class Quantity(Name):
     @property
     def loads(self) -> tuple[tuple[float, ...], ...]:
         """Loads that its energy is of, on the point of the motion and on that of the load."""
-        return tuple(tuple(float(k == own) for k in range(6)) for own in self.place)
+        return tuple(tuple(float(k == component) for k in range(6)) for component in self.place)
 
     @property
     def components(self) -> set[int]:
@@ -159,10 +159,10 @@ class Quantity(Name):
         pair = self.pair
         if not self.is_coupling and (pair is None or pair[0] == pair[1]):
             return None
-        one, two = (Quantity(f"{self.symbol[:2]}{_DIAGONAL[k]}") for k in self.place)
+        first, second = (Quantity(f"{self.symbol[:2]}{_DIAGONAL[k]}") for k in self.place)
         if pair is None:
-            return one.at(*self.points), two.at(*self.points)
-        return one.at(pair[0], pair[0]), two.at(pair[1], pair[1])
+            return first.at(*self.points), second.at(*self.points)
+        return first.at(pair[0], pair[0]), second.at(pair[1], pair[1])
 
     @property
     def repeats(self) -> bool:
@@ -186,7 +186,7 @@ class Quantity(Name):
         """
         return Quantity(AT.join((self.symbol, *points)))
 
-    def points_among(self, known: Collection[str]) -> tuple[str, ...]:
+    def points_among(self, names: Collection[str]) -> tuple[str, ...]:
         """Its points, where the name of a single one may have an ``@`` of its own.
 
         Parameters
@@ -194,8 +194,8 @@ class Quantity(Name):
         known : collection of str
             Names of all lumped points.
         """
-        whole = AT.join(self.points)
-        return (whole,) if whole in known else self.points
+        joined = AT.join(self.points)
+        return (joined,) if joined in names else self.points
 
 
 C_ZZ, K_ZZ, FIRST_BENDING = Quantity("C_zz"), Quantity("K_zz"), Quantity("bending 1")

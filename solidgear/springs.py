@@ -54,21 +54,21 @@ def root_of(matrix: np.ndarray) -> np.ndarray:
     d = np.sqrt(np.abs(np.diag(matrix)))
     order = np.argsort(-d, kind="stable")
     unit = np.where(d > 0, d, 1.0)[order]
-    left = matrix[np.ix_(order, order)] / np.outer(unit, unit)
+    remainder = matrix[np.ix_(order, order)] / np.outer(unit, unit)
     columns = []
-    for j in range(len(left)):
-        if left[j, j] > 1e-12:
-            column = left[:, j] / np.sqrt(left[j, j])
+    for j in range(len(remainder)):
+        if remainder[j, j] > 1e-12:
+            column = remainder[:, j] / np.sqrt(remainder[j, j])
             column[:j] = 0.0
             columns.append(column)
-            left = left - np.outer(column, column)
+            remainder = remainder - np.outer(column, column)
     out = np.zeros((len(d), len(columns)))
     out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
     return out
 
 
 def in_series(
-    stiffness: np.ndarray, moves: np.ndarray, own: np.ndarray, what: str = "the housing"
+    stiffness: np.ndarray, moves: np.ndarray, support: np.ndarray, name: str = "the housing"
 ) -> np.ndarray:
     """Springs that stand on something elastic.
 
@@ -109,27 +109,27 @@ def in_series(
     """
     root = root_of(stiffness)
     stretch = root.T @ moves
-    held = root_of(own)
-    if held.shape[1] < len(own):
-        out = _spanned(stretch @ _null(held))
+    support_root = root_of(support)
+    if support_root.shape[1] < len(support):
+        out = _spanned(stretch @ _null(support_root))
         root = root @ out
         stretch = out.T @ stretch
-    q, r = np.linalg.qr(held)
-    reach = sla.solve_triangular(r, (stretch @ q).T).T if held.shape[1] else stretch[:, :0]
+    q, r = np.linalg.qr(support_root)
+    reach = sla.solve_triangular(r, (stretch @ q).T).T if support_root.shape[1] else stretch[:, :0]
     u, s, _ = np.linalg.svd(reach)
     weight = np.ones(len(u))
     weight[: len(s)] = 1 / np.hypot(1.0, s)
     half = root @ (u * weight)
-    found = half @ half.T
+    series = half @ half.T
     # what does not couple stays so: planes that rounding tied together would be solved together
-    size = np.sqrt(np.diag(found))
-    found[np.abs(found) <= ROUNDING * np.outer(size, size)] = 0.0
-    if _softest(found, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
+    size = np.sqrt(np.diag(series))
+    series[np.abs(series) <= ROUNDING * np.outer(size, size)] = 0.0
+    if _softest(series, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
         raise SolidgearError(
-            f"{what} is softer than the bearings in it by more than sixteen digits can tell; "
+            f"{name} is softer than the bearings in it by more than sixteen digits can tell; "
             "write 0 for a motion that it leaves free, or stiffnesses that are nearer to each other"
         )
-    return found
+    return series
 
 
 def _null(root: np.ndarray) -> np.ndarray:
@@ -148,18 +148,18 @@ def _null(root: np.ndarray) -> np.ndarray:
 def _spanned(columns: np.ndarray) -> np.ndarray:
     """Orthonormal basis of all that is orthogonal to some columns."""
     size = np.linalg.norm(columns, axis=0)
-    some = columns[:, size > 0] / size[size > 0]
-    if not some.shape[1]:
+    unit = columns[:, size > 0] / size[size > 0]
+    if not unit.shape[1]:
         return np.eye(len(columns))
-    u, s, _ = np.linalg.svd(some)
+    u, s, _ = np.linalg.svd(unit)
     return u[:, int((s > SAME).sum()) :]
 
 
 def _softest(matrix: np.ndarray, rank: int) -> float:
     """The smallest eigenvalue that is meant to be there, of the matrix scaled to a unit diagonal."""
     size = np.sqrt(np.diag(matrix))
-    on = size > 0
-    if not rank or not on.any():
+    resists = size > 0
+    if not rank or not resists.any():
         return 1.0
-    unit = matrix[np.ix_(on, on)] / np.outer(size[on], size[on])
+    unit = matrix[np.ix_(resists, resists)] / np.outer(size[resists], size[resists])
     return float(np.linalg.eigvalsh(unit)[-rank])

@@ -34,47 +34,49 @@ def _words(value: Any) -> Any:
     """Words with names; a single word is for the only pair there is."""
     if isinstance(value, tuple):
         return value
-    found: list[tuple[str, tuple[str, ...] | None]] = []
-    written = value.items() if isinstance(value, Mapping) and value else ((value, None),)
-    for word, names in written:
-        own = arrangement_word(word)
-        if not isinstance(own, str) or own not in WAYS:
+    pairs: list[tuple[str, tuple[str, ...] | None]] = []
+    entries = value.items() if isinstance(value, Mapping) and value else ((value, None),)
+    for word, names in entries:
+        arrangement = arrangement_word(word)
+        if not isinstance(arrangement, str) or arrangement not in WAYS:
             near = nearest(word, ["O", "X", *WAYS]) if isinstance(word, str) else ""
             reason = f'must be "O" (back to back) or "X" (face to face){near}'
             raise SceneError(reason, value=show(word))
         if names is None:
-            found.append((own, None))
+            pairs.append((arrangement, None))
             continue
-        several = isinstance(names, list) and any(isinstance(one, list) for one in names)
+        several = isinstance(names, list) and any(isinstance(name, list) for name in names)
         for pair in names if several else [names]:
-            known = [one for one in pair if isinstance(one, str)] if isinstance(pair, list) else []
-            if len(set(known)) != 2 or len(pair) != 2:
+            pair_names = (
+                [name for name in pair if isinstance(name, str)] if isinstance(pair, list) else []
+            )
+            if len(set(pair_names)) != 2 or len(pair) != 2:
                 reason = f'write the names of two bearings, as {word} = ["A", "B"]'
                 raise SceneError(
                     f"{reason}; of more, holds at each", path=(word,), value=show(pair)
                 )
-            found.append((own, tuple(known)))
-    return tuple(found)
+            pairs.append((arrangement, tuple(pair_names)))
+    return tuple(pairs)
 
 
 Arrangement = Annotated[Words, BeforeValidator(_words)]
 
 
-def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
+def pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
     """Pairs that the words of a file tell of the tables of its bearings; None where catalogue data
     are wrong by themselves, so that words cannot be judged.
     """
-    if given and any(_wrong(table) - {("holds",)} for table in tables):
+    if words and any(_wrong(table) - {("holds",)} for table in tables):
         return None
     names = [str(table.get("name")) for table in tables]
     free = [k for k, table in enumerate(tables) if _needs_holds(table)]
     found: list[Pair] = []
-    for word, pair in given:
+    for word, pair in words:
         if pair is None and len(free) != 2:
-            told = f": {listed(names[k] for k in free)}" if free else ""
+            names_of_free = f": {listed(names[k] for k in free)}" if free else ""
             raise SceneError(
                 "stands for two single bearings with a contact angle and without holds, and this "
-                f'scene has {len(free)}{told}; name two of them, as arrangement = {{O = ["A", "B"]}}',
+                f'scene has {len(free)}{names_of_free}; name two of them, as arrangement = {{O = ["A", "B"]}}',
                 path=("arrangement",),
             )
         for name in pair or ():
@@ -84,7 +86,7 @@ def pairs(given: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | Non
 
 
 def _check(
-    name: str, names: Sequence[str], tables: Sequence[Mapping[str, Any]], found: Sequence[Pair]
+    name: str, names: Sequence[str], tables: Sequence[Mapping[str, Any]], pairs: Sequence[Pair]
 ) -> None:
     """Refuse a name that is no single bearing which waits for its direction."""
     reason = ""
@@ -92,7 +94,7 @@ def _check(
         reason = (
             f"no bearing is called {show(name)}{nearest(name, names)}; there are {listed(names)}"
         )
-    elif any(names.index(name) in pair.bearings for pair in found):
+    elif any(names.index(name) in pair.bearings for pair in pairs):
         reason = f"{show(name)} is in two pairs"
     elif not _needs_holds(table := tables[names.index(name)]):
         data = table.get("catalogue")
@@ -111,7 +113,7 @@ def _wrong(table: Mapping[str, Any]) -> set[tuple]:
     try:
         Catalogue(**data if isinstance(data, Mapping) else {})
     except SceneError as error:
-        return {one.path for one in error.problems}
+        return {problem.path for problem in error.problems}
     return set()
 
 

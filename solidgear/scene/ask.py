@@ -17,16 +17,16 @@ _KNOWN = ", ".join(f"'{name}'" for name in QUANTITIES[:-1]) + f" or '{QUANTITIES
 
 def _asked(value: Any) -> Quantity:
     """A quantity, or one of the lumped points by ``quantity@name``."""
-    name = Quantity(value) if isinstance(value, str) else None
-    if name is None or name.symbol not in QUANTITIES:
+    quantity = Quantity(value) if isinstance(value, str) else None
+    if quantity is None or quantity.symbol not in QUANTITIES:
         raise SceneError(f"must be {_KNOWN}")
-    if name.points and name.is_frequency:
+    if quantity.points and quantity.is_frequency:
         raise SceneError(
-            f"only compliances and stiffnesses are of a point; write {name.symbol} without {AT}"
+            f"only compliances and stiffnesses are of a point; write {quantity.symbol} without {AT}"
         )
-    if name.points == ("",):
-        raise SceneError(f"names no point behind {AT}; write for example {name.at('gear')}")
-    return name
+    if quantity.points == ("",):
+        raise SceneError(f"names no point behind {AT}; write for example {quantity.at('gear')}")
+    return quantity
 
 
 Asked = Annotated[Quantity, BeforeValidator(_asked)]

@@ -21,7 +21,7 @@ def attached_stations(
     [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section')]
     """
     for station in stations:
-        own = (station.attachment,)
+        usual = (station.attachment,)
         on_face = getattr(station, "face", None) is not None
-        for attachment in own if on_face or not attachments else attachments:
+        for attachment in usual if on_face or not attachments else attachments:
             yield station, attachment

@@ -82,8 +82,10 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
             and len(rows) == 6
             and all(isinstance(r, Sequence) and len(r) == 6 for r in rows)
         ):
-            named = "" if isinstance(rows, (list, tuple)) else "named entries such as kxx, or "
-            raise SceneError(f"must be {named}6 rows of 6 numbers, order x y z thx thy thz")
+            alternative = (
+                "" if isinstance(rows, (list, tuple)) else "named entries such as kxx, or "
+            )
+            raise SceneError(f"must be {alternative}6 rows of 6 numbers, order x y z thx thy thz")
         K = np.zeros((6, 6))
         for i, row in enumerate(rows):
             for j, entry in enumerate(row):
@@ -110,10 +112,10 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
     # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes
     # 1, hence indefinite
-    for own in np.flatnonzero(size == 0):
-        coupled = np.abs(K[own])
+    for row_index in np.flatnonzero(size == 0):
+        coupled = np.abs(K[row_index])
         coupling = coupled / np.where(size > 0, size, np.sqrt(coupled) + (coupled == 0))
-        size[own] = coupling.max() or 1.0
+        size[row_index] = coupling.max() or 1.0
     # one size after the other: the product of two tiny ones is zero
     eigenvalue, vector = np.linalg.eigh(K / size[:, None] / size)
     if eigenvalue[0] < -1e-9:
@@ -138,9 +140,9 @@ Matrix = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix
 
 def one_stiffness(table: Mapping[str, Any]) -> None:
     """Refuse a bearing in a file that is described twice."""
-    given = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
-    if len(given) > 1:
-        raise SceneError(f"give either {given[0]} or {given[-1]}, not both", path=(given[0],))
+    keys = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
+    if len(keys) > 1:
+        raise SceneError(f"give either {keys[0]} or {keys[-1]}, not both", path=(keys[0],))
     if "hold" in table and table.get("axial_series"):
         raise SceneError(
             "a spring in series needs a stiffness beside it; leave one of hold and axial_series "

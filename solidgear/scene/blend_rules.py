@@ -32,7 +32,7 @@ def blend_problems(
         yield SceneError(reason, path=("blends",))
         return
     names = {f.name for f in features}
-    before: list[tuple[Blend, Corner]] = []
+    earlier: list[tuple[Blend, Corner]] = []
     for i, blend in enumerate(blends):
         if blend.name in names:
             yield SceneError(
@@ -44,50 +44,50 @@ def blend_problems(
         except SceneError as error:
             yield error.located(None, path=("blends", i, *error.path))
             continue
-        key, reason = _misfit(blend, corner, segments, before, stations, features)
+        key, reason = _misfit(blend, corner, segments, earlier, stations, features)
         if reason:
             yield SceneError(reason, path=("blends", i, key))
-        before.append((blend, corner))
+        earlier.append((blend, corner))
 
 
-def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, str]:
+def _misfit(blend, corner, segments, earlier, stations, features) -> tuple[str, str]:
     """Field and reason of the first thing that is wrong with a fillet or chamfer, or two empty
     texts.
     """
-    here, what, key = segments[corner.owner], blend.what, blend.size_key
-    for other, at in before:
-        if (at.joint, at.r, at.surface) == (corner.joint, corner.r, corner.surface):
-            return "y", f'this edge has "{other.name}" already'
+    owner, kind, key = segments[corner.owner], blend.what, blend.size_key
+    for neighbour, edge in earlier:
+        if (edge.joint, edge.r, edge.surface) == (corner.joint, corner.r, corner.surface):
+            return "y", f'this edge has "{neighbour.name}" already'
     if min(corner.axial, corner.radial) < SMALLEST * corner.r:
         return key, (
-            f"a {what} under {SMALLEST:g} of the radius, {corner.r:.6g} m, is no {what}: "
+            f"a {kind} under {SMALLEST:g} of the radius, {corner.r:.6g} m, is no {kind}: "
             "leave it out, or look at the units"
         )
     face = _face_height(corner, segments)
     if corner.radial > face + TOUCH:
-        return key, f"a {what} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
-    same_face = [at for _, at in before if _same_face(at, corner, segments)]
-    if corner.radial + sum(at.radial for at in same_face) > MOST_OF_FACE * face:
-        beside = f' beside "{same_face[0].name}"' if same_face else ""
+        return key, f"a {kind} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
+    same_face = [edge for _, edge in earlier if _same_face(edge, corner, segments)]
+    if corner.radial + sum(edge.radial for edge in same_face) > MOST_OF_FACE * face:
+        hint = f' beside "{same_face[0].name}"' if same_face else ""
         return key, (
-            f"a {what} of {corner.radial:.6g} m{beside} leaves less than a twentieth of the face "
+            f"a {kind} of {corner.radial:.6g} m{hint} leaves less than a twentieth of the face "
             f"of {face:.6g} m"
         )
-    if corner.axial > here.length / 2 + TOUCH:
+    if corner.axial > owner.length / 2 + TOUCH:
         return key, (
-            f'a {what} reaches {corner.axial:.6g} m along "{here.name}", beyond half its length of '
-            f"{here.length:.6g} m"
+            f'a {kind} reaches {corner.axial:.6g} m along "{owner.name}", beyond half its length of '
+            f"{owner.length:.6g} m"
         )
-    for other, at in before:
-        if (at.owner, at.surface) == (corner.owner, corner.surface) and (
-            at.axial + corner.axial > MOST_OF_LENGTH * here.length
+    for neighbour, edge in earlier:
+        if (edge.owner, edge.surface) == (corner.owner, corner.surface) and (
+            edge.axial + corner.axial > MOST_OF_LENGTH * owner.length
         ):
             return key, (
-                f'with "{other.name}" at its other end nothing is left of the cylinder '
-                f'"{here.name}", {here.length:.6g} m long'
+                f'with "{neighbour.name}" at its other end nothing is left of the cylinder '
+                f'"{owner.name}", {owner.length:.6g} m long'
             )
     lo, hi = corner.span
-    reach = f"the {what} reaches from {lo:.6g} to {hi:.6g} m"
+    reach = f"the {kind} reaches from {lo:.6g} to {hi:.6g} m"
     for s in stations:
         if corner.surface == "outer" and min(s.hi, hi) - max(s.lo, lo) > TOUCH:
             return key, (
@@ -116,12 +116,12 @@ def _misfit(blend, corner, segments, before, stations, features) -> tuple[str, s
 
 def _face_height(corner: Corner, segments: Sequence[Segment]) -> float:
     """Of the plane face beside an edge, m."""
-    here = segments[corner.owner]
+    segment = segments[corner.owner]
     k = corner.joint
     if k in (0, len(segments)):
-        return here.outer0 - here.inner0 if k == 0 else here.outer1 - here.inner1
-    before, after = (radii_of(s, corner.surface) for s in segments[k - 1 : k + 1])
-    return abs(before[1] - after[0])
+        return segment.outer0 - segment.inner0 if k == 0 else segment.outer1 - segment.inner1
+    lower, upper = (radii_of(s, corner.surface) for s in segments[k - 1 : k + 1])
+    return abs(lower[1] - upper[0])
 
 
 def _same_face(a: Corner, b: Corner, segments: Sequence[Segment]) -> bool:

@@ -164,9 +164,9 @@ class _Blend(Placed):
             owner = i if low is None else i - 1
         else:
             if abs(before - after) <= 1e-9 * max(before, after):
-                what = "outer radius" if outer else "bore"
+                surface_name = "outer radius" if outer else "bore"
                 raise SceneError(
-                    f"the {what} does not jump at y = {self.y:.6g} m; a {self.what} sits at a step "
+                    f"the {surface_name} does not jump at y = {self.y:.6g} m; a {self.what} sits at a step "
                     "or at the edge of an end face",
                     path=("y",),
                 )
@@ -174,14 +174,14 @@ class _Blend(Placed):
             # the root is on the surface that lies deeper in the material, the rim on the other
             deeper_first = (before < after) == outer
             owner = i - 1 if deeper_first == (edge == "root") else i
-        here = segments[owner]
-        start, end = radii_of(here, self.surface)
+        owner_segment = segments[owner]
+        start, end = radii_of(owner_segment, self.surface)
         radius = start if owner == i else end
         if not radius:
-            raise SceneError(f'"{here.name}" has no bore there', path=("surface",))
+            raise SceneError(f'"{owner_segment.name}" has no bore there', path=("surface",))
         if start != end:
             raise SceneError(
-                f'"{here.name}" is a cone there; a {self.what} runs into a cylinder',
+                f'"{owner_segment.name}" is a cone there; a {self.what} runs into a cylinder',
                 path=("y",),
             )
         if edge == "root" and low and high and low.material != high.material:
@@ -194,7 +194,7 @@ class _Blend(Placed):
         return Corner(
             self.name,
             self.what,
-            here.y0 if owner == i else here.y1,
+            owner_segment.y0 if owner == i else owner_segment.y1,
             radius,
             self.surface,
             edge == "root",

@@ -87,15 +87,15 @@ class BodyTable(Model):
 
     @model_validator(mode="after")
     def _one_file(self):
-        given = [key for key in ("step", "mesh", "block") if getattr(self, key) is not None]
-        if not given:
+        keys = [key for key in ("step", "mesh", "block") if getattr(self, key) is not None]
+        if not keys:
             raise SceneError(
                 'this key is missing; name a file: step = "part.step", or mesh = "part.msh"',
                 path=("step",),
             )
-        if len(given) > 1:
-            both = " or ".join(given)
-            raise SceneError(f"give either {both}, not both", path=(given[-1],))
+        if len(keys) > 1:
+            choices = " or ".join(keys)
+            raise SceneError(f"give either {choices}, not both", path=(keys[-1],))
         if self.block is not None:
             if len(self.block) != 3:
                 raise SceneError("give three edges, along x, y and z", path=("block",))
@@ -222,8 +222,8 @@ class BodyFile(Model):
         """True where it is its segments, and nothing else."""
         if self.mixed:
             return False
-        off = abs(self.round_volume - 1)
-        return self.round_share >= ALL_ROUND and off <= SAME_VOLUME + self.facets
+        difference = abs(self.round_volume - 1)
+        return self.round_share >= ALL_ROUND and difference <= SAME_VOLUME + self.facets
 
     def doubts(self, usual: Material) -> tuple[str, ...]:
         """Sentences on what its file may not mean, or says otherwise than a scene of a material."""
@@ -239,19 +239,28 @@ class BodyFile(Model):
 
     def _other_materials(self, usual: Material) -> Iterator[str]:
         """One sentence on materials that the file says to be others than those of the scene."""
-        own = {group.name: group.material for group in self.groups if group.material is not None}
-        pairs = [(told, own.get(told.group, usual)) for told in self.file_materials]
+        group_materials = {
+            group.name: group.material for group in self.groups if group.material is not None
+        }
+        pairs = [
+            (file_material, group_materials.get(file_material.group, usual))
+            for file_material in self.file_materials
+        ]
         # several groups may be of one material
-        other = {told.name: (told, m) for told, m in pairs if not told.is_like(m)}
-        if not other:
+        different = {
+            file_material.name: (file_material, m)
+            for file_material, m in pairs
+            if not file_material.is_like(m)
+        }
+        if not different:
             return
-        said = [
-            f"{told.name} with {told.numbers} in the units of the file, where the scene has E "
+        sentences = [
+            f"{file_material.name} with {file_material.numbers} in the units of the file, where the scene has E "
             f"{m.E / 1e9:.6g} GPa, nu {m.nu:.6g}, density {m.density:.6g} kg/m^3"
-            for told, m in other.values()
+            for file_material, m in different.values()
         ]
         yield (
-            f"materials of the file are not read: {listed(said, 4)}; write them as [material], or under "
+            f"materials of the file are not read: {listed(sentences, 4)}; write them as [material], or under "
             "materials of the [body]"
         )
 

@@ -126,12 +126,12 @@ def _preload(value: Any) -> Any:
         )
     for key, dimension in (("force", "load"), ("displacement", "length")):
         try:
-            found = quantity(value, dimension)
+            number = quantity(value, dimension)
         except SceneError:
             continue
-        if found <= 0:
+        if number <= 0:
             raise SceneError("must be greater than zero; leave it out for none", value=show(value))
-        return {key: found}
+        return {key: number}
     raise SceneError(
         'is neither a force such as "500 N" nor a displacement such as "10 um"', value=show(value)
     )
@@ -160,8 +160,8 @@ def _conformity(value: Any) -> Any:
     pair = value if isinstance(value, (list, tuple)) else [value, value]
     if len(pair) != 2:
         raise SceneError("write one number, or two: inner and outer ring", value=show(value))
-    for one in (quantity(v, "dimensionless") for v in pair):
-        if not 0.5 < one <= 0.6:
+    for ratio in (quantity(v, "dimensionless") for v in pair):
+        if not 0.5 < ratio <= 0.6:
             raise SceneError(
                 "is groove radius over ball diameter: above 0.5, or the ball would not fit its "
                 "groove, and at most 0.6; usual is 0.52",
@@ -336,26 +336,26 @@ class Catalogue(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:
-        found = list(problems(self))
-        if found:
-            raise SceneError.of(found)
+        found_problems = list(problems(self))
+        if found_problems:
+            raise SceneError.of(found_problems)
         return self
 
 
 def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
     """Data with what the designation tells, where they are silent."""
     try:
-        known = boundary(data["designation"])
+        standard = boundary(data["designation"])
     except SceneError as error:
         raise SceneError(error.reason, path=("designation",), value=error.value) from None
-    told = {key: value for key, value in known._asdict().items() if value is not None}
-    del told["ignored"]
-    if "kind" in data and data["kind"] != known.kind:
+    fields = {key: value for key, value in standard._asdict().items() if value is not None}
+    del fields["ignored"]
+    if "kind" in data and data["kind"] != standard.kind:
         raise SceneError(
-            f"does not fit the designation {show(data['designation'])}, which is {known.kind}",
+            f"does not fit the designation {show(data['designation'])}, which is {standard.kind}",
             path=("kind",),
             value=show(data["kind"]),
         )
-    return {key: value for key, value in told.items() if data.get(key) is None} | {
-        key: value for key, value in data.items() if value is not None or key not in told
+    return {key: value for key, value in fields.items() if data.get(key) is None} | {
+        key: value for key, value in data.items() if value is not None or key not in fields
     }

@@ -27,34 +27,34 @@ def problems(data: Catalogue) -> Iterator[SceneError]:
 
 def _belongs(data: Catalogue) -> Iterator[SceneError]:
     """Keys that the kind or the arrangement has no use for."""
-    what = data.kind.replace("_", " ")
+    kind = data.kind.replace("_", " ")
     if data.kind in ("spherical", "thrust_ball"):
-        yield from _by_nature(data, what)
+        yield from _by_nature(data, kind)
     elif not data.angled:
         if data.contact_angle is not None:
             yield SceneError(
-                f"a {what} bearing has no contact angle of its own: leave it out, or write "
+                f"a {kind} bearing has no contact angle of its own: leave it out, or write "
                 f'kind = "{"angular_contact" if data.balls else "tapered"}"',
                 path=("contact_angle",),
             )
         if data.arrangement not in ("single", "double_row"):
             yield SceneError(
-                f"{what} bearings have no contact angle to pair: write single or double_row",
+                f"{kind} bearings have no contact angle to pair: write single or double_row",
                 path=("arrangement",),
             )
         if data.preload is not None:
             yield SceneError(
-                f"a {what} bearing is not preloaded along y: write a negative clearance",
+                f"a {kind} bearing is not preloaded along y: write a negative clearance",
                 path=("preload",),
             )
     elif data.arrangement == "double_row":
         yield SceneError(
-            f"two rows of {what} bearings are back_to_back, face_to_face or tandem",
+            f"two rows of {kind} bearings are back_to_back, face_to_face or tandem",
             path=("arrangement",),
         )
     if data.one_sided and data.holds is None:
         yield SceneError(
-            f"{data.arrangement} {what} bearings hold the shaft in one direction only: "
+            f"{data.arrangement} {kind} bearings hold the shaft in one direction only: "
             'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
             'for a pair arrangement = "O" or "X" above all tables',
             path=("holds",),
@@ -66,7 +66,7 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
     ):
         if getattr(data, key) and not allowed:
             yield SceneError(
-                f"belongs to {owner}; a {what} bearing has none: leave it out", path=(key,)
+                f"belongs to {owner}; a {kind} bearing has none: leave it out", path=(key,)
             )
     if data.preload_spring is not None and data.speed:
         yield SceneError(
@@ -85,10 +85,10 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
         )
 
 
-def _by_nature(data: Catalogue, what: str) -> Iterator[SceneError]:
+def _by_nature(data: Catalogue, kind: str) -> Iterator[SceneError]:
     """Keys that bearings of two rows of their own, and those for thrust alone, have no use for."""
     if data.kind == "spherical":
-        what = "spherical roller"
+        kind = "spherical roller"
         refused = {
             "arrangement": "has two rows of its own",
             "preload": "is preloaded by a negative clearance and not along y",
@@ -106,7 +106,7 @@ def _by_nature(data: Catalogue, what: str) -> Iterator[SceneError]:
         }
     for key, reason in refused.items():
         if getattr(data, key) != type(data).model_fields[key].get_default():
-            yield SceneError(f"a {what} bearing {reason}: leave it out", path=(key,))
+            yield SceneError(f"a {kind} bearing {reason}: leave it out", path=(key,))
 
 
 def _fits(data: Catalogue) -> Iterator[SceneError]:

@@ -68,13 +68,19 @@ def mass_properties(outline: Outline[Segment]) -> MassProperties:
 def whole_mass(scene: Scene) -> MassProperties:
     """Mass, centre and inertia of a shaft with the rigid masses on it; transverse about x."""
     shaft, places = mass_properties(scene.outline), {s.name: s.y for s in scene.stations}
-    each = [(m, places[m.on] + m.offset[1] if m.on else m.y + m.offset[1]) for m in scene.masses]
-    mass = shaft.mass + sum(m.mass for m, _ in each)
-    centre = (shaft.mass * shaft.centre + sum(m.mass * y for m, y in each)) / mass
+    mass_places = [
+        (m, places[m.on] + m.offset[1] if m.on else m.y + m.offset[1]) for m in scene.masses
+    ]
+    mass = shaft.mass + sum(m.mass for m, _ in mass_places)
+    centre = (shaft.mass * shaft.centre + sum(m.mass * y for m, y in mass_places)) / mass
     ixx = shaft.ixx + shaft.mass * (shaft.centre - centre) ** 2
-    ixx += sum(m.inertia[0] + m.mass * ((y - centre) ** 2 + m.offset[2] ** 2) for m, y in each)
+    ixx += sum(
+        m.inertia[0] + m.mass * ((y - centre) ** 2 + m.offset[2] ** 2) for m, y in mass_places
+    )
     iyy = shaft.iyy
-    iyy += sum(m.inertia[1] + m.mass * (m.offset[0] ** 2 + m.offset[2] ** 2) for m, _ in each)
+    iyy += sum(
+        m.inertia[1] + m.mass * (m.offset[0] ** 2 + m.offset[2] ** 2) for m, _ in mass_places
+    )
     return MassProperties(mass=mass, centre=centre, ixx=ixx, iyy=iyy)
 
 

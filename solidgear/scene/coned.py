@@ -34,8 +34,8 @@ def coned(scene: Any) -> Any:
     if not filled:
         return scene
     segments: list[Segment] = []
-    for k, whole in enumerate(scene.segments):
-        segments += _pieces(whole, [c for c in filled if c.owner == k])
+    for k, segment in enumerate(scene.segments):
+        segments += _pieces(segment, [c for c in filled if c.owner == k])
     names = {c.name for c in filled}
     blends = tuple(b for b in scene.blends if b.name not in names)
     try:
@@ -44,27 +44,27 @@ def coned(scene: Any) -> Any:
         return scene
 
 
-def _pieces(whole: Segment, chamfers: list[Corner]) -> list[Segment]:
+def _pieces(segment: Segment, chamfers: list[Corner]) -> list[Segment]:
     """A segment cut where its chamfers end, the longest piece by its own name."""
-    marks = sorted({whole.y0, whole.y1, *(y for c in chamfers for y in c.span)})
+    marks = sorted({segment.y0, segment.y1, *(y for c in chamfers for y in c.span)})
     cuts = list(zip(marks, marks[1:]))
     longest = max(cuts, key=lambda ends: ends[1] - ends[0])
     pieces = []
     for a, b in cuts:
-        own: dict[str, Any] = {"y0": a, "y1": b}
+        fields: dict[str, Any] = {"y0": a, "y1": b}
         for field in ("outer", "inner"):
             for end, y in (("0", a), ("1", b)):
-                at = (y - whole.y0) / (whole.y1 - whole.y0)
-                low, high = getattr(whole, field + "0"), getattr(whole, field + "1")
-                own[field + end] = low + at * (high - low)
-        there = [c for c in chamfers if c.span[0] <= a and b <= c.span[1]]
-        for c in there:
+                position = (y - segment.y0) / (segment.y1 - segment.y0)
+                low, high = getattr(segment, field + "0"), getattr(segment, field + "1")
+                fields[field + end] = low + position * (high - low)
+        present = [c for c in chamfers if c.span[0] <= a and b <= c.span[1]]
+        for c in present:
             field = "outer" if c.surface == "outer" else "inner"
             for end, y in (("0", a), ("1", b)):
                 # all of its height at the step, and nothing where it meets the cylinder
                 share = round(1 - abs(y - c.y) / c.axial, 12)
-                own[field + end] += c.out * c.radial * share
+                fields[field + end] += c.out * c.radial * share
         if (a, b) != longest:
-            own["name"] = f"{whole.name} ({', '.join(c.name for c in there)})"
-        pieces.append(whole.with_changes(**own))
+            fields["name"] = f"{segment.name} ({', '.join(c.name for c in present)})"
+        pieces.append(segment.with_changes(**fields))
     return pieces

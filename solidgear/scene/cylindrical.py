@@ -84,10 +84,10 @@ def working(
     >>> round(degrees(found.pressure_angle), 4), round(1e3 * sum(found.radii), 4)
     (26.0886, 56.4999)
     """
-    ratio, both = teeth[1] / teeth[0], sum(teeth)
-    reference = module * both / (2 * cos(helix_angle))
+    ratio, tooth_sum = teeth[1] / teeth[0], sum(teeth)
+    reference = module * tooth_sum / (2 * cos(helix_angle))
     transverse = atan(tan(pressure_angle) / cos(helix_angle))
-    wanted = tan(transverse) - transverse + 2 * tan(pressure_angle) * sum(shift) / both
+    wanted = tan(transverse) - transverse + 2 * tan(pressure_angle) * sum(shift) / tooth_sum
     loose = reference * cos(transverse) / cos(_of_involute(wanted))
     centre = loose if centre_distance is None else centre_distance
     least = reference * cos(transverse)
@@ -129,28 +129,32 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
                         path=(table, key),
                     )
         return
-    for side, own in (("pinion", pinion), ("gear", gear)):
-        for key, other in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
-            if getattr(own, key) is not None and getattr(own, other) is not None:
-                reason = f"and {other} say the same; of a cylindrical gear write {key} alone"
+    for side, member in (("pinion", pinion), ("gear", gear)):
+        for key, bevel_key in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
+            if getattr(member, key) is not None and getattr(member, bevel_key) is not None:
+                reason = f"and {bevel_key} say the same; of a cylindrical gear write {key} alone"
                 yield SceneError(reason, path=(side, key))
     for key in ("module", "helix_angle"):
-        one, two = getattr(pinion, key), getattr(gear, key)
-        if None not in (one, two) and not isclose(one, two, rel_tol=TYPED, abs_tol=1e-9):
-            reason = (
-                f"is {two:.6g} and that of the pinion {one:.6g} (SI); wheels that mesh share it"
-            )
+        first, second = getattr(pinion, key), getattr(gear, key)
+        if None not in (first, second) and not isclose(first, second, rel_tol=TYPED, abs_tol=1e-9):
+            reason = f"is {second:.6g} and that of the pinion {first:.6g} (SI); wheels that mesh share it"
             yield SceneError(reason, path=("gear", key))
     distance = mesh.centre_distance
-    for side, own in (("pinion", pinion), ("gear", gear)):
-        due = (distance or 0.0) * own.teeth / (pinion.teeth + gear.teeth)
-        if distance and own.pitch_radius and not isclose(own.pitch_radius, due, rel_tol=RADIUS):
+    for side, member in (("pinion", pinion), ("gear", gear)):
+        due = (distance or 0.0) * member.teeth / (pinion.teeth + gear.teeth)
+        if (
+            distance
+            and member.pitch_radius
+            and not isclose(member.pitch_radius, due, rel_tol=RADIUS)
+        ):
             reason = (
                 f"and centre_distance contradict: wheels of {pinion.teeth} and {gear.teeth} teeth "
                 f"{1e3 * distance:.6g} mm apart roll at {1e3 * due:.6g} mm; correct or leave out one"
             )
             yield SceneError(reason, path=(side, "pitch_radius"))
-    shifted = [side for side, own in (("pinion", pinion), ("gear", gear)) if own.profile_shift]
+    shifted = [
+        side for side, member in (("pinion", pinion), ("gear", gear)) if member.profile_shift
+    ]
     if shifted and pinion.module is None and gear.module is None:
         yield SceneError("counts in modules; give the module", path=(shifted[0], "profile_shift"))
 
@@ -170,9 +174,9 @@ def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     if module is not None and pressure is not None:
         shift = pinion.profile_shift, gear.profile_shift
         teeth = pinion.teeth, gear.teeth
-        found = working(teeth, module, helix or 0.0, pressure, shift, mesh.centre_distance)
-        radii, pressure = found.radii, found.pressure_angle
-        angle = None if helix is None else found.helix_angle
+        cylinders = working(teeth, module, helix or 0.0, pressure, shift, mesh.centre_distance)
+        radii, pressure = cylinders.radii, cylinders.pressure_angle
+        angle = None if helix is None else cylinders.helix_angle
     elif mesh.centre_distance is not None:
         share = mesh.centre_distance / (pinion.teeth + gear.teeth)
         radii = radii[0] or share * pinion.teeth, radii[1] or share * gear.teeth
@@ -189,8 +193,8 @@ def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
         )
         for w, radius, cone in zip(wheels, radii, cones)
     ]
-    own = mesh.with_changes(pressure_angle=pressure, centre_distance=None)
-    return {"pinion": changed[0], "gear": changed[1], "mesh": own}
+    working_mesh = mesh.with_changes(pressure_angle=pressure, centre_distance=None)
+    return {"pinion": changed[0], "gear": changed[1], "mesh": working_mesh}
 
 
 def _either(*values: float | None) -> float | None:

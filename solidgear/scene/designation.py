@@ -18,8 +18,8 @@ _BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
 def _series(text: str, first: int = 10) -> dict[int, tuple[float, float]]:
     """Bore to outside diameter and width, from ``D x B`` in the order of bores, a dash for none."""
     pairs = zip(_BORES[_BORES.index(first) :], text.split())
-    told = {bore: pair.split("x") for bore, pair in pairs if pair != "-"}
-    return {bore: (float(D), float(B)) for bore, (D, B) in told.items()}
+    sizes = {bore: pair.split("x") for bore, pair in pairs if pair != "-"}
+    return {bore: (float(D), float(B)) for bore, (D, B) in sizes.items()}
 
 
 #: ISO 15:2017, diameter series 0, 2 and 3, usual width
@@ -209,9 +209,9 @@ def boundary(designation: str) -> Boundary:
         return Boundary(kind, bore / 1e3, outer / 1e3, width / 1e3, angle, clearance, ignored)
     cup = re.fullmatch(r"[BH]K(\d\d)(\d\d)", plain)
     if cup and int(cup[1]) in _CUPS and int(cup[2]) > 0:
-        under, width = int(cup[1]), int(cup[2])
-        outer = 16 if under == 12 and width <= 10 else _CUPS[under]
-        return Boundary("needle", under / 1e3, outer / 1e3, width / 1e3)
+        inner, width = int(cup[1]), int(cup[2])
+        outer = 16 if inner == 12 and width <= 10 else _CUPS[inner]
+        return Boundary("needle", inner / 1e3, outer / 1e3, width / 1e3)
     raise _unknown(designation)
 
 
@@ -225,8 +225,8 @@ def usual_angle(designation: str) -> float | None:
     12.95
     """
     plain = re.sub(r"[\s-]", "", designation)
-    known = (degrees for series, degrees in _ANGLES.items() if re.match(series, plain))
-    degrees = next(known, None)
+    angles = (degrees for series, degrees in _ANGLES.items() if re.match(series, plain))
+    degrees = next(angles, None)
     return None if degrees is None else math.radians(degrees)
 
 
@@ -248,12 +248,12 @@ def _all() -> list[str]:
 
 
 def _unknown(designation: str) -> SceneError:
-    known = ", ".join(told for *_, told in _WRITTEN)
+    series = ", ".join(words for *_, words in _WRITTEN)
     plain = re.sub(r"[\s/-]", "", designation.upper()).replace("O", "0")
-    swapped = [one for one in _all() if sorted(one) == sorted(plain)]
+    swapped = [name for name in _all() if sorted(name) == sorted(plain)]
     hint = did_you_mean(next(iter(swapped), near(plain, _all())))
     return SceneError(
-        f"this designation is not understood{hint}; known are {known} and drawn cups HK, BK, bores "
+        f"this designation is not understood{hint}; known are {series} and drawn cups HK, BK, bores "
         "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove, "
         "cylindrical and spherical ones; or write kind, bore, outer_diameter, width",
         value=show(designation),

@@ -87,8 +87,8 @@ def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
     >>> (found[0].path, found[0].a, found[0].b)
     ('segments.rod.y1', 0.6, 0.5)
     """
-    one, other = (scene.model_dump(mode="json") for scene in (a, b))
-    return tuple(_Tables().differing("", one, other, left_out=("name",)))
+    first, second = (scene.model_dump(mode="json") for scene in (a, b))
+    return tuple(_Tables().differing("", first, second, left_out=("name",)))
 
 
 class _Tables:
@@ -102,8 +102,8 @@ class _Tables:
         """Their differences, by paths that begin with one."""
         for key in dict.fromkeys([*a, *b]):
             if key not in left_out and not self._holds_anyway(a, b, key):
-                own = f"{path}.{key}" if path else key
-                yield from self._entries(own, key, a.get(key), b.get(key))
+                entry_path = f"{path}.{key}" if path else key
+                yield from self._entries(entry_path, key, a.get(key), b.get(key))
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
         if isinstance(a, dict) and isinstance(b, dict):
@@ -117,10 +117,10 @@ class _Tables:
         """Differences of lists of tables, by names or numbers."""
         names = _names(a), _names(b)
         keys = names if all(names) else (range(len(a)), range(len(b)))
-        mine, its = dict(zip(keys[0], a)), dict(zip(keys[1], b))
-        for key in dict.fromkeys([*mine, *its]):
-            own = f"{path}.{key + 1 if isinstance(key, int) else key}"
-            yield from self._entries(own, "", mine.get(key), its.get(key))
+        first, second = dict(zip(keys[0], a)), dict(zip(keys[1], b))
+        for key in dict.fromkeys([*first, *second]):
+            entry_path = f"{path}.{key + 1 if isinstance(key, int) else key}"
+            yield from self._entries(entry_path, "", first.get(key), second.get(key))
 
     def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
         """True for a key that one has alone, and that would change nothing in the other."""
@@ -159,16 +159,16 @@ class _Files(_Tables):
     def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
         if key in a and key in b:
             return False
-        k, without, value = (1, b, a[key]) if key in a else (0, a, b[key])
-        without[key] = value
-        same = self.meant[k] is not None and self._meaning(k) == self.meant[k]
-        del without[key]
-        return same
+        k, other, value = (1, b, a[key]) if key in a else (0, a, b[key])
+        other[key] = value
+        unchanged = self.meant[k] is not None and self._meaning(k) == self.meant[k]
+        del other[key]
+        return unchanged
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
         yield from super()._entries(path, key, a, b)
-        first, _, rest = path.rpartition(".")
-        if rest == "scene" and (first in SIDES or first.startswith("shaft.")):
+        first, _, key_name = path.rpartition(".")
+        if key_name == "scene" and (first in SIDES or first.startswith("shaft.")):
             side = f"{first}."
             yield from _Files(*self._beside(a, b), self.prefix + side).found()
 
@@ -197,17 +197,17 @@ def _are_tables(value: Any) -> bool:
 def _names(entries: list[dict]) -> list[str]:
     """Names of the tables of a list; none unless each has one of its own."""
     names = [entry.get("name") for entry in entries]
-    own = [name for name in dict.fromkeys(names) if isinstance(name, str)]
-    return own if len(own) == len(names) else []
+    distinct = [name for name in dict.fromkeys(names) if isinstance(name, str)]
+    return distinct if len(distinct) == len(names) else []
 
 
 def _alike(a: Any, b: Any) -> bool:
     if isinstance(a, list) and isinstance(b, list):
         return len(a) == len(b) and all(map(_alike, a, b))
-    one, other = _in_si(a), _in_si(b)
-    if one is None or other is None:
+    first, second = _in_si(a), _in_si(b)
+    if first is None or second is None:
         return bool(a == b)
-    return isclose(one, other, rel_tol=ROUNDING)
+    return isclose(first, second, rel_tol=ROUNDING)
 
 
 def _in_si(value: Any) -> float | None:

@@ -111,26 +111,26 @@ def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
     """A scene file as it is written, bearings of catalogue data without their stiffness; `part_of`
     reads the part that a [body] names.
     """
-    where = os.fspath(path)
-    return scene_of(parse(where), where, part_of)
+    file_path = os.fspath(path)
+    return scene_of(parse(file_path), file_path, part_of)
 
 
-def scene_of(raw: Table, where: str, part_of: Reader = unread) -> Scene:
+def scene_of(raw: Table, file_path: str, part_of: Reader = unread) -> Scene:
     """Resolve the tables of a scene file; what it names lies relative to `where`, its path."""
     if describes_train(raw):
         raise SceneError(
             "describes a train of shafts and not a shaft; run solidgear compare, check, "
             "system-modes, response or receptance on it, or read it with solidgear.load_train"
-        ).located(raw, where=place_of(where))
+        ).located(raw, where=place_of(file_path))
     try:
-        return _Reading(dict(raw), where, part_of).scene()
+        return _Reading(dict(raw), file_path, part_of).scene()
     except SceneError as error:
         found = of_tables(error, raw).problems
         # both ends of a cylinder are one diameter
         problems = {(one.path, one.reason): one for one in found}
         order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
-        raise SceneError.of(ordered).located(raw, where=place_of(where)) from None
+        raise SceneError.of(ordered).located(raw, where=place_of(file_path)) from None
 
 
 def _drop_tag(path: tuple) -> tuple:
@@ -151,13 +151,13 @@ class _Row(NamedTuple):
 class _Reading:
     """A file on its way to a scene; problems are gathered until the end."""
 
-    def __init__(self, raw: Table, where: str, part_of: Reader):
-        self.raw, self.where = raw, where
+    def __init__(self, raw: Table, file_path: str, part_of: Reader):
+        self.raw, self.where = raw, file_path
         self.problems = Gathered()
         self.file, self.spoilt = self._tables()
         self.part: Recognised | None = None
         if (body := self.file.body) is not None:
-            self.part = self.problems.read(lambda: part_of(body, Path(where).parent))
+            self.part = self.problems.read(lambda: part_of(body, Path(file_path).parent))
             self.spoilt |= set() if self.part else {"body"}
         self.places = Places(self.file.attachment, of_body="body" in raw, part=self.part)
         self._name_datums()
@@ -219,14 +219,16 @@ class _Reading:
         raw, kind = self.raw, ScenePartFile if "body" in self.raw else SceneFile
         for key, most in MOST.items():
             if isinstance(raw.get(key), list) and len(raw[key]) > most:
-                what = "masses" if key == "mass" else f"{key}s"
-                raise SceneError(rules.too_many(what, len(raw[key]), most), path=(key,))
+                plural = "masses" if key == "mass" else f"{key}s"
+                raise SceneError(rules.too_many(plural, len(raw[key]), most), path=(key,))
         try:
             return kind(**with_port(raw)), set()
         except SceneError as error:
-            found = [one.located(raw, path=_drop_tag(one.path)) for one in error.problems]
-        self.problems += found
-        spoilt = {str(one.path[0]) for one in found}
+            problems = [
+                problem.located(raw, path=_drop_tag(problem.path)) for problem in error.problems
+            ]
+        self.problems += problems
+        spoilt = {str(problem.path[0]) for problem in problems}
         sound = {key: value for key, value in raw.items() if key not in spoilt}
         needed = {"material": STEEL, "segment": [], "port": []}
         return SceneFile(**{**needed, **with_port(sound)}), spoilt
@@ -240,20 +242,20 @@ class _Reading:
         if self.part is not None:
             places.add("origin")
             shapes = [{"name": f"s{k}"} for k in range(1, len(self.part.walls) + 1)]
-        whole = isinstance(shapes, list) and all(isinstance(one, Mapping) for one in shapes)
+        tables = isinstance(shapes, list) and all(isinstance(table, Mapping) for table in shapes)
         if (
-            not whole
+            not tables
             or "bearing" in self.spoilt
-            or not all(isinstance(one.get("name"), str) for one in shapes)
+            or not all(isinstance(table.get("name"), str) for table in shapes)
         ):
             places.known = None  # without sound names, what refers to them cannot be judged
-        for k, one in enumerate(shapes if places.known is not None else ()):
-            if one["name"] in places.segments:
+        for k, table in enumerate(shapes if places.known is not None else ()):
+            if table["name"] in places.segments:
                 reason = "another segment has this name; each needs its own"
                 self.problems.append(SceneError(reason, path=("segment", k, "name")))
-            places.segments.append(one["name"])
-            for datum in SHAPES.get(str(one.get("kind")), Cylinder).datums:
-                places.add(f"{one['name']}.{datum}")
+            places.segments.append(table["name"])
+            for datum in SHAPES.get(str(table.get("kind")), Cylinder).datums:
+                places.add(f"{table['name']}.{datum}")
 
     def _shaft(self) -> list[Segment]:
         """Segments end to end, or those of the part."""
@@ -266,9 +268,11 @@ class _Reading:
         else:
             laid = lay_out(self.file.segment, self._material(), self.places)
             segments, path_of = laid.segments, laid.path
-        found = rules.shaft_problems(segments)
-        if found:
-            raise SceneError.of(one.located(None, path=path_of(one.path)) for one in found)
+        problems = rules.shaft_problems(segments)
+        if problems:
+            raise SceneError.of(
+                problem.located(None, path=path_of(problem.path)) for problem in problems
+            )
         return segments
 
     def _material(self) -> Material:
@@ -316,27 +320,29 @@ class _Reading:
 
     def _main_first(self, ports: list[_Row]) -> list[_Row]:
         """Lumped points, the one first that the file calls the main one."""
-        wanted = self.file.ask.port
-        known = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
-        named = not any(one.path[0] == "port" for one in self.problems)
-        if ports and named and wanted is not None and wanted not in known:
-            reason = rules.no_such_point(wanted, known)
+        main_name = self.file.ask.port
+        names = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
+        sound = not any(problem.path[0] == "port" for problem in self.problems)
+        if ports and sound and main_name is not None and main_name not in names:
+            reason = rules.no_such_point(main_name, names)
             self.problems.append(SceneError(reason, path=("ask", "port")))
-        main = [row for row, name in zip(ports, known) if name == wanted][:1]
+        main = [row for row, name in zip(ports, names) if name == main_name][:1]
         return main + [row for row in ports if row not in main]
 
     def _judge(self, rows: dict[str, list[_Row]]) -> None:
         """Gather what is wrong between things that are sound by themselves."""
         # names are judged where all are known
-        whole = not {"bearing", "port", "arrangement"} & self.spoilt
-        whole &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
-        sound = {key: [row for row in of if row.thing] for key, of in rows.items()}
-        things = {key: [row.thing for row in of] for key, of in sound.items()}
+        complete = not {"bearing", "port", "arrangement"} & self.spoilt
+        complete &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
+        sound = {key: [row for row in kind_rows if row.thing] for key, kind_rows in rows.items()}
+        things = {key: [row.thing for row in kind_rows] for key, kind_rows in sound.items()}
         things["masses"] = [*seated(things["masses"], self.segments)]
-        found = [*rules.problems_between(self.segments, **things, whole=whole)]
-        if whole and things["ports"]:
-            found += rules.question_problems(things["ports"], self.file.ask.quantities)
-        self.problems += [one.located(None, path=_in_file(one.path, sound)) for one in found]
+        problems = [*rules.problems_between(self.segments, **things, whole=complete)]
+        if complete and things["ports"]:
+            problems += rules.question_problems(things["ports"], self.file.ask.quantities)
+        self.problems += [
+            problem.located(None, path=_in_file(problem.path, sound)) for problem in problems
+        ]
 
 
 #: lists of a scene by those of a file

@@ -44,9 +44,9 @@ class FileMaterial(Model):
     @property
     def numbers(self) -> str:
         """Numbers that the file gives it, in a sentence."""
-        known = (("E", self.E), ("nu", self.nu), ("density", self.density))
-        return ", ".join(f"{key} {value:.6g}" for key, value in known if value is not None)
+        constants = (("E", self.E), ("nu", self.nu), ("density", self.density))
+        return ", ".join(f"{key} {value:.6g}" for key, value in constants if value is not None)
 
 
-def _same(told: float | None, unit: float, value: float) -> bool:
-    return told is None or abs(told * unit / value - 1) <= SAME
+def _same(file_value: float | None, unit: float, value: float) -> bool:
+    return file_value is None or abs(file_value * unit / value - 1) <= SAME

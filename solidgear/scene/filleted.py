@@ -44,18 +44,20 @@ def _fillet(torus: Torus, segments: list[Segment]) -> Fillet | None:
     if not (torus.hollow and (at_start or at_end) and cones):
         return None
     before, after = cones[0] - 1, cones[-1] + 1
-    here, beyond = (before, after) if at_start else (after, before)
-    if not (0 <= here < len(segments) and 0 <= beyond < len(segments)):
+    cylinder_index, far_index = (before, after) if at_start else (after, before)
+    if not (0 <= cylinder_index < len(segments) and 0 <= far_index < len(segments)):
         return None
-    cylinder = segments[here]
+    cylinder = segments[cylinder_index]
     bores = {
         bore for s in (cylinder, *(segments[k] for k in cones)) for bore in (s.inner0, s.inner1)
     }
-    round_there = abs(cylinder.outer0 - radius) < near and abs(cylinder.outer1 - radius) < near
-    if not round_there or len(bores) > 1:
+    is_cylinder = abs(cylinder.outer0 - radius) < near and abs(cylinder.outer1 - radius) < near
+    if not is_cylinder or len(bores) > 1:
         return None
-    place = segments[beyond].y0 if at_start else segments[beyond].y1
+    place = segments[far_index].y0 if at_start else segments[far_index].y1
     reach = {"y1": place} if at_start else {"y0": place}
-    segments[min(here, *cones) : max(here, *cones) + 1] = [cylinder.with_changes(**reach)]
+    segments[min(cylinder_index, *cones) : max(cylinder_index, *cones) + 1] = [
+        cylinder.with_changes(**reach)
+    ]
     end = "end" if at_start else "start"
     return Fillet(name=f"{cylinder.name}.{end}", y=place, radius=torus.radius)

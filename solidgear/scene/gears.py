@@ -105,15 +105,15 @@ class Shaft(Model):
 
     @model_validator(mode="after")
     def _at_points(self) -> Shaft:
-        known = [port.name for port in self.scene.ports]
+        names = [port.name for port in self.scene.ports]
         problems = [
             SceneError(
-                f"no lumped point of the scene is called so{nearest(name, known)}; known here: "
-                f"{listed(known)}",
+                f"no lumped point of the scene is called so{nearest(name, names)}; known here: "
+                f"{listed(names)}",
                 path=("gears", name),
             )
             for name in self.gears
-            if name not in known
+            if name not in names
         ]
         if problems:
             raise SceneError.of(problems)
@@ -139,8 +139,8 @@ class Member(Gear):
     @property
     def shaft(self) -> Shaft:
         """A shaft that carries this gear alone."""
-        own = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
-        gears = {self.scene.port.name: own}
+        gear = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
+        gears = {self.scene.port.name: gear}
         return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
 
 
@@ -185,9 +185,9 @@ class Pair:
 
     def told(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
         """Problems with paths from ``pinion``, ``gear`` or ``mesh``, by the keys of a file."""
-        for one in problems:
-            first, *rest = one.path
-            yield one.located(None, path=(*self.paths[first], *rest))
+        for problem in problems:
+            first, *further = problem.path
+            yield problem.located(None, path=(*self.paths[first], *further))
 
 
 def pair_problems(pair: Pair) -> Iterator[SceneError]:
@@ -206,8 +206,8 @@ def pair_problems(pair: Pair) -> Iterator[SceneError]:
         yield from wrong
     else:
         yield from fit_problems(pair)
-    ratio, given = pair.ratio, mesh.ratio
-    if given is not None and not isclose(given, ratio, rel_tol=TYPED):
+    ratio, file_ratio = pair.ratio, mesh.ratio
+    if file_ratio is not None and not isclose(file_ratio, ratio, rel_tol=TYPED):
         yield SceneError(
             f"{gear.teeth} over {pinion.teeth} teeth are a ratio of {ratio:.4f}; "
             "correct it or leave it out",
@@ -220,15 +220,15 @@ def _cycles(pair: Pair) -> Iterator[SceneError]:
     """Tables over a mesh cycle cover one tooth pitch of the pinion and begin at one angle."""
     teeth, pitch = pair.pinion.teeth, 2 * pi / pair.pinion.teeth
     tables = {key: getattr(pair.mesh, key) for key in ("stiffness_cycle", "line_cycle")}
-    given = {key: table for key, table in tables.items() if table is not None}
-    for key, table in given.items():
+    tables_given = {key: table for key, table in tables.items() if table is not None}
+    for key, table in tables_given.items():
         if not isclose(table.pitch, pitch, rel_tol=TYPED):
             yield SceneError(
                 f"covers {table.pitch:.5g} rad of the pinion, and one of its {teeth} teeth takes "
                 f"{pitch:.5g} rad; correct the angles, or the number of teeth",
                 path=("mesh", key, "angle"),
             )
-    first = [table.angle[0] for table in given.values()]
+    first = [table.angle[0] for table in tables_given.values()]
     if len(first) > 1 and not isclose(*first, abs_tol=TYPED * pitch):
         yield SceneError(
             f"begins at {first[1]:.5g} rad, and stiffness_cycle at {first[0]:.5g} rad; both tell "
@@ -240,20 +240,20 @@ def _cycles(pair: Pair) -> Iterator[SceneError]:
 def _flanks(pair: Pair) -> Iterator[SceneError]:
     """Left and right flanks are those of cylindrical gears, and touch their own kind."""
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
-    named = [side for side in pair.members if pair.members[side].loaded_side in FLANKS]
-    if named and mesh.shaft_angle:
+    sides = [side for side in pair.members if pair.members[side].loaded_side in FLANKS]
+    if sides and mesh.shaft_angle:
         yield SceneError(
             "left and right flanks are words of parallel shafts (ISO 21771); of a bevel gear "
             "write concave or convex",
-            path=(named[0], "loaded_side"),
+            path=(sides[0], "loaded_side"),
         )
-    elif named and None not in (pinion.flank, gear.flank):
+    elif sides and None not in (pinion.flank, gear.flank):
         if pinion.flank != gear.flank and pair.idle:
-            written = next(flank for flank in FLANKS if flank != gear.flank)
+            file_flank = next(flank for flank in FLANKS if flank != gear.flank)
             yield SceneError(
                 f"is the flank that the {pair.shafts[1]} drives with, so that it is driven on its "
                 f"{gear.flank} one; the {pair.shafts[0]} drives it with its {pinion.flank} one, and left "
-                f'flanks touch left ones: write "{gear.flank}" in place of "{written}", or leave it out',
+                f'flanks touch left ones: write "{gear.flank}" in place of "{file_flank}", or leave it out',
                 path=("gear", "loaded_side"),
             )
         elif pinion.flank != gear.flank:

@@ -65,24 +65,24 @@ class Elastic(Model):
 
     def __init__(self, /, **data: Any):
         if "stiffness" in data:
-            given = data.pop("stiffness")
-            if isinstance(given, Mapping):
+            stiffness = data.pop("stiffness")
+            if isinstance(stiffness, Mapping):
                 try:
-                    data.setdefault("rigid", rigid_motions(given))
+                    data.setdefault("rigid", rigid_motions(stiffness))
                 except SceneError as error:
                     raise error.located(None, prefix=("stiffness",)) from None
-            data["matrix"] = given
+            data["matrix"] = stiffness
         super().__init__(**data)
 
     @model_validator(mode="after")
     def _gives_or_does_not(self):
         for k, name in enumerate(DOF_NAMES):
-            own = self.matrix[k][k]
+            spring = self.matrix[k][k]
             if name in self.rigid and any(self.matrix[k]):
                 raise SceneError(f"has entries in {name}, which is rigid", path=("matrix",))
-            if 0 < own < SOFTEST:
+            if 0 < spring < SOFTEST:
                 raise SceneError(
-                    f"the stiffness in {name} is {own:.6g}, below {SOFTEST:g} in SI, "
+                    f"the stiffness in {name} is {spring:.6g}, below {SOFTEST:g} in SI, "
                     "which is no spring: write 0",
                     path=("matrix",),
                 )
@@ -115,24 +115,25 @@ class Elastic(Model):
         return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
 
 
-def elastic(given: Any) -> Any:
+def elastic(table: Any) -> Any:
     """The housing of one bearing from the table of a file, named entries of a 6x6 or ``matrix``
     alone; anything else as it is.
     """
-    if not isinstance(given, Mapping) or "rigid" in given:
-        return given
-    given, scale = _unscaled(given)
-    if not given:
+    if not isinstance(table, Mapping) or "rigid" in table:
+        return table
+    table, scale = _unscaled(table)
+    if not table:
         raise SceneError(EMPTY)
-    if "matrix" in given:
-        if len(given) > 1:
+    if "matrix" in table:
+        if len(table) > 1:
             raise SceneError("give either matrix, or named entries, not both", path=("matrix",))
-        return Elastic(**given).scaled(scale)
+        return Elastic(**table).scaled(scale)
     try:
-        return Elastic(stiffness=given).scaled(scale)
+        return Elastic(stiffness=table).scaled(scale)
     except SceneError as error:
         raise SceneError.of(
-            SceneError(one.reason, path=one.path[1:], value=one.value) for one in error.problems
+            SceneError(problem.reason, path=problem.path[1:], value=problem.value)
+            for problem in error.problems
         ) from None
 
 
@@ -174,14 +175,14 @@ class Housing(Placed, Elastic):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         words.refuse(ONE_HOUSING, "axial")
         if not {"stiffness", "matrix"} & set(table):
-            how = "this key is missing; write stiffness = {kxx = ...} with position, or axial"
-            raise SceneError(how, path=("stiffness",))
+            hint = "this key is missing; write stiffness = {kxx = ...} with position, or axial"
+            raise SceneError(hint, path=("stiffness",))
         if "stiffness" in table and "matrix" in table:
             raise SceneError("give either stiffness or matrix", path=("stiffness",))
         if table.get("stiffness") == {}:
             raise SceneError(EMPTY, path=("stiffness",))
-        how = 'write position = "120 mm", the place that the stiffness is about, with from'
-        words.needs("position", how)
+        hint = 'write position = "120 mm", the place that the stiffness is about, with from'
+        words.needs("position", hint)
         return {"y": words.y(places)}
 
     def moves(self, y: float) -> np.ndarray:

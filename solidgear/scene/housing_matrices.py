@@ -53,8 +53,8 @@ class HousingMatrices:
     @cached_property
     def centre(self) -> np.ndarray:
         """(3,) centre of mass, m."""
-        whole = self.rigid().T @ self.mass @ self.rigid()
-        return np.array([whole[1, 5], whole[2, 3], whole[0, 4]]) / whole[0, 0]
+        inertia = self.rigid().T @ self.mass @ self.rigid()
+        return np.array([inertia[1, 5], inertia[2, 3], inertia[0, 4]]) / inertia[0, 0]
 
     @cached_property
     def rigid_mass(self) -> np.ndarray:
@@ -72,12 +72,12 @@ class HousingMatrices:
         rigid motions do not strain at all.
         """
         lower = self._factor
-        whole = sla.solve_triangular(lower, self.stiffness, lower=True)
-        whole = sla.solve_triangular(lower, whole.T, lower=True)
+        operator = sla.solve_triangular(lower, self.stiffness, lower=True)
+        operator = sla.solve_triangular(lower, operator.T, lower=True)
         basis = np.linalg.qr(lower.T @ self.rigid(self.centre), mode="complete")[0]
-        still, held = basis[:, :6], basis[:, 6:]
-        square, turn = np.linalg.eigh(held.T @ whole @ held)
-        least = np.sqrt(np.abs(np.linalg.eigvalsh(still.T @ whole @ still)).max())
+        rigid_basis, elastic_basis = basis[:, :6], basis[:, 6:]
+        square, turn = np.linalg.eigh(elastic_basis.T @ operator @ elastic_basis)
+        least = np.sqrt(np.abs(np.linalg.eigvalsh(rigid_basis.T @ operator @ rigid_basis)).max())
         if not len(square) or square[0] <= 0:
             raise self._wrong(
                 "its stiffness leaves more than six motions free, or is negative in one; a rigid "
@@ -85,12 +85,12 @@ class HousingMatrices:
             )
         omega = np.sqrt(square)
         if least > STILL * omega[0]:
-            at = least / (2 * np.pi)
+            frequency = least / (2 * np.pi)
             raise self._wrong(
-                f"its stiffness resists rigid motions like a mode at {at:.4g} Hz, and must not: "
+                f"its stiffness resists rigid motions like a mode at {frequency:.4g} Hz, and must not: "
                 "give that of the free body, in SI, with positions in the axes of the train"
             )
-        return omega, (lower @ held @ turn * omega).T
+        return omega, (lower @ elastic_basis @ turn * omega).T
 
 
 def read_matrices(path: str | os.PathLike) -> HousingMatrices:
@@ -107,17 +107,17 @@ def read_matrices(path: str | os.PathLike) -> HousingMatrices:
     SceneError
         For a file that cannot be read, and matrices that are none of a free body.
     """
-    where = os.fspath(path)
+    file_path = os.fspath(path)
     try:
-        with np.load(where, allow_pickle=False) as store:
+        with np.load(file_path, allow_pickle=False) as store:
             missing = [name for name in ARRAYS if name not in store]
             if missing:
                 reason = f"has no array {missing[0]!r}; it holds {', '.join(ARRAYS)}"
-                raise SceneError(reason, where=where)
+                raise SceneError(reason, where=file_path)
             mass, stiffness, points, positions = (store[name] for name in ARRAYS)
     except (OSError, ValueError, TypeError, AttributeError) as error:
         said = getattr(error, "strerror", None) or "not an .npz file of NumPy"
-        raise SceneError(f"the matrices cannot be read: {said}", where=where) from None
+        raise SceneError(f"the matrices cannot be read: {said}", where=file_path) from None
     names = [str(name) for name in points.ravel()]
     n = len(mass) if mass.ndim == 2 else 0
     shapes = mass.shape == stiffness.shape == (n, n) and positions.shape == (len(names), 3)
@@ -126,18 +126,20 @@ def read_matrices(path: str | os.PathLike) -> HousingMatrices:
             f"mass {mass.shape}, stiffness {stiffness.shape}, {len(names)} points and positions "
             f"{positions.shape} do not fit: of p points, two or more, they are (n, n), (n, n) and "
             f"(p, 3), n from 6 p to {MOST}",
-            where=where,
+            where=file_path,
         )
     if len({*names}) < len(names):
-        raise SceneError("a point is named twice; each has a name of its own", where=where)
-    for name, one in (("mass", mass), ("stiffness", stiffness), ("positions", positions)):
-        if one.dtype.kind not in "fiu" or not np.isfinite(one).all():
-            raise SceneError(f"{name} must be real and finite numbers, SI", where=where)
-    for name, one in (("mass", mass), ("stiffness", stiffness)):
-        size = np.sqrt(np.abs(np.diag(one)))
-        if (np.abs(one - one.T) > PRINTED * np.outer(size, size)).any():
-            raise SceneError(f"{name} is not symmetric", where=where)
-    mass, stiffness = ((one + one.T) / 2 for one in (mass.astype(float), stiffness.astype(float)))
-    found = HousingMatrices(where, mass, stiffness, dict(zip(names, positions.astype(float))))
-    found.elastic  # noqa: B018  refuses what is no free body
-    return found
+        raise SceneError("a point is named twice; each has a name of its own", where=file_path)
+    for name, matrix in (("mass", mass), ("stiffness", stiffness), ("positions", positions)):
+        if matrix.dtype.kind not in "fiu" or not np.isfinite(matrix).all():
+            raise SceneError(f"{name} must be real and finite numbers, SI", where=file_path)
+    for name, matrix in (("mass", mass), ("stiffness", stiffness)):
+        size = np.sqrt(np.abs(np.diag(matrix)))
+        if (np.abs(matrix - matrix.T) > PRINTED * np.outer(size, size)).any():
+            raise SceneError(f"{name} is not symmetric", where=file_path)
+    mass, stiffness = (
+        (matrix + matrix.T) / 2 for matrix in (mass.astype(float), stiffness.astype(float))
+    )
+    housing = HousingMatrices(file_path, mass, stiffness, dict(zip(names, positions.astype(float))))
+    housing.elastic  # noqa: B018  refuses what is no free body
+    return housing

@@ -45,23 +45,23 @@ def layout_problems(train: Train) -> Iterator[SceneError]:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
             reason = f"a shaft cannot be called {name!r}; give it another name, without dots"
             yield SceneError(reason, path=("shaft", name))
-    found = [*_meshes(train), *_rotors(train), *stage_problems(train)]
-    yield from found
-    if found:
+    problems = [*_meshes(train), *_rotors(train), *stage_problems(train)]
+    yield from problems
+    if problems:
         return
     yield from _named_twice(train)
-    met = {side for both in _joined(train) for side in both}
+    meshed = {side for pair in _joined(train) for side in pair}
     for side in train.shafts:
-        if side not in met:
+        if side not in meshed:
             reason = "is in no mesh; write a [[mesh]] between it and another shaft, or leave it out"
             yield SceneError(reason, path=("shaft", side))
     first = next(iter(train.shafts), "")
     reached = {side for side, _ in _outward(train, first)} if train.shafts else set()
-    apart = [side for side in train.shafts if side in met and side not in reached]
-    for side in apart:
+    separate = [side for side in train.shafts if side in meshed and side not in reached]
+    for side in separate:
         reason = f"no mesh leads from the {first} to it; a train hangs together by its teeth"
         yield SceneError(reason, path=("shaft", side))
-    if not apart and met == {*train.shafts}:
+    if not separate and meshed == {*train.shafts}:
         yield from _loops(train)
 
 
@@ -73,10 +73,10 @@ def _meshes(train: Train) -> Iterator[SceneError]:
         path = ("mesh", k, "between")
         for word in mesh.between:
             side, dot, port = word.partition(".")
-            known = [*train.shafts]
+            names = [*train.shafts]
             if side not in train.shafts:
                 reason = (
-                    f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
+                    f"names no shaft {side!r}{nearest(side, names)}; known here: {listed(names)}"
                 )
                 yield SceneError(reason, path=path)
                 continue
@@ -88,12 +88,12 @@ def _meshes(train: Train) -> Iterator[SceneError]:
                 reason = f"the {side} carries no gear at {port!r}; it has {listed(gears)}"
                 yield SceneError(reason, path=path)
             elif not dot and len(gears) > 1:
-                each = " or ".join(f'"{side}.{port}"' for port in gears)
-                yield SceneError(f"the {side} carries several gears; write {each}", path=path)
-        one, two = (word.partition(".")[0] for word in mesh.between)
-        if one == two:
+                choices = " or ".join(f'"{side}.{port}"' for port in gears)
+                yield SceneError(f"the {side} carries several gears; write {choices}", path=path)
+        first, second = (word.partition(".")[0] for word in mesh.between)
+        if first == second:
             yield SceneError(
-                f"both gears are on the {one}; teeth mesh with another shaft", path=path
+                f"both gears are on the {first}; teeth mesh with another shaft", path=path
             )
 
 
@@ -104,13 +104,13 @@ def _rotors(train: Train) -> Iterator[SceneError]:
             reason = f"what turns cannot be called {name!r}; give it another name, without dots"
             yield SceneError(reason, path=path)
         if rotor.shaft not in train.shafts:
-            known = listed(train.shafts)
+            names = listed(train.shafts)
             said = (
                 "says which shaft it turns with"
                 if not rotor.shaft
                 else (f"names no shaft{nearest(rotor.shaft, train.shafts)}")
             )
-            yield SceneError(f"{said}; known here: {known}", path=(*path, "shaft"))
+            yield SceneError(f"{said}; known here: {names}", path=(*path, "shaft"))
 
 
 def _named_twice(train: Train) -> Iterator[SceneError]:
@@ -153,8 +153,8 @@ def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
     for k in range(len(train.meshes)):
         (driver, port), (driven, _) = ends_of(train, k)
         if driven == side and driver not in passed:
-            own = train.shafts[driver].gears[port].flank
-            return OTHER_FLANK[own or _usual_flank(train, driver, (*passed, side))]
+            flank = train.shafts[driver].gears[port].flank
+            return OTHER_FLANK[flank or _usual_flank(train, driver, (*passed, side))]
     return "left"
 
 
@@ -188,23 +188,23 @@ def _joined(train: Train) -> list[tuple[str, str]]:
     """Shafts that each mesh joins, and each planetary stage."""
     words = [mesh.between for mesh in train.meshes]
     words += [(stage.sun, stage.carrier) for stage in train.planetary.values()]
-    return [(one.partition(".")[0], two.partition(".")[0]) for one, two in words]
+    return [(first.partition(".")[0], second.partition(".")[0]) for first, second in words]
 
 
-def _outward(train: Train, first: str, without: int = -1) -> Iterator[tuple[str, int]]:
+def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str, int]]:
     """Shafts as joints lead from one to them, each with the joint it is come by, -1 for the first; by
     all joints but one.
     """
-    queue, known = deque([(first, -1)]), {first}
+    queue, reached = deque([(first, -1)]), {first}
     while queue:
-        side, by = queue.popleft()
-        yield side, by
-        for k, both in enumerate(_joined(train)):
-            if side in both and k != without:
-                other = both[side == both[0]]
-                if other not in known:
-                    known.add(other)
-                    queue.append((other, k))
+        side, joint = queue.popleft()
+        yield side, joint
+        for k, pair in enumerate(_joined(train)):
+            if side in pair and k != excluded:
+                neighbour = pair[side == pair[0]]
+                if neighbour not in reached:
+                    reached.add(neighbour)
+                    queue.append((neighbour, k))
 
 
 def outward(
@@ -213,8 +213,8 @@ def outward(
     """Shafts as meshes and planetary stages lead from one to them, each with what it is come by, the
     first by none; by all but one.
     """
-    for side, k in _outward(train, first, train.joints.index(without) if without else -1):
-        yield side, None if k < 0 else train.joints[k]
+    for side, joint in _outward(train, first, train.joints.index(without) if without else -1):
+        yield side, None if joint < 0 else train.joints[joint]
 
 
 def turns_of(train: Train) -> dict[str, float]:
@@ -239,12 +239,12 @@ def _loops(train: Train) -> Iterator[SceneError]:
             reason = f"closes a loop: other teeth join the {sun} and the {carrier} as well; open it"
             yield SceneError(reason, path=("planetary", stage.called))
     for k, pair in enumerate(train.pairs):
-        one, two = pair.shafts
-        asked = turns[one] / turns[two]
-        if not isclose(pair.ratio, asked, rel_tol=1e-12):
+        first, second = pair.shafts
+        wanted = turns[first] / turns[second]
+        if not isclose(pair.ratio, wanted, rel_tol=1e-12):
             yield SceneError(
-                f"closes a loop in which the other meshes turn the {one} {asked:.6g} times as fast "
-                f"as the {two}, and its {pair.gear.teeth} over {pair.pinion.teeth} teeth "
+                f"closes a loop in which the other meshes turn the {first} {wanted:.6g} times as fast "
+                f"as the {second}, and its {pair.gear.teeth} over {pair.pinion.teeth} teeth "
                 f"{pair.ratio:.6g} times: the loop cannot turn; correct the teeth",
                 path=("mesh", k, "between"),
             )

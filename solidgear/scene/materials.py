@@ -66,15 +66,15 @@ def by_name(value: Any) -> Any:
     for word, reason in NONE_OF_ITS_OWN.items():
         if word[:6] in value.lower():
             raise SceneError(reason)
-    known = {name.lower(): name for name in MATERIALS}
-    name = known.get(value.strip().lower())
+    names = {name.lower(): name for name in MATERIALS}
+    name = names.get(value.strip().lower())
     if name is None:
         raise SceneError(
             f"material {show(value, 40)} is not known by name{nearest(value, MATERIALS)}; "
             f"give E, nu and density, or one of {', '.join(MATERIALS)}"
         )
-    found = MATERIALS[name]
-    return {"E": found.E, "nu": found.nu, "density": found.density, "name": name}
+    constants = MATERIALS[name]
+    return {"E": constants.E, "nu": constants.nu, "density": constants.density, "name": name}
 
 
 def as_table(material: Any) -> Any:
@@ -86,10 +86,10 @@ def as_table(material: Any) -> Any:
     {'E': '210 GPa', 'nu': 0.3, 'density': '7850 kg/m^3'}
     """
     try:
-        known = by_name(material) if isinstance(material, str) else None
+        constants = by_name(material) if isinstance(material, str) else None
     except SceneError:
         return material  # whoever reads the file tells
-    if known is None:
+    if constants is None:
         return material
-    modulus, density = f"{known['E'] / 1e9:g} GPa", f"{known['density']:g} kg/m^3"
-    return {"E": modulus, "nu": known["nu"], "density": density}
+    modulus, density = f"{constants['E'] / 1e9:g} GPa", f"{constants['density']:g} kg/m^3"
+    return {"E": modulus, "nu": constants["nu"], "density": density}

@@ -32,12 +32,12 @@ class Cycle(Model):
         """Angle that it covers, rad."""
         return self.angle[-1] - self.angle[0]
 
-    def told(self, key: str, what: str, values: Sequence) -> None:
+    def told(self, key: str, plural: str, values: Sequence) -> None:
         """Refuse angles that do not ascend, or other than one value at each."""
         if len(self.angle) != len(values) or len(self.angle) < LEAST_OF_CYCLE:
-            counts = f"{len(values)} {what} for {len(self.angle)} angles"
-            how = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
-            raise SceneError(how, path=(key,))
+            counts = f"{len(values)} {plural} for {len(self.angle)} angles"
+            reason = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
+            raise SceneError(reason, path=(key,))
         if any(b <= a for a, b in zip(self.angle, self.angle[1:])):
             raise SceneError("angles must ascend", path=("angle",))
 
@@ -81,8 +81,8 @@ class LineCycle(Cycle):
         for key, unit, most in (("point", " m", size), ("normal", "", 1.0)):
             first, last = getattr(self, key)[0], getattr(self, key)[-1]
             if dist(first, last) > CYCLE_CLOSES * most:
-                told = (", ".join(f"{v:.6g}" for v in end) for end in (first, last))
-                ends = "{} and ends at {}".format(*(f"({text}){unit}" for text in told))
+                numbers = (", ".join(f"{v:.6g}" for v in end) for end in (first, last))
+                ends = "{} and ends at {}".format(*(f"({text}){unit}" for text in numbers))
                 raise SceneError(
                     f"is not periodic: it begins at {ends}; both are the same instant of "
                     "neighbouring teeth",

@@ -178,8 +178,8 @@ class Scene(Displayed, Model):
         if port is None and segments:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
-        given: dict[str, Any] = {} if port is None else {"port": port}
-        return cls(segments=segments, material=material, bearings=tuple(bearings), **given, **rest)
+        main: dict[str, Any] = {} if port is None else {"port": port}
+        return cls(segments=segments, material=material, bearings=tuple(bearings), **main, **rest)
 
     @property
     def length(self) -> float:
@@ -196,8 +196,8 @@ class Scene(Displayed, Model):
         """Everything attached to the shaft, the port first, then bearings, masses on seats of
         their own and further ports: each has name, y, lo, hi (m), attachment.
         """
-        own = (m for m in self.masses if m.on is None)
-        return (self.port, *self.bearings, *own, *self.further_ports)
+        seated = (m for m in self.masses if m.on is None)
+        return (self.port, *self.bearings, *seated, *self.further_ports)
 
     @property
     def plain(self) -> Scene:
@@ -265,7 +265,9 @@ class Scene(Displayed, Model):
             An unknown attachment, or two rigid surfaces that overlap.
         """
         changes = {
-            key: tuple(one.with_changes(attachment=attachment) for one in getattr(self, key))
+            key: tuple(
+                station.with_changes(attachment=attachment) for station in getattr(self, key)
+            )
             for key in ("masses", "further_ports")
         }
         changes["bearings"] = tuple(b.attached(attachment) for b in self.bearings)
@@ -389,11 +391,11 @@ class Scene(Displayed, Model):
         >>> [port.name for port in scene.with_main_port("pinion").ports]
         ['pinion', 'wheel']
         """
-        known = {port.name: port for port in self.ports}
-        if name not in known:
-            raise SceneError(rules.no_such_point(name, known), field="port")
-        first = known.pop(name)
-        return self.with_changes(port=first, further_ports=tuple(known.values()))
+        ports = {port.name: port for port in self.ports}
+        if name not in ports:
+            raise SceneError(rules.no_such_point(name, ports), field="port")
+        first = ports.pop(name)
+        return self.with_changes(port=first, further_ports=tuple(ports.values()))
 
     def as_dict(self) -> dict[str, Any]:
         """Everything resolved, in SI, as plain data that JSON can hold."""

@@ -80,10 +80,10 @@ class OperatingPoint(Model):
     @property
     def label(self) -> str:
         """Name, torque and speed."""
-        told = f"{self.torque:.6g} N m on the {self.of}"
+        numbers = f"{self.torque:.6g} N m on the {self.of}"
         if self.speed is not None:
-            told += f", {self.speed * 30 / pi:.6g} rpm"
-        return f"{self.name} ({told})" if self.name else told
+            numbers += f", {self.speed * 30 / pi:.6g} rpm"
+        return f"{self.name} ({numbers})" if self.name else numbers
 
     @property
     def gravity(self) -> tuple[float, float, float]:
@@ -123,11 +123,11 @@ def spring_problems(train: Train) -> Iterator[SceneError]:
         spring, scene = rotor.spring, train.shafts[rotor.shaft].scene
         ports = [s.name for s in scene.stations]
         key, word = ("at", spring.at) if spring.at is not None else ("from", spring.from_)
-        known = ports if key == "at" else ["start", "end", *ports]
-        if word not in known:
+        names = ports if key == "at" else ["start", "end", *ports]
+        if word not in names:
             yield SceneError(
-                f"unknown port of the {rotor.shaft}'s shaft{nearest(word, known)}; "
-                f"known here: {listed(known)}",
+                f"unknown port of the {rotor.shaft}'s shaft{nearest(word, names)}; "
+                f"known here: {listed(names)}",
                 path=(*train.rotor_path(name), "spring", key),
             )
         elif key == "from" and word in ports and word in ("start", "end"):
@@ -152,7 +152,9 @@ def running_problems(train: Train) -> Iterator[SceneError]:
     """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
     if not train.operation:
         return
-    lacking = [f"[{k}]" for k, own in (("engine", train.engines), ("load", train.loads)) if not own]
+    lacking = [
+        f"[{k}]" for k, rotors in (("engine", train.engines), ("load", train.loads)) if not rotors
+    ]
     if lacking:
         reason = (
             "a torque comes in at the engine and goes out at the load: write "
@@ -167,14 +169,16 @@ def running_problems(train: Train) -> Iterator[SceneError]:
         yield SceneError(reason, path=(*train.rotor_path(train.loads[0]), "shaft"))
         return
     for k, point in enumerate(train.operation):
-        yield from (one.located(None, prefix=("operation", k)) for one in _point(train, point))
+        yield from (
+            problem.located(None, prefix=("operation", k)) for problem in _point(train, point)
+        )
     yield from _duty(train.operation)
-    for side, own in train.shafts.items():
-        scene = own.scene
-        held = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
-        if held:
+    for side, rotors in train.shafts.items():
+        scene = rotors.scene
+        holding = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
+        if holding:
             yield SceneError(
-                f"a torque has to turn the {side}'s shaft, and {listed(held)} of its scene "
+                f"a torque has to turn the {side}'s shaft, and {listed(holding)} of its scene "
                 "holds its rotation: leave kthy out, or hold it in another way than clamped",
                 path=("operation",),
             )
@@ -189,7 +193,7 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
         yield SceneError(reason + nearest(point.of, known), path=("of",))
         return
     yield from _against_teeth(train, point)
-    ports = {side: [s.name for s in own.scene.stations] for side, own in train.shafts.items()}
+    ports = {side: [s.name for s in shaft.scene.stations] for side, shaft in train.shafts.items()}
     for i, force in enumerate(point.force):
         side, _, port = force.at.partition(".")
         if port not in ports.get(side, ()):
@@ -201,13 +205,13 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Torque and speed of the other end that are not those of the teeth."""
     first, last = train.reference, train.output
-    other = first if point.of == last else last
-    torque, speed = point.torque_of(other, train.torque_turns), point.speed_of(other, train.turns)
-    given = point.output_torque
-    if given is not None and not isclose(abs(given), abs(torque), rel_tol=TYPED):
+    side = first if point.of == last else last
+    torque, speed = point.torque_of(side, train.torque_turns), point.speed_of(side, train.turns)
+    output = point.output_torque
+    if output is not None and not isclose(abs(output), abs(torque), rel_tol=TYPED):
         yield SceneError(
             f"{point.torque:.6g} N m on the {point.of} are balanced by {abs(torque):.6g} N m on "
-            f"the {other} (teeth {train.ratio:.4f} to 1, no losses); correct one, or leave it out",
+            f"the {side} (teeth {train.ratio:.4f} to 1, no losses); correct one, or leave it out",
             path=("output_torque",),
         )
     if point.output_speed is None:
@@ -218,7 +222,7 @@ def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
         )
     elif not isclose(point.output_speed, speed, rel_tol=TYPED):
         yield SceneError(
-            f"the teeth turn the {other} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
+            f"the teeth turn the {side} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
             path=("output_speed",),
         )
 
@@ -232,9 +236,9 @@ def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
             yield SceneError(reason, path=("operation", k, "name"))
             return
     for key in ("share", "hours"):
-        given = [getattr(point, key) for point in points]
-        if any(given) and None in given:
-            lacking = given.index(None)
+        values = [getattr(point, key) for point in points]
+        if any(values) and None in values:
+            lacking = values.index(None)
             reason = f"this key is missing; a duty table gives {key} for every point"
             yield SceneError(reason, path=("operation", lacking, key))
             return
@@ -250,13 +254,17 @@ def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
 def _speeds(train: Train, side: str, scene: Scene) -> Iterator[SceneError]:
     """Speeds that bearings of a shaft name and that it does not have."""
     for bearing in scene.bearings:
-        own = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
+        bearing_speed = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
         for k, point in enumerate(train.operation):
             speed = point.speed_of(side, train.turns) if point.of in train.turns else None
-            if own and speed is not None and not isclose(own, speed, rel_tol=TYPED):
+            if (
+                bearing_speed
+                and speed is not None
+                and not isclose(bearing_speed, speed, rel_tol=TYPED)
+            ):
                 yield SceneError(
                     f"turns the {side}'s shaft at {speed * 30 / pi:.6g} rpm, and the "
-                    f"catalogue data of its bearing {bearing.name} name {own * 30 / pi:.6g} "
+                    f"catalogue data of its bearing {bearing.name} name {bearing_speed * 30 / pi:.6g} "
                     "rpm; correct one, or leave the bearing's speed out",
                     path=("operation", k, "speed"),
                 )

@@ -150,8 +150,8 @@ class Outline(Generic[S]):
 
     def root(self, joint: int, surface: Surface) -> Corner | None:
         """The fillet or chamfer in the step where a segment begins."""
-        found = (self._at.get((joint, surface, True, side)) for side in (1, -1))
-        return next((corner for corner in found if corner), None)
+        corners = (self._at.get((joint, surface, True, side)) for side in (1, -1))
+        return next((corner for corner in corners if corner), None)
 
     def rim(self, segment: int, surface: Surface, side: int) -> Corner | None:
         """The one at the rim of a segment, where it begins (side 1) or ends (-1)."""
@@ -211,8 +211,8 @@ class Outline(Generic[S]):
     def _beside(self, segment: int, surface: Surface, side: int) -> Corner | None:
         """The fillet or chamfer that lies on a segment at its start (side 1) or end (-1)."""
         joint = segment + (side < 0)
-        found = (self._at.get((joint, surface, root, side)) for root in (True, False))
-        return next((corner for corner in found if corner), None)
+        corners = (self._at.get((joint, surface, root, side)) for root in (True, False))
+        return next((corner for corner in corners if corner), None)
 
     @cached_property
     def edges(self) -> tuple[Edge, ...]:

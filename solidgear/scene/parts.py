@@ -88,16 +88,20 @@ class Material(Model):
 
     def with_changes(self, **changes: Any) -> Material:
         """A validated copy with some fields replaced; other constants lose the name."""
-        made = super().with_changes(**changes)
-        same = all(getattr(made, key) == getattr(self, key) for key in _CONSTANTS)
-        return made if same or "name" in changes or not made.name else made.with_changes(name="")
+        material = super().with_changes(**changes)
+        same = all(getattr(material, key) == getattr(self, key) for key in _CONSTANTS)
+        return (
+            material
+            if same or "name" in changes or not material.name
+            else material.with_changes(name="")
+        )
 
-    def following(self, usual: Material, other: Material) -> Material:
+    def following(self, usual: Material, replacement: Material) -> Material:
         """The material of a segment, of which what is like the usual one becomes like another."""
         if self == usual:
-            return other
+            return replacement
         keys = [key for key in _CONSTANTS if getattr(self, key) == getattr(usual, key)]
-        return self.with_changes(**{key: getattr(other, key) for key in keys})
+        return self.with_changes(**{key: getattr(replacement, key) for key in keys})
 
     @property
     def shear_modulus(self) -> float:
@@ -244,7 +248,7 @@ class Segment(Model):
         outer0, outer1, inner = (
             quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
         )
-        given: dict[str, Any] = {} if material is None else {"material": material}
+        own_material: dict[str, Any] = {} if material is None else {"material": material}
         return cls(
             name=name,
             y0=y0,
@@ -253,7 +257,7 @@ class Segment(Model):
             outer1=outer1,
             inner0=inner,
             inner1=inner,
-            **given,
+            **own_material,
         )
 
     @property

@@ -65,32 +65,34 @@ def _tables(value: Any) -> Iterator[tuple[int, Mapping[str, Any]]]:
             yield k, table
 
 
-def refuse_elsewhere(raw: Mapping[str, Any], what: str) -> None:
+def refuse_elsewhere(raw: Mapping[str, Any], body_kind: str) -> None:
     """Refuse what a body without an axis cannot have, and stations that name no patch."""
-    found = [
-        SceneError(f"a {what} has no place for this: leave it out", path=(key,))
+    problems = [
+        SceneError(f"a {body_kind} has no place for this: leave it out", path=(key,))
         for key in ELSEWHERE
         if key in raw
     ]
     for key in ON_PATCHES:
         for k, table in _tables(raw.get(key)):
             if "patch" not in table:
-                reason = f"this key is missing: on a {what} name the faces, such as patch = "
-                example = '"+x"' if what == "block" else '"foot", a group of surfaces of the file'
-                found.append(SceneError(reason + example, path=(key, k, "patch")))
+                reason = f"this key is missing: on a {body_kind} name the faces, such as patch = "
+                example = (
+                    '"+x"' if body_kind == "block" else '"foot", a group of surfaces of the file'
+                )
+                problems.append(SceneError(reason + example, path=(key, k, "patch")))
     for k, table in _tables(raw.get("mass")):
         if "on" not in table:
             reason = "this key is missing: name the port or bearing that carries the mass"
-            found.append(SceneError(reason, path=("mass", k, "on")))
-    if found:
-        raise SceneError.of(found)
+            problems.append(SceneError(reason, path=("mass", k, "on")))
+    if problems:
+        raise SceneError.of(problems)
 
 
 def on_patch(words: Any, table: Mapping[str, Any], places: Any, *sizes: str) -> dict[str, Any]:
     """Fields of a station on a patch; along y it is as long as the patch is large."""
-    own = "a patch has its place and size itself; leave one of both out"
-    words.refuse(own, "position", "from_", "at", "attach_to", "span", "seat", beside=None)
-    words.refuse(own, "face", "seat_width", beside=table)
+    reason = "a patch has its place and size itself; leave one of both out"
+    words.refuse(reason, "position", "from_", "at", "attach_to", "span", "seat", beside=None)
+    words.refuse(reason, "face", "seat_width", beside=table)
     patch = places.patch(words.patch, words.point)
     if patch is None:
         return dict.fromkeys(("y", *sizes))

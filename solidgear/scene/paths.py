@@ -36,32 +36,32 @@ def keys_of(path: str, tables: Tables) -> Keys:
     ('bearing', 0, 'stiffness', 'kxx')
     """
     keys: list[str | int] = []
-    here: Any = tables
-    rest = path
-    while rest:
-        if isinstance(here, list):
-            place, rest = _place_in(here, rest, ".".join(map(str, keys)))
+    table: Any = tables
+    remainder = path
+    while remainder:
+        if isinstance(table, list):
+            place, remainder = _place_in(table, remainder, ".".join(map(str, keys)))
             keys.append(place)
-        elif isinstance(here, Mapping) and keys and _is_own(here, rest):
-            rest = _after(rest, _word(rest))
+        elif isinstance(table, Mapping) and keys and _is_own(table, remainder):
+            remainder = _after(remainder, _word(remainder))
             continue
-        elif rest in STIFFNESS_NAMES and keys[:1] in (["bearing"], ["housing"]):
-            keys += _within_stiffness(tuple(keys), here or {}, rest)
+        elif remainder in STIFFNESS_NAMES and keys[:1] in (["bearing"], ["housing"]):
+            keys += _within_stiffness(tuple(keys), table or {}, remainder)
             return tuple(keys)
-        elif isinstance(here, Mapping) or here is None:
-            word = _first(rest, here or {}) or _word(rest)
-            rest = _after(rest, word)
+        elif isinstance(table, Mapping) or table is None:
+            word = _first(remainder, table or {}) or _word(remainder)
+            remainder = _after(remainder, word)
             keys.append(word)
         else:
-            said = f"holds {show(here, 40)}, in which there is no {_word(rest)}"
-            raise SceneError(said, field=label_of(tuple(keys), tables))
-        here = _child(here, keys[-1]) if rest else _held(here, keys[-1])
-    if isinstance(here, list) and len(here) == 1 and isinstance(here[0], Mapping):
-        here = here[0]
-    if isinstance(here, (Mapping, list)):
-        within = here if isinstance(here, Mapping) else _names(here)
-        said = f"is no single entry; add one of {listed(within)}"
-        raise SceneError(said, field=label_of(tuple(keys), tables))
+            reason = f"holds {show(table, 40)}, in which there is no {_word(remainder)}"
+            raise SceneError(reason, field=label_of(tuple(keys), tables))
+        table = _child(table, keys[-1]) if remainder else _held(table, keys[-1])
+    if isinstance(table, list) and len(table) == 1 and isinstance(table[0], Mapping):
+        table = table[0]
+    if isinstance(table, (Mapping, list)):
+        within = table if isinstance(table, Mapping) else _names(table)
+        reason = f"is no single entry; add one of {listed(within)}"
+        raise SceneError(reason, field=label_of(tuple(keys), tables))
     return tuple(keys)
 
 
@@ -73,20 +73,20 @@ def label_of(keys: Keys, tables: Tables) -> str:
     >>> label_of(("bearing", 0, "position"), {"bearing": [{"name": "A"}]})
     'bearing.A.position'
     """
-    out, here = [], tables
+    out, table = [], tables
     for key in keys:
-        here = _child(here, key)
-        name = _name(here) if isinstance(key, int) else key
+        table = _child(table, key)
+        name = _name(table) if isinstance(key, int) else key
         out.append(name or str(int(key) + 1))
     return ".".join(out)
 
 
 def entry(keys: Keys, tables: Tables) -> Any:
     """Value that a file holds at an entry; None where it holds nothing, but 1 for a factor."""
-    here: Any = tables
+    table: Any = tables
     for key in keys[:-1]:
-        here = _child(here, key)
-    value = _held(here, keys[-1])
+        table = _child(table, key)
+    value = _held(table, keys[-1])
     return 1.0 if value is None and keys[-1] == FACTOR else value
 
 
@@ -101,14 +101,14 @@ def changed(tables: Any, keys: Keys, value: Any) -> Any:
     """
     if not keys:
         return value
-    first, *rest = keys
+    first, *further = keys
     if isinstance(first, int):
         out = list(tables)
-        out[first] = changed(out[first], tuple(rest), value)
+        out[first] = changed(out[first], tuple(further), value)
         return out
     table = tables if isinstance(tables, Mapping) else {}
-    within = _child(table, first) if rest else None
-    return {**table, first: changed(within, tuple(rest), value)}
+    within = _child(table, first) if further else None
+    return {**table, first: changed(within, tuple(further), value)}
 
 
 def put(tables: Tables, keys: Keys, value: Any) -> Tables:
@@ -131,18 +131,18 @@ def entries(tables: Any, before: Keys = ()) -> Iterator[Keys]:
         yield before
 
 
-def _place_in(things: list, rest: str, where: str) -> tuple[int, str]:
+def _place_in(things: list, remainder: str, label: str) -> tuple[int, str]:
     """Place of a thing in a list, and what is left of the path."""
     names = _names(things)
     for k in sorted(range(len(names)), key=lambda k: -len(names[k])):
-        if _name(things[k]) and _begins(rest, names[k]):
-            return k, _after(rest, names[k])
-    word = _word(rest)
+        if _name(things[k]) and _begins(remainder, names[k]):
+            return k, _after(remainder, names[k])
+    word = _word(remainder)
     if word.isdecimal() and 1 <= int(word) <= len(things):
-        return int(word) - 1, _after(rest, word)
+        return int(word) - 1, _after(remainder, word)
     if len(things) == 1 and isinstance(things[0], Mapping):
-        return 0, rest
-    raise SceneError(f"there is no {where}.{word}{nearest(word, names)}; there are {listed(names)}")
+        return 0, remainder
+    raise SceneError(f"there is no {label}.{word}{nearest(word, names)}; there are {listed(names)}")
 
 
 def _names(things: list) -> list[str]:
@@ -150,27 +150,27 @@ def _names(things: list) -> list[str]:
     return [_name(thing) or str(k) for k, thing in enumerate(things, start=1)]
 
 
-def _is_own(table: Mapping[str, Any], rest: str) -> bool:
+def _is_own(table: Mapping[str, Any], remainder: str) -> bool:
     """True where a path names a table that is alone as if it were one of a list."""
-    word = _word(rest)
-    return word not in table and word in (_name(table), "1") and rest != word
+    word = _word(remainder)
+    return word not in table and word in (_name(table), "1") and remainder != word
 
 
-def _first(rest: str, table: Mapping[str, Any]) -> str:
+def _first(remainder: str, table: Mapping[str, Any]) -> str:
     """The longest key of a table that a path begins with; empty for none."""
-    return max((key for key in table if _begins(rest, key)), key=len, default="")
+    return max((key for key in table if _begins(remainder, key)), key=len, default="")
 
 
-def _begins(rest: str, name: str) -> bool:
-    return rest == name or rest.startswith(f"{name}.")
+def _begins(remainder: str, name: str) -> bool:
+    return remainder == name or remainder.startswith(f"{name}.")
 
 
-def _word(rest: str) -> str:
-    return rest.partition(".")[0]
+def _word(remainder: str) -> str:
+    return remainder.partition(".")[0]
 
 
-def _after(rest: str, word: str) -> str:
-    return rest[len(word) + 1 :]
+def _after(remainder: str, word: str) -> str:
+    return remainder[len(word) + 1 :]
 
 
 def _name(thing: Any) -> str:
@@ -190,18 +190,18 @@ def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
         row, column, _ = STIFFNESS_NAMES[name]
         return "matrix", row, column
     of_bearing = keys[0] == "bearing"
-    within = keys[-1] == "stiffness" or (of_bearing and keys[-1] == "housing")
-    return (name,) if within or name in table else ("stiffness", name)
+    inside = keys[-1] == "stiffness" or (of_bearing and keys[-1] == "housing")
+    return (name,) if inside or name in table else ("stiffness", name)
 
 
-def _child(here: Any, key: str | int) -> Any:
+def _child(table: Any, key: str | int) -> Any:
     """Value under a key, a material by name as its table."""
-    value = _held(here, key)
+    value = _held(table, key)
     return as_table(value) if key == "material" else value
 
 
-def _held(here: Any, key: str | int) -> Any:
+def _held(table: Any, key: str | int) -> Any:
     """Value that a file holds under a key; None where it holds nothing."""
-    if isinstance(here, Mapping):
-        return here.get(key)
-    return here[key] if isinstance(here, list) and isinstance(key, int) else None
+    if isinstance(table, Mapping):
+        return table.get(key)
+    return table[key] if isinstance(table, list) and isinstance(key, int) else None

@@ -120,13 +120,13 @@ class Places:
         if body is None or body.edges is None:
             reason = 'patches are faces of a body without an axis (axis = "none", or a block)'
             raise SceneError(reason, path=("patch",))
-        known = {patch.name: patch for patch in body.patches}
-        if name not in known:
-            there = listed(map(repr, known)) or "none: name groups of surfaces in the mesher"
+        patches = {patch.name: patch for patch in body.patches}
+        if name not in patches:
+            names = listed(map(repr, patches)) or "none: name groups of surfaces in the mesher"
             raise SceneError(
-                f"unknown patch{nearest(name, known)}; there are {there}", path=("patch",)
+                f"unknown patch{nearest(name, patches)}; there are {names}", path=("patch",)
             )
-        found = known[name]
+        found = patches[name]
         return found if point is None else found.with_changes(point=body.placed(point))
 
 
@@ -151,17 +151,17 @@ class Along(Model):
             if getattr(self, key, None) is not None or key in (beside or ()):
                 raise SceneError(reason, path=(key.rstrip("_"),))
 
-    def needs(self, key: str, how: str, told: str = "") -> None:
+    def needs(self, key: str, how: str, error_key: str = "") -> None:
         """Refuse a table without a word, told under its own key or another."""
         if getattr(self, key) is None:
-            raise SceneError(f"this key is missing; {how}", path=(told or key,))
+            raise SceneError(f"this key is missing; {how}", path=(error_key or key,))
 
-    def one_of(self, first: str, other: str, how: str) -> None:
+    def one_of(self, first: str, second: str, how: str) -> None:
         """Refuse neither of two words, or both."""
-        if getattr(self, other) is None:
+        if getattr(self, second) is None:
             self.needs(first, how)
         elif getattr(self, first) is not None:
-            raise SceneError(f"give either {first} or {other}, not both", path=(other,))
+            raise SceneError(f"give either {first} or {second}, not both", path=(second,))
 
 
 class Placed(Model):
@@ -194,21 +194,23 @@ class Placed(Model):
         out; None where nothing is wrong with it, but its place is not known. Problems are told
         under its keys.
         """
-        words, known = by_key(cls.Words), cls.table_keys()
-        strange, meant = unknown_keys(table, known)
+        words, keys = by_key(cls.Words), cls.table_keys()
+        strange, meant = unknown_keys(table, keys)
         problems = Gathered(strange)
         if isinstance(name := table.get("name"), str):
             problems.read(lambda: plain_name(name), ("name",))
-        given = {key: table[key] for key in table if key in known and key not in words}
-        written = {key: table[key] for key in table if key in words}
-        place = problems.read(lambda: cls.place(cls.Words(**written), given, places))
-        found = cls._nowhere(table) if place is None else place
-        if "attachment" in known:
+        entries = {key: table[key] for key in table if key in keys and key not in words}
+        word_entries = {key: table[key] for key in table if key in words}
+        place = problems.read(lambda: cls.place(cls.Words(**word_entries), entries, places))
+        place_fields = cls._nowhere(table) if place is None else place
+        if "attachment" in keys:
             usual.setdefault("attachment", cls.usually_attached(table, places))
-        somewhere = {key: SOMEWHERE if value is None else value for key, value in found.items()}
-        thing = cls._made({**usual, **given, **somewhere}, table, problems)
+        somewhere = {
+            key: SOMEWHERE if value is None else value for key, value in place_fields.items()
+        }
+        thing = cls._made({**usual, **entries, **somewhere}, table, problems)
         Gathered(not_meant(problems, meant)).tell()
-        return None if None in found.values() else thing
+        return None if None in place_fields.values() else thing
 
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
@@ -223,11 +225,12 @@ class Placed(Model):
         try:
             return cls(**fields)
         except SceneError as error:
-            found = [
-                one.located(None, path=cls.key_path(one.path, table)) for one in error.problems
+            problems_of_fields = [
+                problem.located(None, path=cls.key_path(problem.path, table))
+                for problem in error.problems
             ]
-        told = {one.path for one in problems}
-        problems += [one for one in found if one.path not in told]
+        known_paths = {problem.path for problem in problems}
+        problems += [problem for problem in problems_of_fields if problem.path not in known_paths]
         return None
 
     @classmethod
@@ -245,14 +248,16 @@ class Placed(Model):
             sources = cls.sources.get(key, (key,))
             keys |= words if key not in sources else {}
             keys |= {
-                one: field if one == key else fields.get(one) for one in sources if one not in keys
+                source: field if source == key else fields.get(source)
+                for source in sources
+                if source not in keys
             }
         return keys | words
 
     @classmethod
     def _nowhere(cls, table: Mapping[str, Any]) -> dict[str, None]:
         """Fields of a place that is refused."""
-        own = cls.table_keys()
+        keys = cls.table_keys()
         fields = [key for key, field in cls.model_fields.items() if field.is_required()]
         seated = ["seat_width"] if "seat" in table and "seat_width" in fields else []
-        return dict.fromkeys([key for key in fields if key not in own] + seated)
+        return dict.fromkeys([key for key in fields if key not in keys] + seated)

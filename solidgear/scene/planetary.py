@@ -149,8 +149,8 @@ class PlanetMesh:
             1 where the sun turns about +y of its scene, else -1.
         """
         teeth, name = self.stage.teeth, f"{self.stage.name} {self.mate}"
-        at = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
-        return {f"{name} {k}": at[k] - at[self.planets[0]] for k in self.planets}
+        angles = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
+        return {f"{name} {k}": angles[k] - angles[self.planets[0]] for k in self.planets}
 
     @property
     def label(self) -> str:
@@ -213,16 +213,16 @@ class Stage:
     def meshes(self) -> tuple[PlanetMesh, ...]:
         """Those of each planet with the sun, then those with the ring."""
         return tuple(
-            PlanetMesh(f"{one.name} {k}", self, one.mate, (k,))
-            for one in self.together
-            for k in one.planets
+            PlanetMesh(f"{mesh.name} {k}", self, mesh.mate, (k,))
+            for mesh in self.together
+            for k in mesh.planets
         )
 
     @property
     def together(self) -> tuple[PlanetMesh, ...]:
         """Those of all planets with the sun, and with the ring."""
-        every = tuple(range(1, len(self.teeth.azimuths) + 1))
-        return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, every) for mate in MATES)
+        planets = tuple(range(1, len(self.teeth.azimuths) + 1))
+        return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, planets) for mate in MATES)
 
 
 def stage_of(train: Train, name: str) -> Stage:
@@ -243,10 +243,10 @@ def stage_problems(train: Train) -> Iterator[SceneError]:
             reason = f"a stage cannot be called {name!r}; give it a name of its own, without dots"
             yield SceneError(reason, path=path)
             continue
-        found = [*_ends(train, table)]
-        yield from (one.located(None, prefix=path) for one in found)
-        if not found:
-            yield from (one.located(None, prefix=path) for one in _teeth(train, name))
+        problems = [*_ends(train, table)]
+        yield from (problem.located(None, prefix=path) for problem in problems)
+        if not problems:
+            yield from (problem.located(None, prefix=path) for problem in _teeth(train, name))
 
 
 def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
@@ -254,22 +254,22 @@ def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
     for key, word in (("sun", table.sun), ("carrier", table.carrier)):
         side, dot, port = word.partition(".")
         if side not in train.shafts:
-            known = listed(train.shafts)
+            names = listed(train.shafts)
             hint = nearest(side, train.shafts)
-            yield SceneError(f"names no shaft {side!r}{hint}; known here: {known}", path=(key,))
+            yield SceneError(f"names no shaft {side!r}{hint}; known here: {names}", path=(key,))
             continue
-        own = train.shafts[side]
-        places = [*own.gears] if key == "sun" else [p.name for p in own.scene.ports]
-        what = "gear" if key == "sun" else "lumped point"
+        shaft = train.shafts[side]
+        places = [*shaft.gears] if key == "sun" else [p.name for p in shaft.scene.ports]
+        kind = "gear" if key == "sun" else "lumped point"
         if not places:
             reason = f"the {side} carries no gear; write teeth and module under [shaft.{side}]"
             yield SceneError(reason, path=(key,))
         elif dot and port not in places:
-            reason = f"the {side} has no {what} at {port!r}; it has {listed(places)}"
+            reason = f"the {side} has no {kind} at {port!r}; it has {listed(places)}"
             yield SceneError(reason, path=(key,))
         elif not dot and key == "sun" and len(places) > 1:
-            each = " or ".join(f'"{side}.{port}"' for port in places)
-            yield SceneError(f"the {side} carries several gears; write {each}", path=(key,))
+            choices = " or ".join(f'"{side}.{port}"' for port in places)
+            yield SceneError(f"the {side} carries several gears; write {choices}", path=(key,))
     if table.sun.partition(".")[0] == table.carrier.partition(".")[0]:
         reason = "sun and carrier are one shaft, and could not turn against each other"
         yield SceneError(reason, path=("carrier",))
@@ -279,42 +279,44 @@ def _teeth(train: Train, name: str) -> Iterator[SceneError]:
     """Problems of teeth that are told right each by itself."""
     stage = stage_of(train, name)
     gear, (side, _), (port, _) = stage.sun, stage.shafts, stage.ports
-    where = f"the gear {side}.{port}, the sun,"
+    gear_label = f"the gear {side}.{port}, the sun,"
     if gear.module is None:
-        yield SceneError(f"{where} needs its module", path=("sun",))
+        yield SceneError(f"{gear_label} needs its module", path=("sun",))
     elif gear.helix_angle and gear.hand is None:
-        yield SceneError(f"{where} has helical teeth; give their hand", path=("sun",))
+        yield SceneError(f"{gear_label} has helical teeth; give their hand", path=("sun",))
     elif gear.profile_shift:
-        reason = f"{where} has a profile_shift, and stages are told without any; leave it out"
+        reason = f"{gear_label} has a profile_shift, and stages are told without any; leave it out"
         yield SceneError(reason, path=("sun",))
     else:
         try:
             _ = stage.teeth
         except SceneError as error:
             keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
-            for one in error.problems:
-                yield one.located(None, path=tuple(keys.get(str(key), key) for key in one.path))
+            for problem in error.problems:
+                yield problem.located(
+                    None, path=tuple(keys.get(str(key), key) for key in problem.path)
+                )
 
 
 def turned(train: Train, name: str, by: float) -> Train:
     """A train with the carrier of a stage at another position, rad beyond its own."""
     table = train.planetary[name]
-    here = table.with_changes(position=(table.position + by) % (2 * pi))
-    return train.with_changes(planetary={**train.planetary, name: here})
+    turned_table = table.with_changes(position=(table.position + by) % (2 * pi))
+    return train.with_changes(planetary={**train.planetary, name: turned_table})
 
 
 def named_pair(train: Train, word: str | None) -> Pair:
     """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`;
     refuses one of planets, whose teeth have no backlash.
     """
-    found = train.named_mesh(word)
-    if isinstance(found, PlanetMesh):
-        known = listed(pair.label.strip() for pair in train.pairs) or "none"
+    mesh = train.named_mesh(word)
+    if isinstance(mesh, PlanetMesh):
+        names = listed(pair.label.strip() for pair in train.pairs) or "none"
         raise SolidgearError(
             f"teeth of planets have no backlash and do not drive motions with it; of {train.name} "
-            f"these may: {known}"
+            f"these may: {names}"
         )
-    return found
+    return mesh
 
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:

@@ -59,10 +59,10 @@ class PlanetaryTeeth:
     helix: float = 0.0
 
     def __post_init__(self):
-        for one in fields(self)[:3]:
-            value = getattr(self, one.name)
+        for field in fields(self)[:3]:
+            value = getattr(self, field.name)
             if not (isinstance(value, int) and value > 0):
-                raise SceneError(f"{one.name} has {value!r} teeth; give a whole number")
+                raise SceneError(f"{field.name} has {value!r} teeth; give a whole number")
         if not (isfinite(self.module) and self.module > 0):
             raise SceneError(f"module is {self.module}; it must be finite and above zero")
         if not abs(self.helix) < pi / 2:
@@ -119,11 +119,11 @@ class PlanetaryTeeth:
         if len(turns) < 2:
             return
         closest = float(np.diff([*turns, turns[0] + 2 * pi]).min())
-        apart = 2 * self.pin_radius * sin(closest / 2)
-        if apart <= tips:
+        spacing = 2 * self.pin_radius * sin(closest / 2)
+        if spacing <= tips:
             raise SceneError(
                 f"planets {np.degrees(closest):.4g} deg apart overlap: their axes are "
-                f"{1e3 * apart:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across",
+                f"{1e3 * spacing:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across",
                 path=("planets",),
             )
 

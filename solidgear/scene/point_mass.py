@@ -90,13 +90,13 @@ class PointMass(Placed):
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if "on" not in table:
-            how = 'name the port or bearing that carries it, or write position = "28 mm"'
-            words.needs("position", how, "on")
+            hint = 'name the port or bearing that carries it, or write position = "28 mm"'
+            words.needs("position", hint, "on")
             return {"y": words.y(places)}
         if words.position is not None:
             raise SceneError("give either on or position, not both", path=("position",))
-        own = "belongs to a seat of its own; a mass on a station has that of the station"
-        words.refuse(own, "from_", "seat_width", "attachment", beside=table)
+        reason = "belongs to a seat of its own; a mass on a station has that of the station"
+        words.refuse(reason, "from_", "seat_width", "attachment", beside=table)
         return {"attachment": "average"}
 
     @property
@@ -121,9 +121,9 @@ class PointMass(Placed):
         """(6, 6) mass matrix about the point of its station, order x y z thx thy thz: kg, kg m and
         kg m^2.
         """
-        own = np.diag([*[self.mass] * 3, *self.inertia])
+        at_centre = np.diag([*[self.mass] * 3, *self.inertia])
         to_centre = shift(self.offset)
-        return to_centre.T @ own @ to_centre
+        return to_centre.T @ at_centre @ to_centre
 
 
 def check_inertia(inertia: tuple[float, float, float]) -> None:

@@ -25,8 +25,8 @@ def shares_of(train: Train) -> dict[str, float]:
     """Share of the power that every engine brings, and of every load what it takes, below zero."""
     out: dict[str, float] = {}
     for sign, names in ((1.0, train.engines), (-1.0, train.loads)):
-        given = [train.rotors[name].share or 1.0 for name in names]
-        out |= {name: sign * share / fsum(given) for name, share in zip(names, given)}
+        shares = [train.rotors[name].share or 1.0 for name in names]
+        out |= {name: sign * share / fsum(shares) for name, share in zip(names, shares)}
     return out
 
 
@@ -52,14 +52,14 @@ def carried_of(train: Train) -> dict[str, float]:
     """
     out = {}
     for side in train.shafts:
-        ways = [
+        flows = [
             share for name, share in shares_of(train).items() if train.rotors[name].shaft == side
         ]
         for joint in train.joints:
             if side in joint.shafts:
-                comes = 1 if side == joint.shafts[1] else -1
-                ways.append((train.flows[joint.name] or 0.0) * comes)
-        most = max(fsum(w for w in ways if w > 0), -fsum(w for w in ways if w < 0))
+                sign = 1 if side == joint.shafts[1] else -1
+                flows.append((train.flows[joint.name] or 0.0) * sign)
+        most = max(fsum(w for w in flows if w > 0), -fsum(w for w in flows if w < 0))
         if most > NONE:
             out[side] = most
     return out
@@ -70,16 +70,16 @@ def share_problems(train: Train) -> Iterator[SceneError]:
     for kind, names in (("engine", train.engines), ("load", train.loads)):
         if not names:
             continue
-        given = [train.rotors[name].share for name in names]
+        shares = [train.rotors[name].share for name in names]
         path = (*train.rotor_path(names[0]), "share")
-        if len(names) > 1 and None in given:
-            lacking = train.rotor_path(names[given.index(None)])
+        if len(names) > 1 and None in shares:
+            lacking = train.rotor_path(names[shares.index(None)])
             reason = (
                 f"this key is missing; {kind}s share the power: give each its share, such as 0.5"
             )
             yield SceneError(reason, path=(*lacking, "share"))
-        elif any(given) and abs(fsum(share or 0.0 for share in given) - 1) > TYPED:
-            total = fsum(share or 0.0 for share in given)
+        elif any(shares) and abs(fsum(share or 0.0 for share in shares) - 1) > TYPED:
+            total = fsum(share or 0.0 for share in shares)
             yield SceneError(
                 f"the shares of all {kind}s sum to {total:.6g}; they must sum to 1", path=path
             )

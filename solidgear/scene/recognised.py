@@ -104,22 +104,22 @@ class Recognised(NamedTuple):
 
     def usual_material(self) -> Material:
         """A material for a scene that has none, where all groups have one of their own."""
-        own = [g for g in self.body.groups if g.material is None]
-        if own:
+        groups = [g for g in self.body.groups if g.material is None]
+        if groups:
             raise SceneError(
-                f"{own[0].said}, {1e6 * own[0].volume:.4g} cm^3, has no material: name its groups "
+                f"{groups[0].said}, {1e6 * groups[0].volume:.4g} cm^3, has no material: name its groups "
                 "here, or write [material] for all the rest",
                 path=("body", "materials"),
             )
         return next(g.material for g in self.body.groups if g.material is not None)
 
-    def weigh(self, said: float | None, usual: Material) -> None:
+    def weigh(self, expected: float | None, usual: Material) -> None:
         """Refuse a part that does not have the mass (kg) that its file says."""
         mass = self.body.mass(usual)
-        if said is not None and abs(mass / said - 1) > MASS_CHECK:
+        if expected is not None and abs(mass / expected - 1) > MASS_CHECK:
             raise SceneError(
                 f"the part has {mass:.5g} kg ({1e6 * self.body.volume:.5g} cm^3 of "
-                f"{mass / self.body.volume:.5g} kg/m^3), {100 * (mass / said - 1):+.3g} % from that",
+                f"{mass / self.body.volume:.5g} kg/m^3), {100 * (mass / expected - 1):+.3g} % from that",
                 path=("body", "mass_check"),
             )
 
@@ -128,11 +128,11 @@ class Recognised(NamedTuple):
         lo, hi = seat.from_ + self.origin, seat.to + self.origin
         near = [c for c in self.cylinders if abs(c[0] / seat.diameter - 1) <= SAME_DIAMETER]
         if not near:
-            there = listed(
+            diameters = listed(
                 f"{1e3 * d:.6g} mm" for d in sorted({round(c[0], 7) for c in self.cylinders})
             )
             raise SceneError(
-                f"the part has no cylinder of this diameter about its axis; there are {there or 'none'}",
+                f"the part has no cylinder of this diameter about its axis; there are {diameters or 'none'}",
                 path=("diameter",),
             )
         share = self.seat_share(near[0][0] / 2, lo, hi)
@@ -153,19 +153,19 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
     """A part, and what is to be said of seats that are not whole."""
     if part.body.edges is not None:
         return part.body
-    said = []
+    remarks = []
     for s in stations:
-        under = [g for g in segments if g.y1 > s.lo and g.y0 < s.hi]
-        radii = {r for g in under for r in (g.outer0, g.outer1)}
+        carriers = [g for g in segments if g.y1 > s.lo and g.y0 < s.hi]
+        radii = {r for g in carriers for r in (g.outer0, g.outer1)}
         if s.attachment == "section" or len(radii) != 1 or not s.hi > s.lo:
             continue
         share = part.seat_share(radii.pop(), s.lo, s.hi)
         if share < WHOLE_SEAT:
-            said.append(
+            remarks.append(
                 f"the seat of {s.name!r} has {100 * share:.3g} % of the area 2 pi r b of its cylinder; "
                 "its motion is the mean of what is there"
             )
-    return part.body.model_copy(update={"remarks": (*part.body.remarks, *said)})
+    return part.body.model_copy(update={"remarks": (*part.body.remarks, *remarks)})
 
 
 #: reads the part that a table of a file in some folder names

@@ -53,14 +53,14 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
     return [*_end_to_end(segments)] or [*_sized(segments)] or [*_proportioned(segments)]
 
 
-def too_many(what: str, count: int, most: int) -> str:
+def too_many(plural: str, count: int, most: int) -> str:
     """The reason to refuse a list longer than that of any shaft."""
     hint = (
         "; let pieces that are one be one segment, and a few cones stand for a curve"
-        if what == "segments"
+        if plural == "segments"
         else ""
     )
-    return f"{count} {what} are more than the {most} a shaft may have{hint}"
+    return f"{count} {plural} are more than the {most} a shaft may have{hint}"
 
 
 def _end_to_end(segments: Sequence[Segment]) -> Iterator[SceneError]:
@@ -99,28 +99,33 @@ def _sized(segments: Sequence[Segment]) -> Iterator[SceneError]:
 def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
     end = segments[-1].y1
     for i, segment in enumerate(segments):
-        before = segments[i - 1] if i else None
-        if before and not (max(before.inner1, segment.inner0) < min(before.outer1, segment.outer0)):
+        previous = segments[i - 1] if i else None
+        if previous and not (
+            max(previous.inner1, segment.inner0) < min(previous.outer1, segment.outer0)
+        ):
             reason = (
-                f'shares no end face with "{before.name}" '
-                f"(radii {before.inner1:.6g} to {before.outer1:.6g} m there, "
+                f'shares no end face with "{previous.name}" '
+                f"(radii {previous.inner1:.6g} to {previous.outer1:.6g} m there, "
                 f"{segment.inner0:.6g} to {segment.outer0:.6g} m here); they must overlap"
             )
             yield SceneError(reason, path=("segments", i, "outer0"))
-        for at in "01":
-            outer, inner = getattr(segment, "outer" + at), getattr(segment, "inner" + at)
+        for end_digit in "01":
+            outer, inner = (
+                getattr(segment, "outer" + end_digit),
+                getattr(segment, "inner" + end_digit),
+            )
             if 2 * outer < SLIMMEST * end:
                 reason = (
                     f"a diameter of {2 * outer:.6g} m is under a thousandth of the length "
                     f"of the shaft, {end:.6g} m: probably wrong units"
                 )
-                yield SceneError(reason, path=("segments", i, "outer" + at))
+                yield SceneError(reason, path=("segments", i, "outer" + end_digit))
             if outer - inner < THINNEST * outer:
                 reason = (
                     f"leaves a wall of {outer - inner:.3g} m at a radius of {outer:.6g} m, "
                     "under one in ten thousand: probably wrong units"
                 )
-                yield SceneError(reason, path=("segments", i, "inner" + at))
+                yield SceneError(reason, path=("segments", i, "inner" + end_digit))
         yield from _unlike(segments[0].material, segment.material, i)
         if segment.length < SHORTEST * end:
             reason = (
@@ -130,16 +135,16 @@ def _proportioned(segments: Sequence[Segment]) -> Iterator[SceneError]:
             yield SceneError(reason, path=("segments", i, "y1"))
 
 
-def _unlike(first: Material, here: Material, i: int) -> Iterator[SceneError]:
-    for key, what, unit, value in (
+def _unlike(first: Material, material: Material, i: int) -> Iterator[SceneError]:
+    for key, property_name, unit, value in (
         ("E", "modulus", "Pa", lambda m: m.E),
         ("density", "density", "kg/m^3", lambda m: m.density),
         ("E", "ratio of modulus to density", "m^2/s^2", lambda m: m.E / m.density),
     ):
-        a, b = value(here), value(first)
+        a, b = value(material), value(first)
         if max(a, b) > MOST_UNLIKE * min(a, b):
             reason = (
-                f"a {what} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more "
+                f"a {property_name} of {a:.3g} {unit} beside {b:.3g} in the first segment: unlike by more "
                 f"than {MOST_UNLIKE:g}, which costs digits; probably wrong units"
             )
             yield SceneError(reason, path=("segments", i, "material", key))
@@ -154,19 +159,19 @@ def problems_between(
     masses: Sequence[PointMass],
     features: Sequence[Feature],
     blends: Sequence[Blend],
-    whole: bool = True,
+    complete: bool = True,
 ) -> Iterator[SceneError]:
     """Problems between things on a sound shaft, the main port first; names are judged where the
     ports and bearings are the whole of them.
     """
     yield from station_problems(segments, ports, bearings, masses)
-    if whole:
+    if complete:
         yield from mass_problems(ports, bearings, masses)
         yield from preload_problems(bearings)
     yield from feature_problems(segments, features)
-    own = [mass for mass in masses if mass.on is None]
-    there = [f for f in features if any(f.segment == s.name for s in segments)]
-    yield from blend_problems(segments, blends, [*ports, *bearings, *own], there)
+    seated = [mass for mass in masses if mass.on is None]
+    sound = [f for f in features if any(f.segment == s.name for s in segments)]
+    yield from blend_problems(segments, blends, [*ports, *bearings, *seated], sound)
 
 
 def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
@@ -180,13 +185,13 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
     if len(pressed) < 2 or len(ways) > 1:
         return
     way = ways.pop()
-    other = "-y" if way == "+y" else "+y"
+    opposite = "-y" if way == "+y" else "+y"
     lower, *_, upper = sorted(rows, key=lambda row: row[1].y)
     # back to back, the lower one holds towards +y
     o, x = (upper, lower) if way == "+y" else (lower, upper)
     yield SceneError(
         f"{listed([repr(b.name) for b in pressed])} are preloaded and all hold the shaft towards "
-        f"{way}, but a preload needs a row that holds it towards {other}: turn one, for an O "
+        f"{way}, but a preload needs a row that holds it towards {opposite}: turn one, for an O "
         f"arrangement {o[1].name!r}, for X {x[1].name!r}, or leave the preload out",
         path=("bearings", o[0], "catalogue", "holds"),
     )
@@ -196,12 +201,12 @@ def _two_preloads(rows: Sequence[tuple[int, Bearing, Catalogue]]) -> Iterator[Sc
     """A pair whose bearings are told forces that differ, which no shaft at rest has."""
     forces = [data.preload.force or 0.0 for *_, data in rows if data.preload is not None]
     if all(forces) and not isclose(forces[0], forces[1], rel_tol=TYPED):
-        told = " and ".join(
+        forces_text = " and ".join(
             f"{force:.6g} N at {b.name!r}" for force, (_, b, _) in zip(forces, rows)
         )
         yield SceneError(
             f"two bearings that hold the shaft against each other feel one preload, and this is "
-            f"{told}; give it once, at either",
+            f"{forces_text}; give it once, at either",
             path=("bearings", rows[1][0], "catalogue", "preload"),
         )
 
@@ -216,10 +221,13 @@ def station_problems(
     do not overlap.
     """
     length, jumps = segments[-1].y1, Outline(segments).steps
-    for what, of, most in (("bearings", bearings, MOST_BEARINGS), ("ports", ports, MOST_PORTS)):
-        if len(of) > most:
-            key = "further_ports" if what == "ports" else what
-            yield SceneError(too_many(what, len(of), most), path=(key,))
+    for kind, stations, most in (
+        ("bearings", bearings, MOST_BEARINGS),
+        ("ports", ports, MOST_PORTS),
+    ):
+        if len(stations) > most:
+            key = "further_ports" if kind == "ports" else kind
+            yield SceneError(too_many(kind, len(stations), most), path=(key,))
             return
     places: list[tuple[tuple[str | int, ...], Port | Bearing | PointMass, str]] = [
         ((*_port_path(i), "hi"), port, "attached span") for i, port in enumerate(ports)
@@ -239,21 +247,21 @@ def station_problems(
                 path=(*_port_path(i), "y"),
             )
     names = set()
-    for k, (path, here, what) in enumerate(places):
-        if here.name in names:
-            others = "another port" if what == "attached span" else "the port or another bearing"
+    for k, (path, station, kind) in enumerate(places):
+        if station.name in names:
+            owner = "another port" if kind == "attached span" else "the port or another bearing"
             yield SceneError(
-                f"{others} has this name; each needs its own", path=(*path[:-1], "name")
+                f"{owner} has this name; each needs its own", path=(*path[:-1], "name")
             )
-        names.add(here.name)
-        if what == "attached span" and len(ports) > 1 and AT in here.name:
+        names.add(station.name)
+        if kind == "attached span" and len(ports) > 1 and AT in station.name:
             reason = (
                 "the name of one of several points has no @, which stands before it in C_zz@name"
             )
             yield SceneError(reason, path=(*path[:-1], "name"))
-        if getattr(here, "patch", None) is not None:
+        if getattr(station, "patch", None) is not None:
             continue
-        reason = _misplaced(here, what, places[:k], length, jumps)
+        reason = _misplaced(station, kind, places[:k], length, jumps)
         if reason:
             yield SceneError(reason, path=path)
 
@@ -263,22 +271,22 @@ def _port_path(index: int) -> tuple[str | int, ...]:
     return ("further_ports", index - 1) if index else ("port",)
 
 
-def no_such_point(name: str, known: Iterable[str]) -> str:
+def no_such_point(name: str, names: Iterable[str]) -> str:
     """The reason to refuse the name of a lumped point."""
-    known = list(known)
-    hint = nearest(name, known)
-    return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(known)}"
+    names = list(names)
+    hint = nearest(name, names)
+    return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(names)}"
 
 
 def question_problems(
     ports: Sequence[Port], quantities: Sequence[Quantity]
 ) -> Iterator[SceneError]:
     """Quantities, such as ``C_zz`` or ``C_zz@gear``, are asked of lumped points that there are."""
-    known = [port.name for port in ports]
+    names = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
-        asked = quantity.points_among(known)
-        unknown = [name for name in asked if name not in known]
-        reason = no_such_point(unknown[0], known) if unknown else no_term(quantity, asked)
+        points = quantity.points_among(names)
+        unknown = [name for name in points if name not in names]
+        reason = no_such_point(unknown[0], names) if unknown else no_term(quantity, points)
         if reason:
             yield SceneError(reason, path=("ask", "quantities", k))
 
@@ -305,52 +313,50 @@ def mass_problems(
     if len(masses) > MOST_MASSES:
         yield SceneError(too_many("masses", len(masses), MOST_MASSES), path=("masses",))
         return
-    known = [*(port.name for port in ports), *(b.name for b in bearings)]
-    named = set()
+    stations = [*(port.name for port in ports), *(b.name for b in bearings)]
+    mass_names = set()
     for i, mass in enumerate(masses):
-        if mass.on is not None and mass.on not in known:
-            reason = f"no lumped point or bearing has this name; there are {', '.join(known)}"
+        if mass.on is not None and mass.on not in stations:
+            reason = f"no lumped point or bearing has this name; there are {', '.join(stations)}"
             yield SceneError(reason, path=("masses", i, "on"))
         # on seats of their own they are stations, whose names are compared there
-        if mass.name in named or (mass.on is not None and mass.name in known):
+        if mass.name in mass_names or (mass.on is not None and mass.name in stations):
             reason = "the port, a bearing or another mass has this name; each needs its own"
             yield SceneError(reason, path=("masses", i, "name"))
         if mass.on is not None:
-            named.add(mass.name)
+            mass_names.add(mass.name)
 
 
 def _misplaced(
-    here: Port | Bearing | PointMass,
-    what: str,
-    before: Sequence[tuple],
+    station: Port | Bearing | PointMass,
+    kind: str,
+    neighbours: Sequence[tuple],
     length: float,
     jumps: Sequence[float],
 ) -> str:
     """Reason why a station cannot be where it is, or nothing: the first reason, of which others may
     be a consequence.
     """
-    if here.hi <= here.lo:
-        return f"the span must end beyond its start at {here.lo:.6g} m"
-    reach = f"the {what} reaches from {here.lo:.6g} to {here.hi:.6g} m"
-    if here.lo < -TOUCH or here.hi > length + TOUCH:
+    if station.hi <= station.lo:
+        return f"the span must end beyond its start at {station.lo:.6g} m"
+    reach = f"the {kind} reaches from {station.lo:.6g} to {station.hi:.6g} m"
+    if station.lo < -TOUCH or station.hi > length + TOUCH:
         return f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)"
-    if here.hi - here.lo < SHORTEST * length:
+    if station.hi - station.lo < SHORTEST * length:
         return (
             f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: "
             "probably wrong units"
         )
     for step in jumps:
-        if here.lo + TOUCH < step < here.hi - TOUCH:
+        if station.lo + TOUCH < step < station.hi - TOUCH:
             return (
                 f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
             )
-    for _, other, other_what in before:
+    for _, neighbour, neighbour_kind in neighbours:
         # a port may share the surface of a seat or of another port, unless both hold it rigid: that
         # would weld the two points together
-        seats = other_what == what == "seat"
-        both = seats or other.attachment == here.attachment == "rigid"
-        if both and min(here.hi, other.hi) - max(here.lo, other.lo) > TOUCH:
-            return (
-                f'{reach} and overlaps that of "{other.name}" ({other.lo:.6g} to {other.hi:.6g} m)'
-            )
+        seats = neighbour_kind == kind == "seat"
+        exclusive = seats or neighbour.attachment == station.attachment == "rigid"
+        if exclusive and min(station.hi, neighbour.hi) - max(station.lo, neighbour.lo) > TOUCH:
+            return f'{reach} and overlaps that of "{neighbour.name}" ({neighbour.lo:.6g} to {neighbour.hi:.6g} m)'
     return ""

@@ -45,8 +45,8 @@ def resolved(scene: Any) -> tuple[Any, ...]:
     ['key']
     """
     body = getattr(scene, "body", None)
-    whole = () if body is None else (body,)
-    return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *whole)
+    parts = () if body is None else (body,)
+    return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *parts)
 
 
 def without_axis(scene: Any) -> bool:
@@ -66,7 +66,7 @@ def turning_speed(scene: Any) -> float | None:
     True
     """
     data = [b.catalogue for b in getattr(scene, "bearings", ()) if b.catalogue is not None]
-    fastest = max((one.speed for one in data), default=0.0)
+    fastest = max((catalogue.speed for catalogue in data), default=0.0)
     oil = getattr(scene, "lubrication", None)
     return fastest or (oil.speed if oil is not None else None) or None
 

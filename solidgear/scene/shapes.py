@@ -152,7 +152,7 @@ class BevelHead(_Shape):
         frusta = [Frustum("frustum", axial, self.small_radius, large)]
         if self.backcone > 0:
             frusta.append(Frustum("backcone", self.backcone, large, large))
-        return [one.turned() for one in reversed(frusta)] if self.toe == "end" else frusta
+        return [frustum.turned() for frustum in reversed(frusta)] if self.toe == "end" else frusta
 
 
 #: any of them
@@ -170,11 +170,11 @@ class Laid(NamedTuple):
         """The key of the file that an entry of the segments came from."""
         if not path[1:]:
             return ("segment",)
-        _, place, key, *rest = path
+        _, place, key, *further = path
         index, shape = self.shapes[place]
-        if key == "material" and getattr(shape.material, rest[0]) is None:
-            return ("material", *rest)
-        return ("segment", index, shape.key_of(key), *rest)
+        if key == "material" and getattr(shape.material, further[0]) is None:
+            return ("material", *further)
+        return ("segment", index, shape.key_of(key), *further)
 
 
 def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
@@ -186,9 +186,9 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
     for index, shape in enumerate(shapes):
         start = y
         material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
-        for one in shape.frusta():
+        for frustum in shape.frusta():
             try:
-                segment = _segment(shape, one, y, material)
+                segment = _segment(shape, frustum, y, material)
             except SceneError as error:
                 problems += [
                     problem.located(None, path=("segment", index, shape.key_of(problem.path[0])))
@@ -198,30 +198,30 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
             laid.segments.append(segment)
             laid.shapes.append((index, shape))
             y = segment.y1
-            if one.part != "backcone":
+            if frustum.part != "backcone":
                 places.surface[shape.name] = (segment.y0, y)
         lo, hi = places.surface.get(shape.name, (start, y))
-        own = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
-        places.at |= {f"{shape.name}.{datum}": own[datum] for datum in shape.datums}
+        datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
+        places.at |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
     places.at["end"] = y
     if problems:
         raise SceneError.of(problems)
     return laid
 
 
-def _segment(shape: Shape, one: Frustum, y: float, material: Material) -> Segment:
-    if one.length <= NANOMETRE:
-        key = "backcone" if one.part == "backcone" else "y1"
+def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Segment:
+    if frustum.length <= NANOMETRE:
+        key = "backcone" if frustum.part == "backcone" else "y1"
         reason = "is less than a nanometre along the shaft: probably wrong units"
         raise SceneError(reason, path=(key,))
     return Segment(
-        name=f"{shape.name}.backcone" if one.part == "backcone" else shape.name,
+        name=f"{shape.name}.backcone" if frustum.part == "backcone" else shape.name,
         y0=y,
-        y1=y + one.length,
-        outer0=one.outer0,
-        outer1=one.outer1,
+        y1=y + frustum.length,
+        outer0=frustum.outer0,
+        outer1=frustum.outer1,
         inner0=shape.bore / 2,
         inner1=shape.bore / 2,
         material=material,
-        part=one.part,
+        part=frustum.part,
     )

@@ -49,21 +49,22 @@ def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
     except SceneError as error:
         problems = error.problems
         raise SceneError.of(
-            one.located(None, path=Bearing.key_path(one.path, table)) for one in problems
+            problem.located(None, path=Bearing.key_path(problem.path, table))
+            for problem in problems
         ) from None
 
 
 def _housing(scene: Scene, table: Mapping[str, Any]) -> dict[str, Any]:
     """Fields of a scene with the housing of a table, where it is."""
-    there = scene.housing
+    housing = scene.housing
     places = Places("average")
     places.at["start"] = 0.0
-    own = {key: value for key, value in table.items() if key != "from"}
-    if there is not None:
-        own["position"] = there.y
+    housing_table = {key: value for key, value in table.items() if key != "from"}
+    if housing is not None:
+        housing_table["position"] = housing.y
     try:
-        found = housing_of(own, places)
+        support = housing_of(housing_table, places)
     except SceneError as error:
         raise error.located(None, prefix=("housing",)) from None
-    axial = found if isinstance(found, float) else None
-    return {"housing_axial": axial, "housing": None if axial is not None else found}
+    axial = support if isinstance(support, float) else None
+    return {"housing_axial": axial, "housing": None if axial is not None else support}

@@ -143,8 +143,8 @@ class Bearing(Placed):
         if words.patch is not None:
             return on_patch(words, table, places, "seat_width")
         if words.seat is not None:
-            both = "a seat has its place and width in seat; leave one of both out"
-            words.refuse(both, "position", "from_", "face", "seat_width", beside=table)
+            reason = "a seat has its place and width in seat; leave one of both out"
+            words.refuse(reason, "position", "from_", "face", "seat_width", beside=table)
             lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
             if lo is None or hi is None:
                 return {"y": None, "seat_width": None}
@@ -198,8 +198,8 @@ class Bearing(Placed):
 
     @model_validator(mode="after")
     def _supports(self) -> Bearing:
-        if found := [*support_problems(self), *patch_problems(self)]:
-            raise SceneError.of(found)
+        if problems := [*support_problems(self), *patch_problems(self)]:
+            raise SceneError.of(problems)
         return self
 
     @property
@@ -358,8 +358,8 @@ class Port(Placed):
 
     @model_validator(mode="after")
     def _on_a_patch(self) -> Port:
-        if found := list(patch_problems(self)):
-            raise SceneError.of(found)
+        if problems := list(patch_problems(self)):
+            raise SceneError.of(problems)
         return self
 
     @classmethod
@@ -391,6 +391,6 @@ class Port(Placed):
             for key in ("attach_to", "span"):
                 words.refuse(f"give either seat or {key}, not both", key)
             return places.span_of_seat(words.seat, "span, or attach_to with the name of a segment")
-        how = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
-        words.one_of("attach_to", "span", how)
+        hint = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
+        words.one_of("attach_to", "span", hint)
         return words.span or places.span_of(words.attach_to, "attach_to")

@@ -29,7 +29,7 @@ def statuses_of(train: Train) -> dict[str, str]:
     out["losses"] = train.losses.status
     if train.housing is not None:
         out["housing"] = train.housing.status
-        out |= {f"mount {name}": own.status for name, own in train.housing.mounted.items()}
+        out |= {f"mount {name}": mount.status for name, mount in train.housing.mounted.items()}
     for side, shaft in train.shafts.items():
         for end, (_, head) in train.heads(side).items():
             out[end] = head.status

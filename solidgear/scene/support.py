@@ -41,11 +41,11 @@ def sliding(stiffness: np.ndarray) -> np.ndarray:
     """(6, 6) stiffness of a bearing one of whose rings slides along y in its seat: couplings with y
     give with it, and nothing is left along it.
     """
-    found = np.array(stiffness)
-    if found[1, 1]:
-        found = in_series(found, np.eye(6)[:, [1]], np.zeros((1, 1)))
-    found[1] = found[:, 1] = 0.0
-    return found
+    matrix = np.array(stiffness)
+    if matrix[1, 1]:
+        matrix = in_series(matrix, np.eye(6)[:, [1]], np.zeros((1, 1)))
+    matrix[1] = matrix[:, 1] = 0.0
+    return matrix
 
 
 def support_problems(bearing: Bearing) -> Iterator[SceneError]:
@@ -58,11 +58,11 @@ def support_problems(bearing: Bearing) -> Iterator[SceneError]:
             f"a {bearing.hold} bearing holds y as well: leave support out", path=("support",)
         )
         return
-    what = "" if data is None else data.kind.replace("_", " ")
+    kind = "" if data is None else data.kind.replace("_", " ")
     if bearing.support == "locating":
         if data is not None and data.floats:
             yield SceneError(
-                f"a {what} bearing carries nothing along y, ribs being left out: leave support out, "
+                f"a {kind} bearing carries nothing along y, ribs being left out: leave support out, "
                 'or write "floating"',
                 path=("support",),
             )
@@ -74,15 +74,15 @@ def support_problems(bearing: Bearing) -> Iterator[SceneError]:
         return
     if data is not None and data.one_sided:
         yield SceneError(
-            f"a {data.arrangement} {what} bearing that slides is pressed by nothing: two rows float "
+            f"a {data.arrangement} {kind} bearing that slides is pressed by nothing: two rows float "
             'together as one bearing with arrangement = "O" or "X" and row_distance',
             path=("support",),
         )
     if bearing.axial_series:
         yield SceneError("a floating bearing presses no spring along y", path=("axial_series",))
     for key in ("load", "displacement"):
-        given = None if data is None else getattr(data, key)
-        if given is not None and given.y:
+        state = None if data is None else getattr(data, key)
+        if state is not None and state.y:
             yield SceneError(
                 "a floating bearing carries nothing along y", path=("catalogue", key, "y")
             )

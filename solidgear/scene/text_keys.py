@@ -51,12 +51,12 @@ def _is_text(names: tuple[str, ...]) -> bool:
 def _tables(field: FieldInfo) -> Iterator[type[Model]]:
     """Models that a field holds."""
     yield from (mark.kind for mark in field.metadata if isinstance(mark, Holds))
-    waiting = [field.annotation]
-    while waiting:
-        kind: Any = waiting.pop()
+    annotations = [field.annotation]
+    while annotations:
+        kind: Any = annotations.pop()
         if isinstance(kind, type) and issubclass(kind, Model):
             yield kind
-        waiting += get_args(kind) if get_origin(kind) is not Literal else ()
+        annotations += get_args(kind) if get_origin(kind) is not Literal else ()
 
 
 def _of_words(kind: Any) -> bool:

@@ -24,12 +24,12 @@ MOST_DOTS = 100
 STANDARD_INPUT = "-"
 
 
-def parse(where: str) -> dict[str, Any]:
+def parse(file_path: str) -> dict[str, Any]:
     """Tables of a TOML file, or a refusal: no such file, no plain file, too large, no UTF-8 text or
     no TOML.
     """
     try:
-        text = _text(where)
+        text = _text(file_path)
         return tomllib.loads(text)
     except FileNotFoundError:
         reason = "there is no such file"
@@ -48,7 +48,7 @@ def parse(where: str) -> dict[str, Any]:
             if long
             else f"cannot be read: {getattr(error, 'strerror', None) or error}"
         )
-    raise SceneError(reason, where=place_of(where))
+    raise SceneError(reason, where=place_of(file_path))
 
 
 def describes_train(raw: Mapping[str, Any]) -> bool:
@@ -61,14 +61,14 @@ def is_train(path: str | os.PathLike) -> bool:
     return describes_train(parse(os.fspath(path)))
 
 
-def name_of(where: str) -> str:
+def name_of(file_path: str) -> str:
     """Name of the scene in a file: that of the file."""
-    return "scene" if where == STANDARD_INPUT else Path(where).stem
+    return "scene" if file_path == STANDARD_INPUT else Path(file_path).stem
 
 
-def place_of(where: str) -> str:
+def place_of(file_path: str) -> str:
     """A path as errors name it."""
-    return "standard input" if where == STANDARD_INPUT else where
+    return "standard input" if file_path == STANDARD_INPUT else file_path
 
 
 @lru_cache(maxsize=1)
@@ -77,10 +77,10 @@ def _standard_input(stream: TextIO) -> bytes:
     return stream.buffer.read(LARGEST + 1)
 
 
-def _bytes(where: str) -> bytes:
-    if where == STANDARD_INPUT:
+def _bytes(file_path: str) -> bytes:
+    if file_path == STANDARD_INPUT:
         return _standard_input(sys.stdin)
-    kind = Path(where).stat().st_mode
+    kind = Path(file_path).stat().st_mode
     if stat.S_ISDIR(kind):
         raise SceneError("this is a folder; give the TOML file in it")
     if not stat.S_ISREG(kind):
@@ -88,12 +88,12 @@ def _bytes(where: str) -> bytes:
         raise SceneError(
             "this is a pipe or a device, not a file; write the scene into a file and give that"
         )
-    with Path(where).open("rb") as file:
+    with Path(file_path).open("rb") as file:
         return file.read(LARGEST + 1)
 
 
-def _text(where: str) -> str:
-    data = _bytes(where)
+def _text(file_path: str) -> str:
+    data = _bytes(file_path)
     if len(data) > LARGEST:
         raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
@@ -161,9 +161,9 @@ _PARSER = {
 def _what_is_wrong(text: str, message: str) -> str:
     """The parser's message in plain words, with the line it stopped in."""
     words, _, place = message.partition(" (at ")
-    found = re.match(r"line (\d+)", place)
+    position = re.match(r"line (\d+)", place)
     lines = text.split("\n")
-    number = int(found[1]) if found else len(lines)
+    number = int(position[1]) if position else len(lines)
     line = lines[min(number, len(lines)) - 1].strip()
     quoted = f", {printable(line[:70])}" if line else ""
     return f"not valid TOML in line {number}{quoted}: {_plain_words(words, line)}"
@@ -199,10 +199,10 @@ def _plain_words(words: str, line: str) -> str:
 def of_tables(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
     """Problems of the one entry of a list told as those of a table, where a file has a table."""
     return SceneError.of(
-        one.located(None, path=(one.path[0], *one.path[2:]))
-        if one.path[1:2] == (0,) and isinstance(raw.get(one.path[0]), Mapping)
-        else one
-        for one in error.problems
+        problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        if problem.path[1:2] == (0,) and isinstance(raw.get(problem.path[0]), Mapping)
+        else problem
+        for problem in error.problems
     )
 
 
@@ -216,15 +216,15 @@ class FileOrder:
     def of(self, path: tuple) -> list[int]:
         """Places of the keys of a path in their tables, the last one for a key that is missing."""
         out: list[int] = []
-        here = self.raw
+        table = self.raw
         for key in path:
-            if id(here) not in self.places:
-                self.places[id(here)] = {key: k for k, key in enumerate(_keys(here))}
-            places = self.places[id(here)]
+            if id(table) not in self.places:
+                self.places[id(table)] = {key: k for k, key in enumerate(_keys(table))}
+            places = self.places[id(table)]
             if key not in places:
                 return [*out, len(places)]
             out.append(places[key])
-            here = here[key]
+            table = table[key]
         return out
 
 

@@ -205,18 +205,18 @@ def _distance(pair: Pair, fit: ToothFit) -> Iterator[SceneError]:
     """Problems of the centre distance."""
     if pair.mesh.centre_distance is None:
         return
-    path, given = ("mesh", "centre_distance"), f"{fit.teeth[0]} and {fit.teeth[1]} teeth of "
-    given += f"{_mm(fit.module)} module with profile shifts that sum to {sum(fit.shift):.4g}"
+    path, teeth_label = ("mesh", "centre_distance"), f"{fit.teeth[0]} and {fit.teeth[1]} teeth of "
+    teeth_label += f"{_mm(fit.module)} module with profile shifts that sum to {sum(fit.shift):.4g}"
     if fit.backlash < -THINNED * fit.module:
         yield SceneError(
-            f"is too short: {given} overlap there by {_um(-fit.backlash)} along the line of "
+            f"is too short: {teeth_label} overlap there by {_um(-fit.backlash)} along the line of "
             f"action; they have no backlash at {_mm(fit.tight)}; correct the distance, the teeth, "
             "the module, the helix angle or the profile shifts",
             path=path,
         )
     elif fit.contact_ratio <= 0:
         yield SceneError(
-            f"is too long: {given} do not reach each other, for their tips lie at "
+            f"is too long: {teeth_label} do not reach each other, for their tips lie at "
             f"{_mm(fit.tips[0])} and {_mm(fit.tips[1])}; correct the distance, the teeth, the "
             "module, the helix angle or the profile shifts",
             path=path,
@@ -225,10 +225,10 @@ def _distance(pair: Pair, fit: ToothFit) -> Iterator[SceneError]:
 
 def fit_cautions(fit: ToothFit, sides: tuple[str, str]) -> Iterator[str]:
     """Sentences on two wheels whose tips reach too far or not far enough, by what carries them."""
-    for clearance, side, other in zip(fit.clearances, sides, sides[::-1]):
+    for clearance, side, mate in zip(fit.clearances, sides, sides[::-1]):
         if clearance < 0:
             yield (
-                f"tips of the {side} reach {_um(-clearance)} into the roots of the {other}, "
+                f"tips of the {side} reach {_um(-clearance)} into the roots of the {mate}, "
                 "with teeth of ISO 53: profile shifts and centre distance ask for shorter tips"
             )
     if fit.contact_ratio + fit.overlap_ratio < 1:
@@ -253,11 +253,11 @@ def wheel_cautions(fit: ToothFit, k: int, side: str) -> Iterator[str]:
         )
 
 
-def backlash_cautions(fit: ToothFit, given: float | None) -> Iterator[str]:
+def backlash_cautions(fit: ToothFit, file_backlash: float | None) -> Iterator[str]:
     """Sentences on a backlash that is large, or is not that which a file gives, m."""
     gap, loose = fit.backlash, LOOSE * fit.module
-    where = f"teeth without allowances leave {_um(gap)} along the line of action at"
-    where += f" {_mm(abs(fit.centre_distance))}"
+    place = f"teeth without allowances leave {_um(gap)} along the line of action at"
+    place += f" {_mm(abs(fit.centre_distance))}"
     if gap < -ROUNDED * fit.module:
         yield (
             f"teeth without allowances overlap by {_um(-gap)} along the line of action at "
@@ -266,19 +266,19 @@ def backlash_cautions(fit: ToothFit, given: float | None) -> Iterator[str]:
         )
     if gap > loose:
         yield (
-            f"the backlash is large: {where}, which is {gap / fit.module:.2g} modules; check centre "
+            f"the backlash is large: {place}, which is {gap / fit.module:.2g} modules; check centre "
             "distance, profile shifts, module and teeth"
         )
-    if given is None:
+    if file_backlash is None:
         return
-    if given < gap - ROUNDED * fit.module:
+    if file_backlash < gap - ROUNDED * fit.module:
         yield (
-            f"backlash = {_um(given)} is less than the numbers of the teeth leave: {where}, and "
+            f"backlash = {_um(file_backlash)} is less than the numbers of the teeth leave: {place}, and "
             "allowances only add to it; correct one of them"
         )
-    elif given > max(gap, 0.0) + loose:
+    elif file_backlash > max(gap, 0.0) + loose:
         yield (
-            f"backlash = {_um(given)} is far more than the numbers of the teeth leave: {where}; "
+            f"backlash = {_um(file_backlash)} is far more than the numbers of the teeth leave: {place}; "
             "teeth would have to be thinner by the rest; correct one of them"
         )
 

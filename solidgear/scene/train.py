@@ -104,7 +104,7 @@ class Train(Model):
         if problems := list(layout_problems(self)):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
-        problems = [one for pair in self.pairs for one in pair.told(pair_problems(pair))]
+        problems = [problem for pair in self.pairs for problem in pair.told(pair_problems(pair))]
         problems += [*spring_problems(self), *share_problems(self), *housing_problems(self)]
         problems += [] if problems else running_problems(self)
         if problems:
@@ -143,8 +143,8 @@ class Train(Model):
     @property
     def called(self) -> str:
         """Title, or name, and the operating point at which it is looked at."""
-        where = f" at {self.point.label}" if self.point is not None else ""
-        return (self.title or self.name) + where
+        place = f" at {self.point.label}" if self.point is not None else ""
+        return (self.title or self.name) + place
 
     @property
     def every(self) -> str:
@@ -238,8 +238,8 @@ class Train(Model):
     def short(self) -> bool:
         """True where a file may call it by [pinion], [gear] and [mesh] alone."""
         turned = {name: rotor.shaft for name, rotor in self.rotors.items()}
-        named = turned.items() <= SHORT.items() and tuple(self.shafts) == SIDES
-        return named and len(self.meshes) == 1
+        usual = turned.items() <= SHORT.items() and tuple(self.shafts) == SIDES
+        return usual and len(self.meshes) == 1
 
     def gear_path(self, side: str, port: str) -> tuple:
         """Keys of a file under which a gear stands."""
@@ -269,8 +269,8 @@ class Train(Model):
         for pair in (*self.drivers, *self.teeth):
             if word in (None, pair.name, pair.label.strip()):
                 return pair
-        known = listed(pair.label.strip() or pair.name for pair in self.drivers)
-        raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {known}")
+        names = listed(pair.label.strip() or pair.name for pair in self.drivers)
+        raise SolidgearError(f"{self.name} has no mesh {word!r}; it has {names}")
 
     @cached_property
     def flows(self) -> dict[str, float | None]:
@@ -333,8 +333,8 @@ class Train(Model):
     def named_shaft(self, side: str) -> Shaft:
         """A shaft by its name."""
         if side not in self.shafts:
-            known = listed(self.shafts)
-            raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {known}")
+            names = listed(self.shafts)
+            raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {names}")
         return self.shafts[side]
 
     def member(self, side: str) -> Member:

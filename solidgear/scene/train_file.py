@@ -46,8 +46,8 @@ def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train
     from its file, and is told whether the shaft stands alone: bearings of a shaft whose train has
     an [operation] settle with the train.
     """
-    where = os.fspath(path)
-    return train_of(parse(where), where, shaft)
+    file_path = os.fspath(path)
+    return train_of(parse(file_path), file_path, shaft)
 
 
 class _Tables(Model):
@@ -65,27 +65,27 @@ class _Tables(Model):
 
     @model_validator(mode="before")
     @classmethod
-    def _by_name(cls, given: dict[str, Any]) -> dict[str, Any]:
+    def _by_name(cls, tables: dict[str, Any]) -> dict[str, Any]:
         """One engine or load, which needs no name, by what it is."""
-        there = [role for role in SHORT if given.get(role)]
-        return {**given, **{r: {r: given[r]} for r in there if not _several(given[r])}}
+        roles = [role for role in SHORT if tables.get(role)]
+        return {**tables, **{r: {r: tables[r]} for r in roles if not _several(tables[r])}}
 
     def train(
         self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
     ) -> Train:
         """The train that they describe."""
-        rest = {
+        fields = {
             key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
         }
-        every: dict[str, Rotor] = {}
-        for kind, given in (("engine", self.engine), ("load", self.load), ("rotor", rotors)):
-            for name, rotor in given.items():
-                if name in every:
+        all_rotors: dict[str, Rotor] = {}
+        for kind, kind_rotors in (("engine", self.engine), ("load", self.load), ("rotor", rotors)):
+            for name, rotor in kind_rotors.items():
+                if name in all_rotors:
                     reason = f"an engine or a load is called {name!r} as well; give it another name"
                     raise SceneError(reason, path=(kind, name))
-                every[name] = rotor
+                all_rotors[name] = rotor
         more |= {"engines": tuple(self.engine), "loads": tuple(self.load)}
-        return Train(shafts=shafts, meshes=meshes, rotors=every, **more, **rest)
+        return Train(shafts=shafts, meshes=meshes, rotors=all_rotors, **more, **fields)
 
 
 class ShortFile(_Tables):
@@ -97,7 +97,7 @@ class ShortFile(_Tables):
 
     def whole(self) -> Train:
         """The train."""
-        own = {
+        rotors = {
             kind: {
                 name: rotor if rotor.shaft else rotor.with_changes(shaft=side)
                 for name, rotor in getattr(self, kind).items()
@@ -106,7 +106,7 @@ class ShortFile(_Tables):
         }
         shafts = {"pinion": self.pinion.shaft, "gear": self.gear.shaft}
         mesh = self.mesh.with_changes(between=tuple(shafts))
-        return self.with_changes(**own).train(shafts, (mesh,), {})
+        return self.with_changes(**rotors).train(shafts, (mesh,), {})
 
 
 class LongFile(_Tables):
@@ -122,9 +122,9 @@ class LongFile(_Tables):
         return self.train(self.shaft, self.mesh, self.rotor, planetary=self.planetary)
 
 
-def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written) -> Train:
+def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_written) -> Train:
     """Resolve the tables of a train file; what it names lies relative to `where`, its path."""
-    folder = Path(where).parent
+    folder = Path(file_path).parent
     try:
         if "segment" in raw:
             raise SceneError(
@@ -133,7 +133,7 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
                 "geometry/axle_overhung.toml",
                 path=("segment",),
             )
-        data: dict[str, Any] = {"name": name_of(where), **raw}
+        data: dict[str, Any] = {"name": name_of(file_path), **raw}
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
         problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
@@ -149,18 +149,18 @@ def train_of(raw: Mapping[str, Any], where: str, shaft: ReadShaft = _as_written)
                 problems.read(partial(_whole_rotor, raw, role, name))
         if kind is LongFile:
             problems.tell()
-        told = {one.path for one in problems}
+        known_paths = {problem.path for problem in problems}
         try:
             train = kind(**data).whole()
         except SceneError as error:
-            named = as_written(error, raw).problems
-            problems += [one for one in named if one.path not in told]
+            problems_of_file = as_written(error, raw).problems
+            problems += [problem for problem in problems_of_file if problem.path not in known_paths]
         problems.tell()
         return train
     except SceneError as error:
         if error.where:
             raise
-        raise as_written(error, raw).located(raw, where=where) from None
+        raise as_written(error, raw).located(raw, where=file_path) from None
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
@@ -168,11 +168,13 @@ def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
     load as its own.
     """
     alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
-    told = (
-        one.located(None, path=(one.path[0], *one.path[2:])) if one.path[:2] in alone else one
-        for one in error.problems
+    problems = (
+        problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        if problem.path[:2] in alone
+        else problem
+        for problem in error.problems
     )
-    return of_tables(SceneError.of(told), raw)
+    return of_tables(SceneError.of(problems), raw)
 
 
 def _several(table: Any) -> bool:
@@ -195,28 +197,28 @@ def _shafts(
     out = {}
     for name, table in tables.items():
         path = ("shaft", name)
-        whole = _read(problems, partial(read_scene, table, path))
-        if whole is None:
+        fields = _read(problems, partial(read_scene, table, path))
+        if fields is None:
             continue
-        one = "gears" not in table and (not carriers or "teeth" in table)
-        made = problems.read(
-            lambda: Member(**whole).shaft if one else Shaft(**whole),  # noqa: B023  read at once
+        single = "gears" not in table and (not carriers or "teeth" in table)
+        shaft = problems.read(
+            lambda: Member(**fields).shaft if single else Shaft(**fields),  # noqa: B023  read at once
             path,
         )
-        if made is not None:
-            out[name] = made
+        if shaft is not None:
+            out[name] = shaft
     return out
 
 
 def _read_meshes(data: dict[str, Any], many: bool, folder: Path) -> None:
     """Put the contact cells that meshes name into them; one mesh is a list of one."""
-    found = data.get("mesh")
-    tables = found if many and isinstance(found, list) else [found]
+    meshes = data.get("mesh")
+    tables = meshes if many and isinstance(meshes, list) else [meshes]
     read = [
-        _with_cells(one, folder, ("mesh", k) if many else ("mesh",))
-        if isinstance(one, Mapping) and "contact_cells" in one
-        else one
-        for k, one in enumerate(tables)
+        _with_cells(table, folder, ("mesh", k) if many else ("mesh",))
+        if isinstance(table, Mapping) and "contact_cells" in table
+        else table
+        for k, table in enumerate(tables)
     ]
     if "mesh" in data:
         data["mesh"] = read if many else read[0]
@@ -261,12 +263,12 @@ def _whole_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
 
 
 def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
-    rest = {key: value for key, value in table.items() if key != "contact_cells"}
+    fields = {key: value for key, value in table.items() if key != "contact_cells"}
     name = table["contact_cells"]
     if not isinstance(name, str):
         reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
         raise SceneError(reason, path=(*path, "contact_cells"))
-    return {**rest, "contact_cells": read_cells(folder / name)}
+    return {**fields, "contact_cells": read_cells(folder / name)}
 
 
 def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -283,26 +285,28 @@ def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
     """Contact cells of a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
     `Mesh` takes them: ``point``, ``normal`` (of unit length) and ``force``.
     """
-    where = os.fspath(path)
+    file_path = os.fspath(path)
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file, skipinitialspace=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         said = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
-        raise SceneError(f"the contact cells cannot be read: {said}", where=where) from None
+        raise SceneError(f"the contact cells cannot be read: {said}", where=file_path) from None
     if not rows or len(rows) > MOST_CELLS:
-        raise SceneError(f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=where)
+        raise SceneError(
+            f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=file_path
+        )
     missing = [c for c in CELL_COLUMNS if c not in rows[0]]
     if missing:
         reason = f"no column {missing[0]}; the first line must name {', '.join(CELL_COLUMNS)}"
-        raise SceneError(reason, where=where)
-    cells = tuple(_cell(row, k, where) for k, row in enumerate(rows, start=2))
+        raise SceneError(reason, where=file_path)
+    cells = tuple(_cell(row, k, file_path) for k, row in enumerate(rows, start=2))
     if not sum(cell["force"] for cell in cells) > 0:
-        raise SceneError("no cell carries a force; the sum must be above zero", where=where)
+        raise SceneError("no cell carries a force; the sum must be above zero", where=file_path)
     return cells
 
 
-def _cell(row: Mapping[str, Any], line: int, where: str) -> dict[str, Any]:
+def _cell(row: Mapping[str, Any], line: int, file_path: str) -> dict[str, Any]:
     value = []
     for column in CELL_COLUMNS:
         try:
@@ -311,15 +315,15 @@ def _cell(row: Mapping[str, Any], line: int, where: str) -> dict[str, Any]:
             number = float("nan")
         if not isfinite(number):
             reason = f"line {line}, {column} = {show(row[column], 30)}: must be a number in SI"
-            raise SceneError(reason, where=where)
+            raise SceneError(reason, where=file_path)
         value.append(number)
     normal, force = value[3:6], value[6]
     length = sqrt(sum(v * v for v in normal))
     if abs(length - 1) > TYPED:
         reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
-        raise SceneError(reason, where=where)
+        raise SceneError(reason, where=file_path)
     if force < 0:
         reason = f"line {line}, force = {force:g}: teeth push and do not pull; must not be negative"
-        raise SceneError(reason, where=where)
+        raise SceneError(reason, where=file_path)
     unit = tuple(v / length for v in normal)
     return {"point": tuple(value[:3]), "normal": unit, "force": force}

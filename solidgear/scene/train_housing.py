@@ -31,13 +31,13 @@ LOSS = 0.01
 def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
     """Three moments of inertia about the axes of the train, or the rows of a tensor, kg m^2."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
-    how = "three moments of inertia about x, y and z, or three rows of three"
+    form = "three moments of inertia about x, y and z, or three rows of three"
     if not isinstance(rows, (list, tuple)) or len(rows) != 3:
-        raise SceneError(f"must be {how}")
+        raise SceneError(f"must be {form}")
     if not any(isinstance(row, (list, tuple)) for row in rows):
-        rows = [[one if j == k else 0.0 for j in range(3)] for k, one in enumerate(rows)]
+        rows = [[moment if j == k else 0.0 for j in range(3)] for k, moment in enumerate(rows)]
     if any(not isinstance(row, (list, tuple)) or len(row) != 3 for row in rows):
-        raise SceneError(f"must be {how}")
+        raise SceneError(f"must be {form}")
     tensor = np.array([[quantity(entry, "inertia") for entry in row] for row in rows])
     if np.abs(tensor - tensor.T).max() > 1e-9 * np.abs(tensor).max():
         raise SceneError("is not symmetric; products of inertia stand on both sides alike")
@@ -67,11 +67,11 @@ class Mount(Model):
     @model_validator(mode="after")
     def _holds(self):
         if (self.at is None) == (self.position is None):
-            how = "say where it stands: position, or at = a point of the housing, one of the two"
-            raise SceneError(how, path=("position",))
+            reason = "say where it stands: position, or at = a point of the housing, one of the two"
+            raise SceneError(reason, path=("position",))
         if not np.any(self.stiffness):
-            how = "holds nothing; write entries such as {kxx = ..., kyy = ..., kzz = ...}"
-            raise SceneError(how, path=("stiffness",))
+            reason = "holds nothing; write entries such as {kxx = ..., kyy = ..., kzz = ...}"
+            raise SceneError(reason, path=("stiffness",))
         return self
 
 
@@ -100,17 +100,17 @@ class TrainHousing(Model):
     status: Status = "assumed"  #: of mass and inertia
 
     def __init__(self, /, **data: Any):
-        if isinstance(found := data.get("matrices"), HousingMatrices):
-            whole = found.rigid_mass
-            own = {"mass": float(whole[0, 0]), "inertia": whole[3:, 3:].tolist()}
-            data |= own | {"centre": tuple(found.centre.tolist()), "points": {}}
+        if isinstance(matrices := data.get("matrices"), HousingMatrices):
+            rigid_mass = matrices.rigid_mass
+            mass_fields = {"mass": float(rigid_mass[0, 0]), "inertia": rigid_mass[3:, 3:].tolist()}
+            data |= mass_fields | {"centre": tuple(matrices.centre.tolist()), "points": {}}
         super().__init__(**data)
 
     @model_validator(mode="after")
     def _named_once(self):
         if self.loss is not None and self.matrices is None:
             raise SceneError("is of an elastic housing; a rigid one loses nothing", path=("loss",))
-        places, taken = [*self.known], [CENTRE]
+        places, names = [*self.known], [CENTRE]
         for k, mount in enumerate(self.mounts):
             if mount.at is not None and mount.at not in places:
                 reason = f"names no point of the housing{nearest(mount.at, places)}; known here: "
@@ -118,15 +118,15 @@ class TrainHousing(Model):
             if mount.at is None and self.matrices is not None:
                 reason = f"stands at a point of the matrices: write at, one of {listed(places)}"
                 raise SceneError(reason, path=("mount", k, "position"))
-        named = [(("mount", k, "name"), name) for k, name in enumerate(self.mounted)]
-        for path, name in [*named, *((("points", name), name) for name in self.points)]:
-            if name in taken or "." in name or not name.strip():
+        mount_names = [(("mount", k, "name"), name) for k, name in enumerate(self.mounted)]
+        for path, name in [*mount_names, *((("points", name), name) for name in self.points)]:
+            if name in names or "." in name or not name.strip():
                 reason = (
                     f"{name!r} cannot name it: mounts and points have names of their own, without "
                     f"dots, and {CENTRE!r} is the centre of mass"
                 )
                 raise SceneError(reason, path=path)
-            taken.append(name)
+            names.append(name)
         return self
 
     @property
@@ -166,9 +166,9 @@ class TrainHousing(Model):
     @property
     def places(self) -> dict[str, np.ndarray]:
         """(3,) all points of a rigid one from its centre of mass, m."""
-        own = {name: one.position for name, one in self.mounted.items() if one.at is None}
-        at = {CENTRE: self.centre, **own, **self.points}
-        return {name: np.subtract(place, self.centre) for name, place in at.items()}
+        mounts = {name: mount.position for name, mount in self.mounted.items() if mount.at is None}
+        points = {CENTRE: self.centre, **mounts, **self.points}
+        return {name: np.subtract(place, self.centre) for name, place in points.items()}
 
 
 def housing_problems(train: Train) -> Iterator[SceneError]:
@@ -184,13 +184,13 @@ def housing_problems(train: Train) -> Iterator[SceneError]:
             known = [*train.shafts]
             reason = f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
             yield SceneError(reason, path=(HOUSING, "carries", k))
-    if (own := train.housing.matrices) is not None:
+    if (matrices := train.housing.matrices) is not None:
         scenes = {side: train.shafts[side].scene for side in train.housed}
         needed = {f"{side}.{b.name}": "bearing" for side in scenes for b in scenes[side].bearings}
         needed |= {s.ring_point: "ring" for s in train.stages if {*s.shafts} & {*train.housed}}
-        for name, what in needed.items():
-            if name not in (known := [*own.positions]):
-                reason = f"has no point {name!r}{nearest(name, known)}, where that {what} stands"
+        for name, kind_of_point in needed.items():
+            if name not in (known := [*matrices.positions]):
+                reason = f"has no point {name!r}{nearest(name, known)}, where that {kind_of_point} stands"
                 yield SceneError(f"{reason}; there are {listed(known)}", path=(HOUSING, "matrices"))
     for side in train.housed:
         scene = train.shafts[side].scene

@@ -60,8 +60,8 @@ class TorsionSpringTable(Model):
     @model_validator(mode="after")
     def _one_place(self):
         if (self.at is None) == (self.position is None):
-            how = "say where on the shaft the spring sits: at = a port of the shaft, or position"
-            raise SceneError(f"{how} with from and seat_width, one of the two", path=("at",))
+            reason = "say where on the shaft the spring sits: at = a port of the shaft, or position"
+            raise SceneError(f"{reason} with from and seat_width, one of the two", path=("at",))
         if self.position is not None and self.seat_width is None:
             raise SceneError("a position needs a seat_width as well", path=("seat_width",))
         return self
@@ -93,8 +93,8 @@ class ErrorTable(Model):
     @model_validator(mode="after")
     def _one_kind(self):
         if bool(self.orders) == bool(self.frequency):
-            how = "give either orders, or frequency with amplitude"
-            raise SceneError(how, path=("orders",))
+            reason = "give either orders, or frequency with amplitude"
+            raise SceneError(reason, path=("orders",))
         if len(self.frequency) != len(self.amplitude):
             counts = f"{len(self.amplitude)} amplitudes for {len(self.frequency)} frequencies"
             raise SceneError(f"there are {counts}; give as many", path=("amplitude",))
@@ -178,29 +178,31 @@ class Mesh(Model):
 
     @model_validator(mode="after")
     def _one_line(self):
-        given = {
+        presence = {
             "pressure_angle": self.pressure_angle is not None,
             "line_of_action": self.line_of_action is not None,
             "contact_cells": bool(self.contact_cells),
         }
-        ways = [key for key, there in given.items() if there]
+        ways = [key for key, present in presence.items() if present]
         if not ways:
-            how = "give pressure_angle (line of action from gear geometry), or line_of_action with"
-            raise SceneError(f"{how} point, or contact_cells", path=("pressure_angle",))
+            reason = (
+                "give pressure_angle (line of action from gear geometry), or line_of_action with"
+            )
+            raise SceneError(f"{reason} point, or contact_cells", path=("pressure_angle",))
         if self.contact_cells and self.line_of_action is not None:
-            how = "contact cells have a line of action of their own; give either"
-            raise SceneError(how, path=("line_of_action",))
+            reason = "contact cells have a line of action of their own; give either"
+            raise SceneError(reason, path=("line_of_action",))
         if (self.point is None) != (self.line_of_action is None):
             missing = "point" if self.point is None else "line_of_action"
             raise SceneError("line_of_action and point go together; give both", path=(missing,))
         if self.stiffness is None and not self._from_errors():
-            how = "this key is missing; give it, or contact_cells with loaded_error and"
-            raise SceneError(f"{how} unloaded_error, which must differ", path=("stiffness",))
+            reason = "this key is missing; give it, or contact_cells with loaded_error and"
+            raise SceneError(f"{reason} unloaded_error, which must differ", path=("stiffness",))
         return self
 
     def _from_errors(self) -> bool:
-        both = self.loaded_error is not None and self.unloaded_error is not None
-        return both and bool(self.contact_cells) and self.loaded_error != self.unloaded_error
+        given = self.loaded_error is not None and self.unloaded_error is not None
+        return given and bool(self.contact_cells) and self.loaded_error != self.unloaded_error
 
 
 class Losses(Model):

@@ -77,8 +77,8 @@ class _NoSuch(AttributeError):
 
     def __str__(self) -> str:
         model, name = self.args
-        known = {one: None for one in dir(model) if not one.startswith("_")}
-        meant = did_you_mean(near(f"{name}s", known) or near(name, known))
+        names = {one: None for one in dir(model) if not one.startswith("_")}
+        meant = did_you_mean(near(f"{name}s", names) or near(name, names))
         return f"a {type(model).__name__} has no {name!r}{meant}"
 
 
@@ -104,7 +104,7 @@ class Model(BaseModel, metaclass=_Shown):
         except ValidationError as error:
             problems += not_meant(scene_error(error, data).problems, meant)
         if problems:
-            raise SceneError.of(one.located(data) for one in problems) from None
+            raise SceneError.of(problem.located(data) for problem in problems) from None
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -122,10 +122,10 @@ class Model(BaseModel, metaclass=_Shown):
         )
 
     @classmethod
-    def _own(cls, word: str, given: Mapping[str, Any]) -> str:
+    def _own(cls, word: str, data: Mapping[str, Any]) -> str:
         """The field that a word of a file stands for, if it is not given as well."""
-        own = cls._also.get(word, word)
-        return own if own in cls.model_fields and own not in given else word
+        field = cls._also.get(word, word)
+        return field if field in cls.model_fields and field not in data else word
 
     def __dir__(self) -> list[str]:
         return sorted({*dir(type(self)), *self._words().values()})
@@ -133,7 +133,7 @@ class Model(BaseModel, metaclass=_Shown):
     @classmethod
     def _words(cls) -> dict[str, str]:
         """Words of a file by the fields that they stand for."""
-        return {own: word for word, own in cls._also.items() if own in cls.model_fields}
+        return {field: word for word, field in cls._also.items() if field in cls.model_fields}
 
     def __repr_args__(self) -> Any:
         words = self._words()
@@ -155,9 +155,9 @@ class Model(BaseModel, metaclass=_Shown):
         """A validated copy with some fields replaced, by name."""
         fields = type(self).model_fields
         changes = {self._own(key, changes): value for key, value in changes.items()}
-        given = {name: getattr(self, name) for name in fields} | changes
+        values = {name: getattr(self, name) for name in fields} | changes
         keys = {name: field.alias or name for name, field in fields.items()}
-        return type(self)(**{keys.get(name, name): value for name, value in given.items()})
+        return type(self)(**{keys.get(name, name): value for name, value in values.items()})
 
     def model_copy(
         self: _Self, *, update: Mapping[str, Any] | None = None, deep: bool = False
@@ -222,7 +222,7 @@ def unknown_keys(
 
 def not_meant(problems: Sequence[SceneError], meant: set[tuple[str, ...]]) -> list[SceneError]:
     """Problems without those of keys that are misspelt: they are not also missing."""
-    return [one for one in problems if one.path not in meant]
+    return [problem for problem in problems if problem.path not in meant]
 
 
 def _meant(key: str, known: Mapping[str, FieldInfo | None]) -> str:

@@ -64,42 +64,42 @@ def stated(
     (0.97, 1.03)
     """
     texts: dict[str, Any] = {
-        f"bearing.{one['name']}.stiffness": ASSUMED
-        for one in bearings
-        if one.get("status") == "assumed" and ("stiffness" in one or "matrix" in one)
+        f"bearing.{bearing['name']}.stiffness": ASSUMED
+        for bearing in bearings
+        if bearing.get("status") == "assumed" and ("stiffness" in bearing or "matrix" in bearing)
     }
-    given = dict(_flat(table))
-    for path in given:  # an entry of a bearing, or all of it: what is said says enough
-        bearing, whole, _ = path.partition(".stiffness")
-        texts.pop(bearing + whole, None)
+    file_texts = dict(_flat(table))
+    for path in file_texts:  # an entry of a bearing, or all of it: what is said says enough
+        head, part, _ = path.partition(".stiffness")
+        texts.pop(head + part, None)
     problems = Gathered()
-    found = [
+    ranges = [
         problems.read(partial(_read, scene, path, text), ("uncertain", path))
-        for path, text in {**texts, **given}.items()
+        for path, text in {**texts, **file_texts}.items()
     ]
     problems.tell()
-    return scene.unjudged(uncertain=tuple(found)) if found else scene
+    return scene.unjudged(uncertain=tuple(ranges)) if ranges else scene
 
 
 def scaled(scene: Scene, path: str, factor: float) -> Scene:
     """The scene with the entry of a path multiplied; factors of all loads and of preloads are
     nothing of a scene (:class:`solidgear.bearings.solved.Choice`).
     """
-    kind, _, rest = path.partition(".")
+    kind, _, name = path.partition(".")
     if kind == "material":
-        constant = getattr(scene.material, rest) * factor
-        return scene.with_changes(material=scene.material.with_changes(**{rest: constant}))
+        constant = getattr(scene.material, name) * factor
+        return scene.with_changes(material=scene.material.with_changes(**{name: constant}))
     if kind == "segment":
         return scene.with_changes(segments=tuple(_of_segments(scene, path, factor)))
     if kind == "housing":
-        own, axial = scene.housing, scene.housing_axial
+        housing, axial = scene.housing, scene.housing_axial
         return scene.with_changes(
-            housing=own and own.scaled(factor), housing_axial=axial and axial * factor
+            housing=housing and housing.scaled(factor), housing_axial=axial and axial * factor
         )
     if kind == "load":
         assert scene.load is not None
         return scene.with_changes(
-            load=scene.load.with_changes(**{rest: getattr(scene.load, rest) * factor})
+            load=scene.load.with_changes(**{name: getattr(scene.load, name) * factor})
         )
     bearing, key = _bearing(scene, path)
     return scene.with_changes(
@@ -145,9 +145,9 @@ def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any
 def _bearing(scene: Scene, path: str) -> tuple[Bearing | None, str]:
     """The bearing of a path, and what follows its name."""
     for bearing in scene.bearings:
-        own = f"bearing.{bearing.name}."
-        if path.startswith(own):
-            return bearing, path.removeprefix(own)
+        prefix = f"bearing.{bearing.name}."
+        if path.startswith(prefix):
+            return bearing, path.removeprefix(prefix)
     return None, ""
 
 
@@ -157,9 +157,10 @@ def _read(scene: Scene, path: str, text: Any) -> Uncertain:
         raise SceneError('must be a text such as "± 3 %" or "0.5 : 2"', value=show(text))
     low, high = sorted(end / value for end in ends(text, value, dimension))
     if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
-        what = "1" if dimension == FACTOR else f"{value:.6g} in SI"
+        nominal = "1" if dimension == FACTOR else f"{value:.6g} in SI"
         raise SceneError(
-            f"must be a range above zero that holds what the scene says, {what}", value=show(text)
+            f"must be a range above zero that holds what the scene says, {nominal}",
+            value=show(text),
         )
     return Uncertain(path=path, said=text, low=low, high=high)
 
@@ -173,8 +174,8 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
         dimension = "pressure" if name == "E" else "density"
     elif path.startswith("segment.") and path.endswith((".material.E", ".material.density")):
         shape, _, name = path.removeprefix("segment.").rpartition(".material.")
-        own = [s.material for s in scene.segments if _is_of(s, shape)]
-        value = getattr(own[0], name) if own else None
+        materials = [s.material for s in scene.segments if _is_of(s, shape)]
+        value = getattr(materials[0], name) if materials else None
         dimension = "pressure" if name == "E" else "density"
     elif path == "housing" and (scene.housing or scene.housing_axial):
         value = 1.0
@@ -210,12 +211,12 @@ def ends(text: str, value: float, dimension: str) -> tuple[float, float]:
         except ValueError:
             return quantity(word, dimension)
 
-    if found := PLUS_MINUS.fullmatch(text):
-        middle = number(found[1]) if found[1].strip() else value
-        part = found[2].strip()
+    if match := PLUS_MINUS.fullmatch(text):
+        middle = number(match[1]) if match[1].strip() else value
+        part = match[2].strip()
         share = part.endswith("%")
-        apart = abs(middle) * number(part[:-1]) / 100 if share else number(part)
-        return middle - apart, middle + apart
+        deviation = abs(middle) * number(part[:-1]) / 100 if share else number(part)
+        return middle - deviation, middle + deviation
     low, colon, high = text.partition(":")
     if not colon:
         raise SceneError('must be two ends such as "3e8 N/m : 6e8 N/m", or "206 GPa ± 3 %"')

@@ -191,15 +191,15 @@ def _read_text(text: str, dimension: str) -> float:
                 f'or add a unit as in "{example}"'
             )
         return number
-    known = si_factor(unit)
-    if known is None:
+    factors = si_factor(unit)
+    if factors is None:
         raise wrong(f'unknown unit {show(unit)}; write for example "{example}"')
-    factor, radians, dimensionality = known
-    own = si_factor(si) if si else None
-    wanted = own[2] if own else ()
+    factor, radians, dimensionality = factors
+    si_factors = si_factor(si) if si else None
+    wanted = si_factors[2] if si_factors else ()
     if dimensionality != wanted or radians not in powers:
-        what = dimension.replace("_", " ")
-        kind = f"not a unit of {what}" if si else "a unit, but this is a plain ratio"
+        kind_name = dimension.replace("_", " ")
+        kind = f"not a unit of {kind_name}" if si else "a unit, but this is a plain ratio"
         raise wrong(f'{show(unit)} is {kind}; write for example "{example}"')
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
     # as 0.208
@@ -231,9 +231,9 @@ def _by_pint(unit: str) -> tuple[float, float, Dimension] | None:
     registry = _registry()
     try:
         parsed = registry.parse_units(unit)
-        one = registry.get_root_units(parsed)
-        factor, radians = float(one[0]), float(dict(one[1]._units).get("radian", 0))
-        mass = float(dict(one[1]._units).get("gram", 0))
+        root = registry.get_root_units(parsed)
+        factor, radians = float(root[0]), float(dict(root[1]._units).get("radian", 0))
+        mass = float(dict(root[1]._units).get("gram", 0))
         return (
             float(f"{factor * 1e-3**mass:.15g}"),
             radians,
@@ -282,12 +282,12 @@ def _loss(value: float) -> float:
     return value
 
 
-def three(dimension: str, what: str) -> BeforeValidator:
+def three(dimension: str, example: str) -> BeforeValidator:
     """Reads three quantities of one dimension."""
 
     def read(value: Any) -> tuple[float, ...]:
         if not isinstance(value, (list, tuple)) or len(value) != 3:
-            raise SceneError(f"must be three quantities, {what}")
+            raise SceneError(f"must be three quantities, {example}")
         return tuple(_one_of_three(k, entry, dimension) for k, entry in enumerate(value))
 
     return BeforeValidator(read)

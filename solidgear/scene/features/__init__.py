@@ -35,7 +35,7 @@ def feature_problems(
         reason = f"{len(features)} features are more than the {MOST_FEATURES} a shaft may have"
         yield SceneError(reason, path=("features",))
         return
-    names, alone = set(), True
+    names, each_fits = set(), True
     for i, feature in enumerate(features):
         if feature.name in names:
             yield SceneError(
@@ -43,8 +43,8 @@ def feature_problems(
             )
         names.add(feature.name)
         for problem in feature.problems(segments):
-            alone = False
+            each_fits = False
             yield problem.located(None, path=("features", i, *problem.path))
-    if alone:
+    if each_fits:
         for i, problem in meeting_problems(segments, features):
             yield problem.located(None, path=("features", i, *problem.path))

@@ -23,7 +23,7 @@ def meeting_problems(
     """Teeth and bolt circles of one segment that cannot both be there, each of which fits by
     itself: numbers of features, and problems with paths of their own fields.
     """
-    of = {s.name: s for s in segments}
+    segment_named = {s.name: s for s in segments}
     for (_, a), (j, b) in combinations(enumerate(features), 2):
         if a.segment != b.segment:
             continue
@@ -37,39 +37,39 @@ def meeting_problems(
                 ),
             )
         elif isinstance(a, BoltCircle) and isinstance(b, BoltCircle):
-            if _touch(a, b, of[b.segment]):
+            if _touch(a, b, segment_named[b.segment]):
                 yield (
                     j,
                     SceneError(f'the holes run into those of "{a.name}"', path=("circle",)),
                 )
         elif a.toothed != b.toothed and BoltCircle in (type(a), type(b)):
             teeth, bolts = (a, b) if a.toothed else (b, a)
-            reason = "" if teeth.smeared else _in_teeth(teeth, bolts, of[b.segment])
+            reason = "" if teeth.smeared else _in_teeth(teeth, bolts, segment_named[b.segment])
             if reason:
                 yield features.index(bolts), SceneError(reason, path=("circle",))
 
 
-def _touch(a: BoltCircle, b: BoltCircle, here: Segment) -> bool:
+def _touch(a: BoltCircle, b: BoltCircle, segment: Segment) -> bool:
     """True where holes of two circles run into each other."""
-    (lo, hi), (first, last) = a.reach(here), b.reach(here)
+    (lo, hi), (first, last) = a.reach(segment), b.reach(segment)
     if min(hi, last) <= max(lo, first):
         return False
     # angles between holes repeat themselves after the common part of both pitches
     common = 2 * math.pi / math.lcm(a.count, b.count)
-    apart = (b.angle - a.angle + common / 2) % common - common / 2
+    angle = (b.angle - a.angle + common / 2) % common - common / 2
     ra, rb = a.circle / 2, b.circle / 2
-    distance = math.sqrt(max(ra * ra + rb * rb - 2 * ra * rb * math.cos(apart), 0.0))
-    return distance < (a.diameter + b.diameter) / 2 + SMALLEST * here.outer0
+    distance = math.sqrt(max(ra * ra + rb * rb - 2 * ra * rb * math.cos(angle), 0.0))
+    return distance < (a.diameter + b.diameter) / 2 + SMALLEST * segment.outer0
 
 
-def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, here: Segment) -> str:
+def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, segment: Segment) -> str:
     """Reason why holes do not fit a segment whose teeth are resolved, or nothing."""
     if teeth.spiral_angle:
         return (
-            f'"{here.name}" has the spiral {teeth.what} "{teeth.name}", along which its mesh is '
+            f'"{segment.name}" has the spiral {teeth.what} "{teeth.name}", along which its mesh is '
             "twisted, and straight holes would be with it; give the holes a segment of their own"
         )
-    low = min(here.outer0, here.outer1)
+    low = min(segment.outer0, segment.outer1)
     root = teeth.land * low
     reach = (bolts.circle + bolts.diameter) / 2
     if reach > root - SMALLEST * low:
@@ -95,18 +95,18 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
     """
     count = count or math.gcd(*(f.count for f in features))
     if count < FEWEST or any(f.count % count for f in features):
-        each = " and ".join(f'{f.count} of {f.what} "{f.name}"' for f in features)
+        counts = " and ".join(f'{f.count} of {f.what} "{f.name}"' for f in features)
         return (
-            f"{each} have no sector of a third of a turn or less in common: "
+            f"{counts} have no sector of a third of a turn or less in common: "
             "there is no cyclic symmetry to use"
         )
     toothed = [f for f in features if f.toothed]
     for teeth in toothed[1:]:
         pitch = 2 * math.pi / teeth.count
-        apart = (middle(teeth, count) - middle(toothed[0], count) + pitch / 2) % pitch - pitch / 2
-        if abs(apart) > SAME_ANGLE:
+        offset = (middle(teeth, count) - middle(toothed[0], count) + pitch / 2) % pitch - pitch / 2
+        if abs(offset) > SAME_ANGLE:
             # in as many digits as it takes to be the same angle when written down
-            right = math.degrees((teeth.angle - apart) % pitch)
+            right = math.degrees((teeth.angle - offset) % pitch)
             return (
                 f'the gaps of {teeth.what} "{teeth.name}" do not lie behind those of the other '
                 f"teeth: no sector border runs between both; write angle = "
@@ -153,5 +153,5 @@ def mirror_angle(features: Sequence[Any], count: int) -> float | None:
 def _even(holes: BoltCircle, plane: float) -> bool:
     """True where a plane through the axis runs through a hole or between two."""
     half = math.pi / holes.count
-    apart = (plane - holes.angle + half / 2) % half - half / 2
-    return abs(apart) < SAME_ANGLE
+    offset = (plane - holes.angle + half / 2) % half - half / 2
+    return abs(offset) < SAME_ANGLE

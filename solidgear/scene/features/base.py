@@ -59,17 +59,17 @@ class OnSegment(Placed):
 
     def problems(self, segments: Sequence[Segment]) -> Iterator[SceneError]:
         """Reasons why it does not fit the shaft; paths are those of its own fields."""
-        here = next((s for s in segments if s.name == self.segment), None)
-        if here is None:
-            known = [s.name for s in segments]
+        segment = next((s for s in segments if s.name == self.segment), None)
+        if segment is None:
+            names = [s.name for s in segments]
             yield SceneError(
-                f"unknown segment{nearest(self.segment, known)}; there are {', '.join(known)}",
+                f"unknown segment{nearest(self.segment, names)}; there are {', '.join(names)}",
                 path=("segment",),
             )
             return
-        yield from self._fits(here, segments)
+        yield from self._fits(segment, segments)
 
-    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+    def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         raise NotImplementedError
 
     @property
@@ -79,8 +79,8 @@ class OnSegment(Placed):
 
     def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
         """Its ends along a shaft that it fits, m."""
-        here = next(s for s in segments if s.name == self.segment)
-        return here.y0, here.y1
+        segment = next(s for s in segments if s.name == self.segment)
+        return segment.y0, segment.y1
 
     @property
     def smeared(self) -> bool:

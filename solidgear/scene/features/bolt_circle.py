@@ -31,57 +31,58 @@ class BoltCircle(OnSegment):
     depth: PositiveLength | None = None  #: m; None for holes through the whole segment
     side: Literal["start", "end"] = "start"  #: the face of the segment that they are drilled from
 
-    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+    def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         middle, radius = self.circle / 2, self.diameter / 2
-        least = SMALLEST * here.outer0
-        outer, inner = min(here.outer0, here.outer1), max(here.inner0, here.inner1)
+        least = SMALLEST * segment.outer0
+        outer, inner = min(segment.outer0, segment.outer1), max(segment.inner0, segment.inner1)
         if radius < least:
             yield SceneError(
-                f"is under a hundredth of the diameter, {2 * here.outer0:.6g} m", path=("diameter",)
+                f"is under a hundredth of the diameter, {2 * segment.outer0:.6g} m",
+                path=("diameter",),
             )
         elif middle + radius > outer - least:
             yield SceneError(
-                f'the holes reach {middle + radius:.6g} m from the axis, out of "{here.name}" of '
+                f'the holes reach {middle + radius:.6g} m from the axis, out of "{segment.name}" of '
                 f"radius {outer:.6g} m",
                 path=("circle",),
             )
         elif middle - radius < inner + least:
-            into = "its bore" if inner else "the axis"
-            yield SceneError(f"the holes reach into {into}", path=("circle",))
+            obstacle = "its bore" if inner else "the axis"
+            yield SceneError(f"the holes reach into {obstacle}", path=("circle",))
         elif self.diameter > 2 * middle * math.sin(math.pi / self.count) - least:
             yield SceneError(
                 f"{self.count} holes of this size run into each other", path=("diameter",)
             )
-        elif self.depth is not None and self.depth > here.length + TOUCH:
+        elif self.depth is not None and self.depth > segment.length + TOUCH:
             yield SceneError(
-                f'deeper than "{here.name}" is long, {here.length:.6g} m', path=("depth",)
+                f'deeper than "{segment.name}" is long, {segment.length:.6g} m', path=("depth",)
             )
         else:
-            yield from self._open(here, segments)
+            yield from self._open(segment, segments)
 
-    def _open(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+    def _open(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         """The face that holes are drilled from is bare there."""
-        at = segments.index(here) + (-1 if self.side == "start" else 1)
-        if not 0 <= at < len(segments):
+        index = segments.index(segment) + (-1 if self.side == "start" else 1)
+        if not 0 <= index < len(segments):
             return
-        beside = segments[at]
+        neighbour = segments[index]
         outer, inner = (
-            (beside.outer1, beside.inner1)
+            (neighbour.outer1, neighbour.inner1)
             if self.side == "start"
-            else (beside.outer0, beside.inner0)
+            else (neighbour.outer0, neighbour.inner0)
         )
         middle, radius = self.circle / 2, self.diameter / 2
         if middle - radius < outer and middle + radius > inner:
             yield SceneError(
-                f'"{beside.name}", of radius {outer:.6g} m, covers the holes at the {self.side} of '
-                f'"{here.name}"; drill from the other side, or outside it',
+                f'"{neighbour.name}", of radius {outer:.6g} m, covers the holes at the {self.side} of '
+                f'"{segment.name}"; drill from the other side, or outside it',
                 path=("side",),
             )
 
-    def reach(self, here: Segment) -> tuple[float, float]:
+    def reach(self, segment: Segment) -> tuple[float, float]:
         """Ends of the holes along the shaft, m, in their own segment."""
         if self.depth is None:
-            return here.y0, here.y1
+            return segment.y0, segment.y1
         if self.side == "start":
-            return here.y0, here.y0 + self.depth
-        return here.y1 - self.depth, here.y1
+            return segment.y0, segment.y0 + self.depth
+        return segment.y1 - self.depth, segment.y1

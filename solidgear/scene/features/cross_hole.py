@@ -80,35 +80,36 @@ class CrossHole(Cut):
     def mirrored(self, across: bool) -> bool:
         return not self.inclination if across else not self.offset
 
-    def _sized(self, here: Segment) -> Iterator[SceneError]:
-        least = SMALLEST * here.outer0
-        lo, hi = self.reach(here.outer0)
-        beside, room = min(lo - here.y0, here.y1 - hi), least * math.tan(abs(self.inclination))
-        if self.diameter >= here.outer0:
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
+        least = SMALLEST * segment.outer0
+        lo, hi = self.reach(segment.outer0)
+        gap, room = min(lo - segment.y0, segment.y1 - hi), least * math.tan(abs(self.inclination))
+        if self.diameter >= segment.outer0:
             yield SceneError(
-                f"a cross hole wider than the radius, {here.outer0:.6g} m, leaves no shaft",
+                f"a cross hole wider than the radius, {segment.outer0:.6g} m, leaves no shaft",
                 path=("diameter",),
             )
         elif self.diameter < 2 * least:
             yield SceneError(
-                f"is under a hundredth of the diameter, {2 * here.outer0:.6g} m", path=("diameter",)
+                f"is under a hundredth of the diameter, {2 * segment.outer0:.6g} m",
+                path=("diameter",),
             )
-        elif self.offset and abs(self.offset) + self.diameter / 2 > here.outer0 - least:
+        elif self.offset and abs(self.offset) + self.diameter / 2 > segment.outer0 - least:
             yield SceneError(
                 f"the hole runs out of the side of the shaft: beside half its diameter the offset "
-                f"may be {here.outer0 - least - self.diameter / 2:.6g} m",
+                f"may be {segment.outer0 - least - self.diameter / 2:.6g} m",
                 path=("offset",),
             )
-        elif here.inner0 and abs(abs(self.offset) - self.diameter / 2 - here.inner0) < least:
+        elif segment.inner0 and abs(abs(self.offset) - self.diameter / 2 - segment.inner0) < least:
             yield SceneError(
-                f"the wall of the hole grazes the bore, of radius {here.inner0:.6g} m: let it cross "
+                f"the wall of the hole grazes the bore, of radius {segment.inner0:.6g} m: let it cross "
                 "the bore, or pass beside it",
                 path=("offset",),
             )
-        elif beside < room:
+        elif gap < room:
             yield SceneError(
-                f"the rim of the oblique hole lies {max(beside, 0.0):.3g} m from an end of "
-                f'"{here.name}", where a shoulder may stand: leave {room:.3g} m or more',
+                f"the rim of the oblique hole lies {max(gap, 0.0):.3g} m from an end of "
+                f'"{segment.name}", where a shoulder may stand: leave {room:.3g} m or more',
                 path=("y",),
             )
 
@@ -131,10 +132,10 @@ class CrossHole(Cut):
             wall = math.sqrt(outer**2 - x2) - math.sqrt(max(inner**2 - x2, 0.0))
             return 4 * math.sqrt(half**2 - side**2) * wall
 
-        own = (side - self.offset for side in (-inner, inner))
-        kinks = [side for side in own if abs(side) < half] or None
-        whole = quad(section, -half, half, points=kinks, epsabs=0, epsrel=1e-10)[0]
-        return whole / math.cos(self.inclination)
+        bore_sides = (side - self.offset for side in (-inner, inner))
+        kinks = [side for side in bore_sides if abs(side) < half] or None
+        area = quad(section, -half, half, points=kinks, epsabs=0, epsrel=1e-10)[0]
+        return area / math.cos(self.inclination)
 
     def edges(self, radius: float) -> tuple[float, float]:
         # a circle of fewer than eight edges is no hole: it loses a fifteenth of its volume; mouths

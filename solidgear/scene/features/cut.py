@@ -48,29 +48,30 @@ class Cut(OnSegment):
         strange = words.from_ is None and bool(places.at)  # which is told of the segment
         return {"y": words.position or 0.0 if y is None and strange else y}
 
-    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        if here.outer0 != here.outer1:
+    def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        if segment.outer0 != segment.outer1:
             yield SceneError(
-                f'"{here.name}" is a cone; a {self.what} is cut into a cylinder', path=("segment",)
-            )
-            return
-        if here.inner0 != here.inner1:
-            yield SceneError(
-                f'the bore of "{here.name}" is a cone; a {self.what} is cut into an even wall',
+                f'"{segment.name}" is a cone; a {self.what} is cut into a cylinder',
                 path=("segment",),
             )
             return
-        lo, hi = self.reach(here.outer0)
-        if lo < here.y0 - TOUCH or hi > here.y1 + TOUCH:
+        if segment.inner0 != segment.inner1:
+            yield SceneError(
+                f'the bore of "{segment.name}" is a cone; a {self.what} is cut into an even wall',
+                path=("segment",),
+            )
+            return
+        lo, hi = self.reach(segment.outer0)
+        if lo < segment.y0 - TOUCH or hi > segment.y1 + TOUCH:
             yield SceneError(
                 f"the {self.what} reaches from {lo:.6g} to {hi:.6g} m, outside "
-                f'"{here.name}" ({here.y0:.6g} to {here.y1:.6g} m)',
+                f'"{segment.name}" ({segment.y0:.6g} to {segment.y1:.6g} m)',
                 path=("length" if hasattr(self, "length") else "y",),
             )
             return
-        yield from self._sized(here)
+        yield from self._sized(segment)
 
-    def _sized(self, here: Segment) -> Iterator[SceneError]:
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
         raise NotImplementedError
 
     def reach(self, radius: float) -> tuple[float, float]:
@@ -78,8 +79,8 @@ class Cut(OnSegment):
         raise NotImplementedError
 
     def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
-        here = next(s for s in segments if s.name == self.segment)
-        return self.reach(here.outer0)
+        segment = next(s for s in segments if s.name == self.segment)
+        return self.reach(segment.outer0)
 
     def mirrored(self, across: bool) -> bool:
         """True where it is symmetric about the plane of the axis that it looks along or, `across`,
@@ -157,8 +158,8 @@ class Long(Cut):
 
     def distance(self, radius: float, frame: Frame) -> str:
         below = f"Max(0,{frame.num(self.floor(radius))}-{frame.up})"
-        beside = f"Max(0,{frame.across}-{frame.num(self.half_width(radius))})"
-        return f"Sqrt({below}^2+{beside}^2+{frame.outside(*self.reach(radius))}^2)"
+        side = f"Max(0,{frame.across}-{frame.num(self.half_width(radius))})"
+        return f"Sqrt({below}^2+{side}^2+{frame.outside(*self.reach(radius))}^2)"
 
     def from_edges(self, radius: float, frame: Frame) -> tuple[str, float]:
         away, floor = self.beside_edges(radius, frame), self.floor(radius)
@@ -169,18 +170,18 @@ class Long(Cut):
         """Formula of the distance from its re-entrant edges as seen from above, m."""
         raise NotImplementedError
 
-    def _deep(self, here: Segment) -> Iterator[SceneError]:
+    def _deep(self, segment: Segment) -> Iterator[SceneError]:
         """It leaves some wall over the bore, and over the axis of a solid shaft."""
-        wall = here.outer0 - here.inner0
+        wall = segment.outer0 - segment.inner0
         if self.depth >= wall - TOUCH:
-            over = "the wall" if here.inner0 else "the radius"
+            extent = "the wall" if segment.inner0 else "the radius"
             yield SceneError(
-                f"a {self.what} as deep as this cuts through {over} of {wall:.6g} m",
+                f"a {self.what} as deep as this cuts through {extent} of {wall:.6g} m",
                 path=("depth",),
             )
-        elif self.depth < SMALLEST * here.outer0:
+        elif self.depth < SMALLEST * segment.outer0:
             yield SceneError(
-                f"a {self.what} under a hundredth of the radius, {here.outer0:.6g} m, is no feature: "
+                f"a {self.what} under a hundredth of the radius, {segment.outer0:.6g} m, is no feature: "
                 "leave it out, or look at the units",
                 path=("depth",),
             )

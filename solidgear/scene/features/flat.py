@@ -26,8 +26,8 @@ class Flat(Long):
     kind: Literal["flat"] = "flat"
     depth: PositiveLength  #: below the crown of the cylinder, m
 
-    def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from self._deep(here)
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
+        yield from self._deep(segment)
 
     def half_width(self, radius: float) -> float:
         return math.sqrt(radius**2 - self.floor(radius) ** 2)

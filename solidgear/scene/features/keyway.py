@@ -43,19 +43,19 @@ class Keyway(Long):
     depth: PositiveLength
     ends: Literal["round", "square"] = "round"
 
-    def _sized(self, here: Segment) -> Iterator[SceneError]:
-        yield from self._deep(here)
-        if self.width >= here.outer0:
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
+        yield from self._deep(segment)
+        if self.width >= segment.outer0:
             yield SceneError(
-                f"a keyway wider than the radius, {here.outer0:.6g} m, is no keyway",
+                f"a keyway wider than the radius, {segment.outer0:.6g} m, is no keyway",
                 path=("width",),
             )
-        elif self.width < SMALLEST * here.outer0:
+        elif self.width < SMALLEST * segment.outer0:
             yield SceneError(
-                f"is under a hundredth of the radius, {here.outer0:.6g} m", path=("width",)
+                f"is under a hundredth of the radius, {segment.outer0:.6g} m", path=("width",)
             )
         # at the edges of the slot the surface lies lower than at its crown
-        elif here.outer0 - math.sqrt(here.outer0**2 - self.width**2 / 4) >= self.depth:
+        elif segment.outer0 - math.sqrt(segment.outer0**2 - self.width**2 / 4) >= self.depth:
             yield SceneError(
                 "the surface at the sides of the keyway lies below its floor: it is too wide, or "
                 "not deep enough",

@@ -22,11 +22,11 @@ LEAST_LAND = 0.02
 LONGEST_CHORD = 0.15
 
 
-def _ratio(low: float, high: float, what: str) -> Any:
+def _ratio(low: float, high: float, unit: str) -> Any:
     def read(value):
         number = quantity(value, "dimensionless")
         if not low <= number <= high:
-            raise SceneError(f"must lie between {low:g} and {high:g} {what}")
+            raise SceneError(f"must lie between {low:g} and {high:g} {unit}")
         return number
 
     return BeforeValidator(read)
@@ -143,22 +143,22 @@ class _Toothed(OnSegment):
         """Tangent of the spiral angle, above zero for a right hand: the angle grows along +y."""
         return math.tan(self.spiral_angle) * (1 if self.hand == "right" else -1)
 
-    def _fits(self, here: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        if here.outer0 != here.outer1 and not self.on_cones:
+    def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
+        if segment.outer0 != segment.outer1 and not self.on_cones:
             yield SceneError(
-                f'"{here.name}" is a cone, and a {self.what} is cut into a cylinder; '
+                f'"{segment.name}" is a cone, and a {self.what} is cut into a cylinder; '
                 'use kind = "teeth"',
                 path=("segment",),
             )
             return
         for end, outer, inner in (
-            ("start", here.outer0, here.inner0),
-            ("end", here.outer1, here.inner1),
+            ("start", segment.outer0, segment.inner0),
+            ("end", segment.outer1, segment.inner1),
         ):
             if inner >= self.root * outer * math.cos(math.pi / self.count) - SMALLEST * outer:
                 yield SceneError(
                     f"the roots of the teeth lie {self.root * outer:.6g} m from the axis at the "
-                    f'{end} of "{here.name}", in its bore of radius {inner:.6g} m',
+                    f'{end} of "{segment.name}", in its bore of radius {inner:.6g} m',
                     path=("dedendum",),
                 )
                 return
