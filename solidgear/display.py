@@ -1,7 +1,7 @@
-"""Display of results: in a line or a few, as a table of a notebook, as a picture.
+"""Display of results: in a few lines, as a table of a notebook, as a picture.
 
-What is told of each is written in :mod:`solidgear.report.shown`, above all the rooms these objects
-live in; it is found by name when it is first needed, so that nothing below imports the report.
+Tables and pictures are made by :mod:`solidgear.report.shown`, above all rooms of results; it is
+imported by name when first needed, so that nothing below imports the report.
 """
 
 from __future__ import annotations
@@ -17,39 +17,35 @@ import numpy as np
 if TYPE_CHECKING:
     from solidgear.report.table import Table
 
-TELLING = "solidgear.report.shown"
+TABLES = "solidgear.report.shown"
 
 
 class Displayed:
-    """A result that shows itself; ``shown`` names its functions in :mod:`solidgear.report.shown`
-    (the table) and, with ``_figure`` behind it, the picture.
-    """
+    """Base of results with a table and a picture."""
 
+    #: function of :mod:`solidgear.report.shown` that makes the table; the one of the picture has
+    #: ``_figure`` behind that name
     shown: ClassVar[str] = ""
 
     def table(self, *args: Any, **kwargs: Any) -> Table:
-        """Its numbers in short."""
-        return getattr(importlib.import_module(TELLING), self.shown)(self, *args, **kwargs)
+        """Return a table of the main numbers."""
+        return getattr(importlib.import_module(TABLES), self.shown)(self, *args, **kwargs)
 
     def plot(self, *args: Any, **kwargs: Any) -> Any:
-        """A picture of it.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
+        """Return a picture, a matplotlib Figure.
 
         Raises
         ------
         TypeError
             Where there is nothing to draw.
         """
-        draw = getattr(importlib.import_module(TELLING), f"{self.shown}_figure", None)
+        draw = getattr(importlib.import_module(TABLES), f"{self.shown}_figure", None)
         if draw is None:
             raise TypeError(f"a {type(self).__name__} has no picture; table() tells its numbers")
         return draw(self, *args, **kwargs)
 
     def to_dataframe(self, *args: Any, **kwargs: Any) -> Any:
-        """Its table as a data frame of pandas, which must be installed; see :meth:`table`."""
+        """Return :meth:`table` as a data frame of pandas, which must be installed."""
         return self.table(*args, **kwargs).to_dataframe()
 
     def __repr__(self) -> str:
@@ -62,8 +58,8 @@ class Displayed:
 
 
 def plain(value: Any) -> Any:
-    """A result as data that JSON can hold: dataclasses by their fields, those that no `repr` shows
-    left out; arrays as lists; what is infinite as None.
+    """Return a result as data that JSON can hold: dataclasses by the fields that `repr` shows, arrays
+    as lists, infinite numbers as None.
 
     Examples
     --------

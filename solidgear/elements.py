@@ -1,7 +1,7 @@
 """Elements of volumes by name: their order, and how libraries and files call them.
 
-A name begins with the shape: ``tet`` or ``hex``. What is measured of an element stands where it is
-used: the meshes of charts in :mod:`solidgear.ladder.solid`, locking and the price of first order in
+A name begins with the shape: ``tet`` or ``hex``. Measured properties stand where they are used: the
+meshes of charts in :mod:`solidgear.ladder.solid`, locking and the price of first order in
 :mod:`solidgear.studies.guards.elements`.
 """
 

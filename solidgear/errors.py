@@ -1,5 +1,5 @@
-"""Errors a user can act on: one sentence for each problem, naming the place, the value as written
-and what would be right.
+"""Errors a user can act on: one sentence for each problem, with its place, the value as written and
+how to correct it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from numbers import Integral
 from typing import Any
 
 #: problems of one file that are written out; the rest are counted
-TOLD = 20
+MOST_PROBLEMS = 20
 #: letters of a line on a terminal
 LONGEST = 1000
 
@@ -55,7 +55,7 @@ class SceneError(SolidgearError, ValueError):
     ----------
     problems : tuple of SceneError
         All of them, this one first. Each alone is one sentence; the text for a whole file lists
-        `TOLD` of them at most.
+        `MOST_PROBLEMS` of them at most.
 
     Examples
     --------
@@ -100,7 +100,7 @@ class SceneError(SolidgearError, ValueError):
 
     @property
     def sentence(self) -> str:
-        """The first problem alone, in one line."""
+        """First problem alone, in one line."""
         place = " = ".join(
             part for part in (self.field or ".".join(map(str, self.path)), self.value) if part
         )
@@ -117,10 +117,10 @@ class SceneError(SolidgearError, ValueError):
             return f"{self.sentence} (and {more}: see its problems)"
         lines = [
             f"{count + 1} problems in {printable(_file_name(self.where))}",
-            *("  " + problem.sentence for problem in self.problems[:TOLD]),
+            *("  " + problem.sentence for problem in self.problems[:MOST_PROBLEMS]),
         ]
-        if count + 1 > TOLD:
-            lines.append(f"  and {count + 1 - TOLD} more")
+        if count + 1 > MOST_PROBLEMS:
+            lines.append(f"  and {count + 1 - MOST_PROBLEMS} more")
         return "\n".join(lines)
 
     def located(
@@ -166,19 +166,15 @@ class SceneError(SolidgearError, ValueError):
 
 # --------------------------------------------------------------------------- texts
 def printable(text: str) -> str:
-    """A text in one line, with escapes for what would move the cursor of a terminal or reverse the
-    direction of its writing.
+    """Return a text in one line, escaping letters that would move the cursor of a terminal or reverse
+    its direction of writing.
     """
     return _escaped(" ".join(text.split()))
 
 
 def for_terminal(error: Exception) -> str:
-    """Text of an error for a terminal.
-
-    Returns
-    -------
-    str
-        The lines of a `SceneError`; one line of `LONGEST` letters at most for any other.
+    """Return the text of an error for a terminal: all lines of a `SceneError`, of others one line of
+    at most `LONGEST` letters.
     """
     if isinstance(error, SceneError):
         return str(error)
@@ -202,12 +198,8 @@ def _escaped_letter(letter: str) -> str:
 
 
 def show(value: Any, width: int = 70) -> str:
-    """A value as one would write it in TOML, in one line, however large or deep it is.
-
-    Parameters
-    ----------
-    width : int
-        Greatest number of letters.
+    """Return a value as TOML would have it, in one line of at most `width` letters, however large or
+    deep it is.
 
     Examples
     --------
@@ -225,8 +217,8 @@ def show(value: Any, width: int = 70) -> str:
 
 
 def _pieces(value: Any, width: int) -> Iterator[str]:
-    """A value's text from left to right; a reader who stops after `width` characters has gone no
-    deeper than that.
+    """Yield the text of a value from left to right, so that a reader who stops after `width`
+    characters has gone no deeper.
     """
     if isinstance(value, Mapping):
         yield "{"
@@ -257,7 +249,7 @@ def _quoted(text: str, width: int) -> str:
 
 
 def nearest(word: Any, candidates: Iterable[str]) -> str:
-    """``'; did you mean "x"?'``, or an empty text when no known word is near.
+    """Return ``'; did you mean "x"?'`` for the nearest candidate; an empty text where none is near.
 
     Examples
     --------
@@ -270,12 +262,14 @@ def nearest(word: Any, candidates: Iterable[str]) -> str:
 
 
 def did_you_mean(word: str | None) -> str:
-    """The hint of :func:`nearest` for a known word; empty for none."""
+    """Return the hint of :func:`nearest` for a word; an empty text without one."""
     return f'; did you mean "{word}"?' if word else ""
 
 
 def near(word: Any, candidates: Iterable[str]) -> str:
-    """The known word that is nearest to `word`: in other capitals, of its own parts; or an empty text."""
+    """Return the candidate nearest to `word`: in other capitals, of the same parts, or spelt alike;
+    an empty text without one.
+    """
     text, names = str(word)[:60], list(candidates)
     same_letters = [candidate for candidate in names if candidate.casefold() == text.casefold()]
     same_parts = [
@@ -285,7 +279,7 @@ def near(word: Any, candidates: Iterable[str]) -> str:
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:
-    """Words with commas between, the first `most` of them; the others are counted.
+    """Return words with commas between, at most `most` of them, and a count of the others.
 
     Examples
     --------
@@ -297,31 +291,20 @@ def listed(words: Iterable[Any], most: int = 24) -> str:
 
 
 # --------------------------------------------------------------------------- pydantic
-def scene_error(error: Any, data: Any, *, where: str = "") -> SceneError:
-    """Turn pydantic's ValidationError into a `SceneError` of all its problems.
-
-    Parameters
-    ----------
-    error : pydantic.ValidationError
-    data : mapping
-        What was validated, for names and values as written.
-    where : str
-        File or scene name put in front.
-    """
-    return SceneError.of(
-        _plain_error(entry, data, where) for entry in error.errors(include_url=False)
-    )
+def scene_error(error: Any, data: Any) -> SceneError:
+    """Convert pydantic's ValidationError of `data` to a `SceneError` of all problems."""
+    return SceneError.of(_plain_error(entry, data) for entry in error.errors(include_url=False))
 
 
-def _plain_error(entry: Mapping, data: Any, where: str) -> SceneError:
+def _plain_error(entry: Mapping, data: Any) -> SceneError:
     path = (*entry["loc"], "kind") if entry["type"].startswith("union_tag") else entry["loc"]
     cause = entry.get("ctx", {}).get("error")
     if isinstance(cause, SceneError):
-        return cause.located(data, where=where, prefix=path)
-    return SceneError(_plain_words(entry, data)).located(data, where=where, path=path)
+        return cause.located(data, prefix=path)
+    return SceneError(_plain_words(entry, data)).located(data, path=path)
 
 
-#: what a whole file cannot do without, and how it is written
+#: keys that every file needs, and how to write them
 WRITE = {
     "material": 'write material = "steel", or a table with E, nu and density',
     "segment": 'write segment = [{ kind = "cylinder", name = ..., length = ..., diameter = ... }, ...]',
@@ -369,7 +352,7 @@ def _plain_words(entry: Mapping, data: Any) -> str:
 
 
 def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
-    """Readable name of `path` in `data`, the value found there, and whether there is one."""
+    """Return the readable name of `path` in `data`, the value there, and whether there is one."""
     field, exists = "", True
     for key in path:
         exists, data = _child(data, key) if exists else (False, None)

@@ -12,7 +12,7 @@ ENGINES = ("own", "petsc", "petsc-gamg")
 
 @dataclass(frozen=True)
 class Factoring:
-    """Requests to a solver beyond the back end that it takes.
+    """Requests to a solver beyond the choice of a back end.
 
     Examples
     --------
@@ -31,7 +31,7 @@ class Factoring:
 
     @property
     def words(self) -> str:
-        """Its unusual settings in words, or nothing."""
+        """Settings that are not the usual ones, in words; empty where all are usual."""
         unusual = []
         if self.precision == "single":
             unusual.append("single precision")

@@ -15,16 +15,7 @@ DOF_NAMES = ("x", "y", "z", "thx", "thy", "thz")
 
 
 def cross_matrix(r: np.ndarray | Sequence[float]) -> np.ndarray:
-    """Matrix of the cross product, ``[r] v = r x v``.
-
-    Parameters
-    ----------
-    r : (3,) ndarray or sequence of float
-
-    Returns
-    -------
-    (3, 3) ndarray
-        Skew-symmetric.
+    """Return the (3, 3) skew-symmetric matrix of the cross product, ``[r] v = r x v``.
 
     Examples
     --------
@@ -36,18 +27,9 @@ def cross_matrix(r: np.ndarray | Sequence[float]) -> np.ndarray:
 
 
 def shift(offset: ArrayLike) -> np.ndarray:
-    """Adjoint that carries a motion to another reference point.
+    """Return the (6, 6) adjoint T to a reference point `offset` (m) from the old one.
 
-    Parameters
-    ----------
-    offset : (3,) array_like
-        Vector from the old to the new reference point, in m.
-
-    Returns
-    -------
-    (6, 6) ndarray
-        ``T`` with ``motion_new = T motion_old``; loads go the other way,
-        ``load_old = T.T load_new``.
+    ``motion_new = T motion_old``; loads go the other way, ``load_old = T.T load_new``.
 
     Examples
     --------
@@ -63,7 +45,7 @@ def shift(offset: ArrayLike) -> np.ndarray:
 
 
 def on_axis(place: float | Sequence[float]) -> np.ndarray:
-    """A point (3,), or that of the axis at some y, m.
+    """Return a point (3,), or the point of the axis at y, m.
 
     Examples
     --------
@@ -74,19 +56,8 @@ def on_axis(place: float | Sequence[float]) -> np.ndarray:
 
 
 def rotation(axis: int, angle: float) -> np.ndarray:
-    """Rotation of motions and loads about a coordinate axis.
-
-    Parameters
-    ----------
-    axis : {0, 1, 2}
-        x, y or z.
-    angle : float
-        Right-handed, rad.
-
-    Returns
-    -------
-    (6, 6) ndarray
-        Orthogonal, the same for translations and rotations.
+    """Return the (6, 6) right-handed rotation of motions and loads about axis 0, 1 or 2 by `angle`
+    (rad).
 
     Examples
     --------

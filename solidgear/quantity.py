@@ -1,11 +1,11 @@
-"""The numbers by which models are compared, by their names.
+"""Numbers by which models are compared, by name.
 
-An entry of a compliance (``C_``) or stiffness (``K_``) is named by its row and column: ``C_zz``,
+An entry of a compliance (``C_``) or stiffness (``K_``) is named by row and column: ``C_zz``,
 ``C_thx``, ``K_z,thx``. At the main lumped point that is all; at a further one its name follows an
 ``@``: ``C_zz@pinion``. Terms between points have both: ``C_z,thx@wheel@pinion`` is the motion z of
-the wheel under a moment thx on the pinion. Of a stiffness between points the others are held, so
-that its own diagonal, ``K_zz@wheel@wheel``, is not the stiffness of one point alone. Any other text
-is the name of a mode, and means its natural frequency.
+the wheel under a moment thx on the pinion. In a stiffness between points all other motions are held,
+so that the diagonal ``K_zz@wheel@wheel`` is not the stiffness of one point alone. Any other text is
+the name of a mode, and means the natural frequency of that mode.
 """
 
 from __future__ import annotations
@@ -33,10 +33,7 @@ _PLACES |= {name: (k, k) for k, name in enumerate(_DIAGONAL)}
 
 
 class Name(str):
-    """A text that has been taken apart: equal to what it is written as, with what it says beside it.
-
-    A text with attributes, and not a record with a text: users, tables and JSON go on reading text.
-    """
+    """A text with its parts as attributes; users, tables and JSON go on reading the text."""
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:
@@ -47,10 +44,6 @@ class Name(str):
 
 class Quantity(Name):
     """A number by which models are compared.
-
-    Parameters
-    ----------
-    text : str
 
     Examples
     --------
@@ -85,7 +78,7 @@ class Quantity(Name):
 
     @property
     def is_frequency(self) -> bool:
-        """True where it is the natural frequency of the mode of its name."""
+        """True for the natural frequency of a mode."""
         return self.kind == FREQUENCY
 
     @property
@@ -101,11 +94,7 @@ class Quantity(Name):
     def of(self, matrix: Sequence[Sequence[float | None]]) -> float | None: ...
 
     def of(self, matrix: Any) -> float | None:
-        """Its value in a 6x6 of its kind; None where the matrix has none there.
-
-        Parameters
-        ----------
-        matrix : (6, 6) ndarray or list of lists
+        """Return the entry of a (6, 6) matrix of this kind; None where the matrix has none there.
 
         Examples
         --------
@@ -117,37 +106,35 @@ class Quantity(Name):
 
     @property
     def loads(self) -> tuple[tuple[float, ...], ...]:
-        """Loads that its energy is of, on the point of the motion and on that of the load."""
+        """Unit loads (6,) on the point of the motion and on that of the load, which the energy is of."""
         return tuple(tuple(float(k == component) for k in range(6)) for component in self.place)
 
     @property
     def components(self) -> set[int]:
-        """Components of motion that it speaks of."""
+        """Components of motion that the row and the column name."""
         return {k for load in self.loads for k, value in enumerate(load) if value}
 
     @property
     def unit(self) -> str:
-        """SI."""
+        """SI unit."""
         if self.is_frequency:
             return "Hz"
         return BLOCK_UNITS[self.kind][sum(k > 2 for k in self.place)]
 
     @property
     def pair(self) -> tuple[str, str] | None:
-        """The two points of a term between points; None of all else."""
+        """Both points of a term between points; None otherwise."""
         return (self.points[0], self.points[1]) if len(self.points) == 2 else None
 
     @property
     def is_coupling(self) -> bool:
-        """True where row and column differ: such an entry passes through zero where symmetry wants
-        it to.
-        """
+        """True where row and column differ; such an entry may pass through zero by symmetry."""
         return self.row != self.column
 
     @property
     def diagonals(self) -> tuple[Quantity, Quantity] | None:
-        """The two entries of the diagonal that a coupling, or a term between points, stands between
-        and is related to the geometric mean of; None of all else.
+        """Entries of the diagonal of row and column, whose geometric mean a coupling or a term between
+        points is related to; None otherwise.
 
         Examples
         --------
@@ -166,8 +153,8 @@ class Quantity(Name):
 
     @property
     def repeats(self) -> bool:
-        """True where it is another one over again: a compliance "between" a point and itself, which
-        stands there to relate others to.
+        """True for a compliance "between" a point and itself, which repeats another and is there to
+        relate couplings to.
 
         Examples
         --------
@@ -178,30 +165,19 @@ class Quantity(Name):
         return pair is not None and pair[0] == pair[1] and self.kind == COMPLIANCE
 
     def at(self, *points: str) -> Quantity:
-        """The same at another point, or between two; at the main one where none is given.
-
-        Parameters
-        ----------
-        *points : str
-        """
+        """Return the same quantity at another point, or between two; without any at the main point."""
         return Quantity(AT.join((self.symbol, *points)))
 
     def points_among(self, names: Collection[str]) -> tuple[str, ...]:
-        """Its points, where the name of a single one may have an ``@`` of its own.
-
-        Parameters
-        ----------
-        known : collection of str
-            Names of all lumped points.
-        """
+        """Return the points, given the names of all lumped points, one of which may hold an ``@``."""
         joined = AT.join(self.points)
         return (joined,) if joined in names else self.points
 
 
 C_ZZ, K_ZZ, FIRST_BENDING = Quantity("C_zz"), Quantity("K_zz"), Quantity("bending 1")
 
-#: What a scene may ask for. Compliances first: they are what a change of tie or model moves least
-#: by accident.
+#: quantities that a scene may ask for; compliances first, which a change of tie or model moves least
+#: by accident
 QUANTITIES = (
     C_ZZ,
     *map(Quantity, ("C_z,thx", "C_thx", "C_yy")),
@@ -210,8 +186,8 @@ QUANTITIES = (
     FIRST_BENDING,
     *map(Quantity, ("bending 2", "axial 1", "torsion 1")),
 )
-#: The other plane and torsion, which differ where bearings or features do: measured at the main
-#: point, given where they are asked for, and no part of what models are judged by.
+#: the other plane and torsion, which differ where bearings or features do: measured at the main
+#: point, given on request, and not used to judge models
 ACROSS = tuple(
     map(Quantity, ("C_xx", "C_x,thz", "C_thz", "C_thy", "K_xx", "K_x,thz", "K_thz", "K_thy"))
 )

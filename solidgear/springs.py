@@ -1,16 +1,15 @@
 """Stiffness matrices as roots, and springs in series, to full precision.
 
-A matrix ``K = L L'`` of springs may stand on something that gives in some motions h, as bearings
-stand in a housing: what they stretch is ``L'(d - E h)``, and the housing resists h by its own
-``H``.  At rest h is where the energy ``|L'(d - E h)|^2 + h'H h`` is least.  Motions that H leaves
-free are taken out of the springs exactly: L becomes ``L N``, N the complement of ``L'E Z`` with Z
-those motions.  What is left is the parallel sum
+A matrix ``K = L L'`` of springs may stand on a support that gives in some motions h, as bearings
+stand in a housing: the springs stretch by ``L'(d - E h)``, and the support resists h with ``H``.  At
+rest h is where the energy ``|L'(d - E h)|^2 + h'H h`` is least.  Motions that H leaves free are taken
+out of the springs exactly: L becomes ``L N``, N the complement of ``L'E Z`` with Z those motions.
+The parallel sum remains,
 
     K_s = L (I + B B')^-1 L',     B = L'E Y,     Y'H Y = I,
 
-with the inverse from the singular values of B.  Nothing is subtracted that is larger than what is
-left of it, and there is no penalty: a housing of any stiffness, none in some direction included,
-takes one path.
+with the inverse from the singular values of B.  No difference of large numbers is taken and there is
+no penalty: a support of any stiffness, also of none in some direction, takes one path.
 """
 
 from __future__ import annotations
@@ -20,30 +19,20 @@ import scipy.linalg as sla
 
 from solidgear.errors import SolidgearError
 
-#: of unit columns: below it, motions are the same
+#: singular value of unit columns below which motions are the same
 SAME = 1e-9
-#: of the geometric mean of two entries of the diagonal: a coupling that is none
+#: coupling, over the geometric mean of two entries of the diagonal, that is rounding
 ROUNDING = 1e-15
-#: of the diagonal: a direction of a matrix that is softer than this hangs on the last digits of
-#: its entries
+#: eigenvalue, over the diagonal, below which a direction hangs on the last digits of the entries
 LOST = 1e-10
 
 
 def root_of(matrix: np.ndarray) -> np.ndarray:
-    """Root of a symmetric positive semidefinite matrix: ``L L' = matrix``.
+    """Return the root L (n, rank) of a symmetric positive semidefinite matrix, ``L L' = matrix``.
 
     Cholesky's factor with the largest pivots first, of the matrix scaled to a unit diagonal: a
-    spring of 1e-3 N/m beside one of 1e24 keeps its own precision, in a column of its own.
+    spring of 1e-3 N/m beside one of 1e24 keeps full precision, in a column for itself.
     (Eigenvectors would mix equal entries of the scaled matrix, whatever they couple.)
-
-    Parameters
-    ----------
-    matrix : (n, n) ndarray
-
-    Returns
-    -------
-    (n, r) ndarray
-        r is its rank.
 
     Examples
     --------
@@ -70,24 +59,18 @@ def root_of(matrix: np.ndarray) -> np.ndarray:
 def in_series(
     stiffness: np.ndarray, moves: np.ndarray, support: np.ndarray, name: str = "the housing"
 ) -> np.ndarray:
-    """Springs that stand on something elastic.
+    """Return the (n, n) stiffness of springs on an elastic support.
 
     Parameters
     ----------
     stiffness : (n, n) ndarray
         Of the springs, symmetric positive semidefinite.
     moves : (n, k) ndarray
-        Motion of their feet for unit motions of what they stand on.
-    own : (k, k) ndarray
-        Stiffness of that against these motions, symmetric positive semidefinite; a motion without
-        any is free.
-    what : str
-        That it is called in an error.
-
-    Returns
-    -------
-    (n, n) ndarray
-        What the springs resist, their feet as they will.
+        Motion of the feet of the springs for unit motions of the support.
+    support : (k, k) ndarray
+        Stiffness against these motions, symmetric positive semidefinite; zero is free.
+    name : str
+        Of the support, for errors.
 
     Raises
     ------
@@ -101,10 +84,10 @@ def in_series(
     >>> round(float(in_series(np.array([[4.0]]), np.eye(1), np.array([[4.0]]))[0, 0]), 12)
     2.0
 
-    Two springs side by side on something free pull at each other only:
+    Two springs side by side on a free support pull at each other only:
 
-    >>> found = in_series(np.diag([1.0, 3.0]), np.ones((2, 1)), np.zeros((1, 1)))
-    >>> bool(np.allclose(found, [[0.75, -0.75], [-0.75, 0.75]]))
+    >>> pair = in_series(np.diag([1.0, 3.0]), np.ones((2, 1)), np.zeros((1, 1)))
+    >>> bool(np.allclose(pair, [[0.75, -0.75], [-0.75, 0.75]]))
     True
     """
     root = root_of(stiffness)
@@ -121,7 +104,7 @@ def in_series(
     weight[: len(s)] = 1 / np.hypot(1.0, s)
     half = root @ (u * weight)
     series = half @ half.T
-    # what does not couple stays so: planes that rounding tied together would be solved together
+    # uncoupled motions stay so: planes that rounding tied together would be solved together
     size = np.sqrt(np.diag(series))
     series[np.abs(series) <= ROUNDING * np.outer(size, size)] = 0.0
     if _softest(series, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
@@ -133,7 +116,7 @@ def in_series(
 
 
 def _null(root: np.ndarray) -> np.ndarray:
-    """Basis of the motions that ``root @ root.T`` does not resist; coordinates where they are."""
+    """Return a basis of the motions that ``root @ root.T`` does not resist, coordinates first."""
     size = np.linalg.norm(root, axis=1)
     alone = size == 0
     unit = root[~alone] / size[~alone, None]
@@ -146,7 +129,7 @@ def _null(root: np.ndarray) -> np.ndarray:
 
 
 def _spanned(columns: np.ndarray) -> np.ndarray:
-    """Orthonormal basis of all that is orthogonal to some columns."""
+    """Return an orthonormal basis of the complement of some columns."""
     size = np.linalg.norm(columns, axis=0)
     unit = columns[:, size > 0] / size[size > 0]
     if not unit.shape[1]:
@@ -156,7 +139,7 @@ def _spanned(columns: np.ndarray) -> np.ndarray:
 
 
 def _softest(matrix: np.ndarray, rank: int) -> float:
-    """The smallest eigenvalue that is meant to be there, of the matrix scaled to a unit diagonal."""
+    """Return the smallest of the `rank` largest eigenvalues, of the matrix scaled to a unit diagonal."""
     size = np.sqrt(np.diag(matrix))
     resists = size > 0
     if not rank or not resists.any():

@@ -8,7 +8,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.errors import SceneError
-from solidgear.scene.cylindrical import working
+from solidgear.scene.cylindrical import working_cylinders
 from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
@@ -22,7 +22,7 @@ def test_helical_gears_of_a_published_table():
     """Kohara, Gear Technical Reference (2015), table 4.20: normal module 3, 12 and 60 teeth, 30
     degrees; 23.1126 degrees across the axis at a centre distance of 125 mm.
     """
-    found = working((12, 60), 3e-3, radians(30), radians(20), shift=(0.09809, 0.0))
+    found = working_cylinders((12, 60), 3e-3, radians(30), radians(20), shift=(0.09809, 0.0))
     assert 1e3 * sum(found.radii) == pytest.approx(125.0, abs=5e-4)
     across = degrees(atan(tan(found.pressure_angle) / cos(found.helix_angle)))
     assert across == pytest.approx(23.1126, abs=5e-5)
@@ -32,7 +32,7 @@ def test_helical_gears_of_a_published_table():
 def test_base_circles_and_base_helix_are_those_of_the_teeth_at_any_distance(centre):
     """Involutes know their base circle alone: neither it nor its helix moves with the axes."""
     module, helix, pressure = 2.5e-3, radians(18), radians(20)
-    found = working((23, 57), module, helix, pressure, centre_distance=centre)
+    found = working_cylinders((23, 57), module, helix, pressure, centre_distance=centre)
     across = atan(tan(pressure) / cos(helix))
     base = module * 23 / 2 / cos(helix) * cos(across)
     at_work = atan(tan(found.pressure_angle) / cos(found.helix_angle))

@@ -13,9 +13,9 @@ from command import command
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.judge.bounded import mode_bars
-from solidgear.scene.paths import changed, keys_of
+from solidgear.scene.paths import keys_of, with_entry
 from solidgear.scene.toml_file import parse
-from solidgear.scene.uncertain import stated
+from solidgear.scene.uncertain import with_ranges
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, Seen, align
@@ -130,7 +130,9 @@ def test_modes_scatter_as_far_as_the_scene_says_of_its_bearings():
     modes = tuple(m for m in sg.modes(body, scene, n=4).modes if m.frequency_hz > 0)
 
     def widths(said):
-        told = stated(scene, {f"bearing.{b.name}.stiffness": said for b in scene.bearings if said})
+        told = with_ranges(
+            scene, {f"bearing.{b.name}.stiffness": said for b in scene.bearings if said}
+        )
         return Computed(told, body, modes, (0.0,) * len(modes), "", {}, 0.0).widths(0.2)
 
     usual = widths("")
@@ -298,7 +300,7 @@ def test_derivatives_are_those_of_solutions_on_either_side():
     tables, step = parse(SHAFT), 1e-3
 
     def solved(path, value):
-        scene = scene_of(changed(tables, keys_of(path, tables), value), SHAFT)
+        scene = scene_of(with_entry(tables, keys_of(path, tables), value), SHAFT)
         body = sg.build(scene, "harmonic", order=2)
         found = [m for m in sg.modes(body, scene, n=8).modes if m.frequency_hz > 0]
         return scene, body, found, np.array([m.frequency_hz for m in found])

@@ -290,7 +290,7 @@ def test_a_sleeve_shrunk_on_a_shaft(tmp_path):
     scene = two_solids(tmp_path, solids, {"2": LIGHT}, STEEL, **held)
     assert [s.y1 for s in scene.segments] == pytest.approx([0.06, 0.14, 0.2])
     assert scene.body.mixed == ("s2",)
-    assert [g.said for g in scene.body.groups] == ['"2"', "the rest (1)"]
+    assert [g.label for g in scene.body.groups] == ['"2"', "the rest (1)"]
     share = 15**2 / 25**2
     mean = share * STEEL["E"] + (1 - share) * LIGHT["E"]
     assert scene.segments[1].material.E == pytest.approx(mean, rel=1e-2)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import TOLD, SceneError, show
+from solidgear.errors import MOST_PROBLEMS, SceneError, show
 from solidgear.scene import Port, Scene, Segment
 from solidgear.scene.file import load
 
@@ -124,11 +124,12 @@ def test_a_consequence_is_not_told(tmp_path):
 
 def test_a_long_list_is_cut(tmp_path):
     error = refusal(
-        spoilt(("[ask]", "[ask]\n" + "\n".join(f"x{k} = 1" for k in range(TOLD + 5)))), tmp_path
+        spoilt(("[ask]", "[ask]\n" + "\n".join(f"x{k} = 1" for k in range(MOST_PROBLEMS + 5)))),
+        tmp_path,
     )
     lines = str(error).splitlines()
-    assert len(error.problems) == TOLD + 5 and len(lines) == TOLD + 2
-    assert lines[0].startswith(f"{TOLD + 5} problems") and lines[-1] == "  and 5 more"
+    assert len(error.problems) == MOST_PROBLEMS + 5 and len(lines) == MOST_PROBLEMS + 2
+    assert lines[0].startswith(f"{MOST_PROBLEMS + 5} problems") and lines[-1] == "  and 5 more"
 
 
 def test_an_empty_file(tmp_path):

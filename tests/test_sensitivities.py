@@ -7,7 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.scene.file import scene_of
-from solidgear.scene.paths import changed, entry, keys_of
+from solidgear.scene.paths import entry, keys_of, with_entry
 from solidgear.scene.toml_file import parse
 from tests.command import command
 
@@ -66,7 +66,7 @@ def by_differences(file, direction, model, of, step, **options):
             keys = keys_of(path, tables)
             number, _, unit = str(entry(keys, tables)).partition(" ")
             value = float(number) * (1 + share * weight)
-            other = changed(other, keys, f"{value!r} {unit}" if unit else value)
+            other = with_entry(other, keys, f"{value!r} {unit}" if unit else value)
         scene = scene_of(other, str(file))
         body = sg.build(scene, model, **options)
         static = sg.condense(body, scene, port="gear").compliance

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from solidgear.errors import SceneError
-from solidgear.scene.cylindrical import working
+from solidgear.scene.cylindrical import working_cylinders
 from solidgear.scene.tooth_fit import ToothFit, fit_cautions, fit_of, wheel_cautions
 from solidgear.scene.train_file import load_train
 from solidgear.studies.train.gear_bodies import gear_cautions
@@ -40,7 +40,7 @@ def gap_by_thickness(teeth, module, helix, shift, centre):
 def test_backlash_is_the_pitch_without_both_teeth(helix, shift, more):
     """By two ways of ISO 21771 that share no step: base pitches, and thicknesses where wheels roll."""
     teeth, module = (23, 57), 2.5e-3
-    centre = working(teeth, module, helix, PRESSURE, shift).without_backlash + more
+    centre = working_cylinders(teeth, module, helix, PRESSURE, shift).without_backlash + more
     fit = ToothFit(teeth, module, helix, PRESSURE, shift, centre)
     due = gap_by_thickness(teeth, module, helix, shift, centre)
     assert fit.backlash == pytest.approx(due, abs=1e-12)
@@ -72,7 +72,7 @@ def test_contact_ratio_of_standard_gears_outside_and_inside():
     ],
 )
 def test_teeth_that_hardly_anyone_would_make_are_told(teeth, shift, more, words):
-    centre = working(teeth, 2.5e-3, 0.0, PRESSURE, shift).without_backlash + 2 * more
+    centre = working_cylinders(teeth, 2.5e-3, 0.0, PRESSURE, shift).without_backlash + 2 * more
     fit = ToothFit(teeth, 2.5e-3, 0.0, PRESSURE, shift, centre)
     said = [*fit_cautions(fit, ("pinion", "gear")), *wheel_cautions(fit, 0, "pinion")]
     assert all(any(word in text for text in said) for word in words)

@@ -12,7 +12,7 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.planetary import MATES, turned
+from solidgear.scene.planetary import MATES, with_carrier_turned
 from solidgear.studies.train.deflection import deflection
 from solidgear.studies.train.kinematics import train_orders
 from solidgear.studies.train.layout import mesh_forces
@@ -233,7 +233,7 @@ def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_p
     assert turn.planets[0].once > 0.03 * turn.planets[0].mean  # the sun hangs on a cantilever
     assert turn.planets[0].once == pytest.approx(turn.planets[2].once, rel=1e-6)
     for k in (0, 25):  # bearings settle anew, and carry the same
-        there = shop.with_train(turned(train, "stage", turn.angle[k]))
+        there = shop.with_train(with_carrier_turned(train, "stage", turn.angle[k]))
         state = Operating(there, "timoshenko").at(train.point)
         np.testing.assert_allclose(planet_forces(state), [turn.force[k]] * 2, rtol=1e-7)
 
@@ -282,7 +282,7 @@ def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_ev
     (turn,) = deflection(Workshop(train), point, RIGID).turns
     assert turn.planets[0].once > 5.0
     for k in (0, 25):
-        there = Workshop(turned(train, "stage", turn.angle[k]))
+        there = Workshop(with_carrier_turned(train, "stage", turn.angle[k]))
         found = planet_forces(Operating(there, RIGID).at(point))
         np.testing.assert_allclose(found, [turn.force[k]] * 2, rtol=1e-9)
 
@@ -291,7 +291,8 @@ def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_ev
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
     train = sg.load_train(written(train_text(0.3)))
     at = [
-        Workshop(turned(train, "stage", by)).system(RIGID).modes().frequency_hz for by in (0.0, 0.7)
+        Workshop(with_carrier_turned(train, "stage", by)).system(RIGID).modes().frequency_hz
+        for by in (0.0, 0.7)
     ]
     np.testing.assert_allclose(at[1][1:], at[0][1:], rtol=ROUNDING)
     assert "do not hang on the position" in train_modes(Workshop(train), RIGID).turn
@@ -300,7 +301,10 @@ def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
     assert "solved at 6 positions" in told
     share = float(told.split(" up to ")[1].split(" %")[0]) / 100
     hz = [
-        Workshop(turned(pair, "stage", k * pi / 3)).system(RIGID).modes().frequency_hz[1:]
+        Workshop(with_carrier_turned(pair, "stage", k * pi / 3))
+        .system(RIGID)
+        .modes()
+        .frequency_hz[1:]
         for k in range(6)
     ]
     count = len(train_modes(Workshop(pair), RIGID).modes) - 1
@@ -370,7 +374,7 @@ def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
         state = Operating(Workshop(train), RIGID).at(point)
         assert state.outside["load"][4] == pytest.approx(-torque / 6, rel=1e-10)
         (turn,) = deflection(Workshop(train), point, RIGID).turns
-        there = Workshop(turned(train, "stage", turn.angle[20]))
+        there = Workshop(with_carrier_turned(train, "stage", turn.angle[20]))
         found = planet_forces(Operating(there, RIGID).at(point))
         np.testing.assert_allclose(found, [turn.force[20]] * 2, rtol=1e-7)
         assert np.ptp(turn.force[20]) > 100 and turn.force.mean() > 0  # teeth press either way

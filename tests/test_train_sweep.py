@@ -11,7 +11,7 @@ from command import command, numbers
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.scene.paths import changed, keys_of, label_of
+from solidgear.scene.paths import keys_of, label_of, with_entry
 from solidgear.scene.toml_file import parse
 from solidgear.studies.sweep import file_task
 from solidgear.studies.sweep.design import Design
@@ -413,7 +413,7 @@ def test_entries_of_a_scene_go_by_their_paths_as_those_of_a_train_do():
         "material.E": "material.E",
     }.items():
         assert label_of(keys_of(path, tables), tables) == label
-    wider = changed(tables, keys_of("bearing.A.seat_width", tables), "20 mm")
+    wider = with_entry(tables, keys_of("bearing.A.seat_width", tables), "20 mm")
     assert [one.get("seat_width") for one in wider["bearing"]] == ["20 mm", "36 mm"]
     assert tables["bearing"][0]["seat_width"] == "17 mm"
 

@@ -12,7 +12,7 @@ import pytest
 import solidgear as sg
 from solidgear.report.sketch import draw, extent
 from solidgear.scene.differences import differences, scene_differences
-from solidgear.scene.uncertain import stated
+from solidgear.scene.uncertain import with_ranges
 from solidgear.studies.two_shafts import two_shafts
 from tests.command import command, page_of
 
@@ -73,7 +73,7 @@ def mounted(diameter):
         port=sg.Port(name="gear", y=0.07, lo=0.05, hi=0.09),
         ask=sg.Ask(quantities=["bending 1", "C_z,thx", "C_zz"], tolerance=0.2),
     )
-    return stated(scene, {f"bearing.{name}.stiffness": "0.5 : 2" for name in "ab"})
+    return with_ranges(scene, {f"bearing.{name}.stiffness": "0.5 : 2" for name in "ab"})
 
 
 def test_what_is_asked_stands_first_with_the_better_of_both_and_what_bearings_leave_open():

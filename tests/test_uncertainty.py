@@ -10,7 +10,7 @@ from solidgear.report.front import numbers
 from solidgear.report.open_words import acting, interval, parts
 from solidgear.report.open_words import budget as budget_table
 from solidgear.report.units import ENGINEERING
-from solidgear.scene.uncertain import stated
+from solidgear.scene.uncertain import with_ranges
 from solidgear.studies.budget import beside, budget
 from solidgear.studies.open_inputs import open_inputs
 from tests.command import command
@@ -27,14 +27,14 @@ def gearbox():
 
 def test_a_modulus_and_a_density_move_a_free_shaft_by_their_roots():
     free = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.03)])
-    found = beside(stated(free, {"material.E": "± 4 %", "material.density": "± 2 %"}))
+    found = beside(with_ranges(free, {"material.E": "± 4 %", "material.density": "± 2 %"}))
     total = found.of("bending 1").total
     assert total.low == approx((0.96 / 1.02) ** 0.5 - 1, rel=1e-6)  # f ~ sqrt(E / rho)
     assert total.high == approx((1.04 / 0.98) ** 0.5 - 1, rel=1e-6)
 
 
 def test_a_body_of_its_own_takes_a_modulus_without_being_built_again():
-    scene = stated(sg.load(STEPPED), {"material.E": "0.5e11 Pa : 3e11 Pa"})
+    scene = with_ranges(sg.load(STEPPED), {"material.E": "0.5e11 Pa : 3e11 Pa"})
     by_body = beside(scene, sg.build(scene, "timoshenko"))
     for quantity in ("C_zz", "K_thx", "C_yy"):
         own, built = by_body.of(quantity).total, beside(scene).of(quantity).total
@@ -62,7 +62,7 @@ def test_what_is_worth_measuring_comes_first(gearbox):
 @pytest.mark.long
 def test_inputs_that_do_not_act_on_one_another_add_up_as_squares():
     scene = sg.load(STEPPED).with_changes(ask=sg.Ask(modes=3))
-    scene = stated(scene, {"material.E": "± 5 %", "material.density": "± 5 %"})
+    scene = with_ranges(scene, {"material.E": "± 5 %", "material.density": "± 5 %"})
     found = budget(scene, samples=40, seed=1)
     first = found.of("bending 1")
     # a deviation of 40 samples is good to 1 / sqrt(80); Latin squares are better than that
@@ -115,7 +115,7 @@ def test_a_scene_that_states_all_of_its_data_prints_as_without_ranges():
 )
 def test_a_range_that_is_none_is_refused_by_its_path(path, text, sentence):
     with pytest.raises(sg.SceneError, match=sentence) as refused:
-        stated(sg.load(GEARBOX), {path: text})
+        with_ranges(sg.load(GEARBOX), {path: text})
     assert path in str(refused.value)
 
 
@@ -173,7 +173,7 @@ def test_a_modulus_moves_every_segment_that_has_it_from_the_material(tmp_path):
     scene, there = first(tmp_path / "a.toml", own)
     softer = own.replace('"42CrMo4"', '{ E = "189 GPa", nu = 0.3, density = "7850 kg/m^3" }')
     _, low = first(tmp_path / "b.toml", softer)
-    found = beside(stated(scene, {"material.E": "189 GPa : 210 GPa"})).of("bending 1").total
+    found = beside(with_ranges(scene, {"material.E": "189 GPa : 210 GPa"})).of("bending 1").total
     assert found.low == approx(low / there - 1, rel=1e-6)  # the same beam on the same mesh
 
 
@@ -182,7 +182,7 @@ def test_a_material_of_a_segment_may_have_a_range(tmp_path):
     scene, there = first(tmp_path / "a.toml", named)
     stiffer = named.replace('"aluminium"', '{ E = "77 GPa", nu = 0.3, density = "2700 kg/m^3" }')
     _, high = first(tmp_path / "b.toml", stiffer)
-    ranged = stated(scene, {"segment.b.material.E": "70 GPa : 77 GPa"})
+    ranged = with_ranges(scene, {"segment.b.material.E": "70 GPa : 77 GPa"})
     assert beside(ranged).of("bending 1").total.high == approx(high / there - 1, rel=1e-6)
     # a body that is given cannot be as many times as stiff in one of its segments alone
     by_body = beside(ranged, sg.build(ranged, "timoshenko")).of("C_zz").total

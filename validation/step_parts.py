@@ -68,7 +68,7 @@ def write_step(
 
 def _write(path, segments, features, corners, unit, turn, shift) -> float:
     gmsh, scale = import_gmsh(), 1 / UNITS[unit]
-    shapes = [Frustum(*(scale * v for v in Frustum.of(s))) for s in segments]
+    shapes = [Frustum(*(scale * v for v in Frustum.of_segment(s))) for s in segments]
     with Session(gmsh):
         occ = gmsh.model.occ
         lengths = ("y", "r", "axial", "radial")

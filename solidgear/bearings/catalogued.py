@@ -183,7 +183,7 @@ def state(
     if data.one_sided:  # what another bearing preloads it with stays
         wanted += made.bearing.load(np.zeros(6))
     try:
-        return made.bearing.motion(wanted, held=data.load.held, start=start)
+        return made.bearing.motion(wanted, held=data.load.held_tilts, start=start)
     except SolidgearError as error:
         way = f"; it holds the shaft towards {data.holds} only" if data.one_sided else ""
         raise SceneError(f"{error}{way}", path=("load",)) from None

@@ -185,14 +185,14 @@ class _Blocks:
             on_face[i][0], on_face[i][k] = diagonal[i], tensor[i][k]
         for j in range(1, k):
             on_face[0][j] = tensor[0][j]
-            on_face[k][j] = self.new(corner.at(0.5 * (1 - j / k)))
+            on_face[k][j] = self.new(corner.point_at(0.5 * (1 - j / k)))
         # on the cylinder: what were rows end at the outline
         on_cylinder = self._grid(k)
         for i in range(k + 1):
             on_cylinder[0][i], on_cylinder[k][i] = diagonal[i], tensor[k][i]
             on_cylinder[i][0] = tensor[i][0]
         for i in range(1, k):
-            on_cylinder[i][k] = self.new(corner.at(0.5 + 0.5 * i / k))
+            on_cylinder[i][k] = self.new(corner.point_at(0.5 + 0.5 * i / k))
         # the edge itself has split in two: the cylinder keeps its number, the face has a new one
         face = self.new(corner.on_face)
         on_face[k][k] = face
@@ -228,8 +228,8 @@ class _Blocks:
         inner = (a + b + middle) / 3
         self.places[tensor[k][k]] = tuple(inner)
         for m in range(1, k):
-            self.places[ids[2 * k][m]] = corner.at(0.5 * m / k)
-            self.places[ids[m][2 * k]] = corner.at(1 - 0.5 * m / k)
+            self.places[ids[2 * k][m]] = corner.point_at(0.5 * m / k)
+            self.places[ids[m][2 * k]] = corner.point_at(1 - 0.5 * m / k)
             self.places[ids[k + m][k]] = tuple(inner + (middle - inner) * m / k)
             self.places[ids[k][m]] = tuple(a + (inner - a) * m / k)
             self.places[ids[m][k]] = tuple(b + (inner - b) * m / k)

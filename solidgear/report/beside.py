@@ -60,7 +60,7 @@ def write_beside(
 def inputs(found: Any, width: int = LONG) -> Table:
     """Entries in which the files differ, each in at most so many letters."""
     columns = [text("entry"), text("A"), text("B")]
-    rows = [[one.path, *one.written(width)] for one in found.inputs]
+    rows = [[one.path, *one.texts(width)] for one in found.inputs]
     note = "A dash: not in that file, where something else holds without it."
     if any(str(cell).endswith("...") for row in rows for cell in row):
         note += " What ends in dots is whole in results.json."

@@ -1,4 +1,4 @@
-"""O and X by one word: which way the two single bearings of a pair hold a shaft.
+"""Arrangements of two single bearings, O or X: which way each holds the shaft.
 
 In an O arrangement (back to back) the lower bearing along y keeps the shaft from moving towards
 +y and the upper one from moving towards -y; in X (face to face) the other way round.
@@ -25,13 +25,13 @@ class Pair(NamedTuple):
     bearings: tuple[int, ...]  #: places of both in the list of a file
 
     def ways(self, places: Iterable[float]) -> Iterator[tuple[int, str]]:
-        """Place in the list and direction held of each, from their places along y, m."""
+        """Yield the place in the list and the direction held of both, from their y, m."""
         upward = [k for _, k in sorted(zip(places, self.bearings))]
         return zip(upward, WAYS[self.arrangement])
 
 
-def _words(value: Any) -> Any:
-    """Words with names; a single word is for the only pair there is."""
+def _read_words(value: Any) -> Any:
+    """Return words with names of bearings; a single word is for the only pair."""
     if isinstance(value, tuple):
         return value
     pairs: list[tuple[str, tuple[str, ...] | None]] = []
@@ -47,9 +47,9 @@ def _words(value: Any) -> Any:
             continue
         several = isinstance(names, list) and any(isinstance(name, list) for name in names)
         for pair in names if several else [names]:
-            pair_names = (
-                [name for name in pair if isinstance(name, str)] if isinstance(pair, list) else []
-            )
+            pair_names = []
+            if isinstance(pair, list):
+                pair_names = [name for name in pair if isinstance(name, str)]
             if len(set(pair_names)) != 2 or len(pair) != 2:
                 reason = f'write the names of two bearings, as {word} = ["A", "B"]'
                 raise SceneError(
@@ -59,18 +59,18 @@ def _words(value: Any) -> Any:
     return tuple(pairs)
 
 
-Arrangement = Annotated[Words, BeforeValidator(_words)]
+Arrangement = Annotated[Words, BeforeValidator(_read_words)]
 
 
-def pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
-    """Pairs that the words of a file tell of the tables of its bearings; None where catalogue data
-    are wrong by themselves, so that words cannot be judged.
+def read_pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
+    """Read the pairs that words of a file make of the tables of its bearings; return None where
+    catalogue data are wrong by themselves, so that words cannot be judged.
     """
-    if words and any(_wrong(table) - {("holds",)} for table in tables):
+    if words and any(_problem_keys(table) - {("holds",)} for table in tables):
         return None
     names = [str(table.get("name")) for table in tables]
     free = [k for k, table in enumerate(tables) if _needs_holds(table)]
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     for word, pair in words:
         if pair is None and len(free) != 2:
             names_of_free = f": {listed(names[k] for k in free)}" if free else ""
@@ -80,15 +80,15 @@ def pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | Non
                 path=("arrangement",),
             )
         for name in pair or ():
-            _check(name, names, tables, found)
-        found.append(Pair(word, tuple(names.index(name) for name in pair) if pair else tuple(free)))
-    return found
+            _check(name, names, tables, pairs)
+        pairs.append(Pair(word, tuple(names.index(name) for name in pair) if pair else tuple(free)))
+    return pairs
 
 
 def _check(
     name: str, names: Sequence[str], tables: Sequence[Mapping[str, Any]], pairs: Sequence[Pair]
 ) -> None:
-    """Refuse a name that is no single bearing which waits for its direction."""
+    """Refuse a name that is no single bearing without a direction."""
     reason = ""
     if name not in names:
         reason = (
@@ -105,8 +105,8 @@ def _check(
         raise SceneError(reason, path=("arrangement",))
 
 
-def _wrong(table: Mapping[str, Any]) -> set[tuple]:
-    """Keys of the problems of a bearing's catalogue data; none without such data."""
+def _problem_keys(table: Mapping[str, Any]) -> set[tuple]:
+    """Return the keys of problems of a bearing's catalogue data; none without such data."""
     if "catalogue" not in table:
         return set()
     data = table["catalogue"]
@@ -118,21 +118,20 @@ def _wrong(table: Mapping[str, Any]) -> set[tuple]:
 
 
 def _needs_holds(table: Mapping[str, Any]) -> bool:
-    """True for catalogue data that lack nothing but the direction in which they hold the shaft."""
-    return _wrong(table) == {("holds",)}
+    """Return True for catalogue data that lack only the direction in which they hold the shaft."""
+    return _problem_keys(table) == {("holds",)}
 
 
-def facing(
+def readable_tables(
     tables: Sequence[Mapping[str, Any]], paired: Sequence[Pair] | None
 ) -> list[dict[str, Any]]:
-    """Tables of bearings that can be read, those of pairs with a direction until their places are
-    known; where the words are wrong, all that wait for one: they are not also missing.
+    """Return tables of bearings with a provisional direction for bearings of pairs, until their
+    places are known; where the words are wrong, for all without one, so that it is not missing too.
     """
-    turned = (
-        [k for k, table in enumerate(tables) if _needs_holds(table)]
-        if paired is None
-        else [k for pair in paired for k in pair.bearings]
-    )
+    if paired is None:
+        turned = [k for k, table in enumerate(tables) if _needs_holds(table)]
+    else:
+        turned = [k for pair in paired for k in pair.bearings]
     return [
         {**table, "catalogue": {**table["catalogue"], "holds": "+y"}} if k in turned else {**table}
         for k, table in enumerate(tables)

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator
 
-from solidgear.errors import TOLD, SceneError, nearest, show
+from solidgear.errors import MOST_PROBLEMS, SceneError, nearest, show
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.units import quantity
 
@@ -44,7 +44,7 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
     problems: list[SceneError] = []
     for name, value in entries.items():
         if name not in STIFFNESS_NAMES:
-            near = nearest(name, STIFFNESS_NAMES) if len(problems) < TOLD else ""
+            near = nearest(name, STIFFNESS_NAMES) if len(problems) < MOST_PROBLEMS else ""
             near = f"; {name} is {SPOKEN[name]}" if name in SPOKEN else near
             problems.append(
                 SceneError(
@@ -138,7 +138,7 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
 Matrix = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
 
 
-def one_stiffness(table: Mapping[str, Any]) -> None:
+def refuse_two_stiffnesses(table: Mapping[str, Any]) -> None:
     """Refuse a bearing in a file that is described twice."""
     keys = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
     if len(keys) > 1:

@@ -88,7 +88,7 @@ class Corner:
         ends = (self.y, self.on_cylinder[1])
         return min(ends), max(ends)
 
-    def at(self, share: float) -> tuple[float, float]:
+    def point_at(self, share: float) -> tuple[float, float]:
         """(r, y) at a share of its length from the face to the cylinder, m."""
         if self.centre is None:
             (a, b), (c, d) = self.on_face, self.on_cylinder
@@ -102,7 +102,7 @@ class Corner:
         """(r, y) along the outline from the face to the cylinder, m."""
         if self.centre is None:
             return [self.on_face, self.on_cylinder]
-        between = [self.at(k / (count - 1)) for k in range(1, count - 1)]
+        between = [self.point_at(k / (count - 1)) for k in range(1, count - 1)]
         return [self.on_face, *between, self.on_cylinder]
 
 
@@ -128,7 +128,7 @@ class _Blend(Placed):
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
-        return {"y": places.of(words.at, "at")}
+        return {"y": places.datum(words.at, "at")}
 
     @property
     def what(self) -> str:

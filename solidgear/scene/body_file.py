@@ -146,7 +146,7 @@ class PartGroup(Model):
     members: tuple[str, ...] = ()  #: of the rest: groups of the file with elements in it
 
     @property
-    def said(self) -> str:
+    def label(self) -> str:
         """Its name in a sentence."""
         if self.name:
             return f'"{self.name}"'

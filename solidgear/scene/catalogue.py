@@ -88,7 +88,7 @@ class BearingLoad(Model):
         return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
 
     @property
-    def held(self) -> tuple[int, ...]:
+    def held_tilts(self) -> tuple[int, ...]:
         """Tilts without a moment of their own, by their place among the six."""
         return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)
 

@@ -46,7 +46,7 @@ class Working:
     without_backlash: float  #: centre distance that the profile shifts ask for, m
 
 
-def working(
+def working_cylinders(
     teeth: Sequence[int],
     module: float,
     helix_angle: float,
@@ -80,7 +80,7 @@ def working(
     56.4999 mm.
 
     >>> from math import degrees, radians
-    >>> found = working((12, 24), 3e-3, 0.0, radians(20), shift=(0.6, 0.36))
+    >>> found = working_cylinders((12, 24), 3e-3, 0.0, radians(20), shift=(0.6, 0.36))
     >>> round(degrees(found.pressure_angle), 4), round(1e3 * sum(found.radii), 4)
     (26.0886, 56.4999)
     """
@@ -159,7 +159,7 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
         yield SceneError("counts in modules; give the module", path=(shifted[0], "profile_shift"))
 
 
-def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
+def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     """Fields of a train of parallel shafts as bevel gears have them: pitch radii and angles where the
     wheels roll on each other; none for other shafts.
     """
@@ -174,7 +174,9 @@ def rolling(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     if module is not None and pressure is not None:
         shift = pinion.profile_shift, gear.profile_shift
         teeth = pinion.teeth, gear.teeth
-        cylinders = working(teeth, module, helix or 0.0, pressure, shift, mesh.centre_distance)
+        cylinders = working_cylinders(
+            teeth, module, helix or 0.0, pressure, shift, mesh.centre_distance
+        )
         radii, pressure = cylinders.radii, cylinders.pressure_angle
         angle = None if helix is None else cylinders.helix_angle
     elif mesh.centre_distance is not None:

@@ -1,9 +1,8 @@
-"""Entries in which two files differ, each by its path and as it is written.
+"""Entries in which two files differ, each by path and as written.
 
-Entries of lists belong together by their names, and by their numbers where they have none.  Files
-that an entry names, such as the scene of a shaft, are looked into.  Two entries are alike if they
-mean the same: a quantity in other units, and a key that says what holds without it, differ from
-nothing.
+Tables of lists are paired by name, and by number where they have none.  Files that an entry names,
+such as the scene of a shaft, are compared too.  Entries with the same meaning do not differ: a
+quantity in other units, or a key that repeats its default.
 """
 
 from __future__ import annotations
@@ -28,15 +27,15 @@ if TYPE_CHECKING:
 ROUNDING = 1e-12
 #: tables that stand for a list of one
 ONE_OR_MORE = ("port", "operation")
-#: keys of words about numbers, which are none
+#: keys of texts without numbers
 WORDS = ("title", "source", "note", "status", "scene")
-#: keys that name a file whose numbers count, and not its name alone
+#: keys that name a file whose content counts, and not the name alone
 FILES = ("contact_cells", "step", "mesh", "matrices")
 
 
 @dataclass(frozen=True)
 class Difference:
-    """An entry that two files do not have alike."""
+    """An entry in which two files differ."""
 
     path: str  #: such as ``pinion.bearing.0.position``, as :mod:`solidgear.scene.paths` has it
     #: a, b: as written; None where a file does not have it
@@ -45,46 +44,46 @@ class Difference:
 
     @property
     def in_words(self) -> bool:
-        """True where it moves no number: a title, a source, the name of a file that is looked into."""
+        """True for a text without numbers: a title, a source, the name of a file that is compared."""
         return self.path.rpartition(".")[2] in WORDS
 
-    def written(self, width: int) -> tuple[str | None, str | None]:
-        """Both entries in at most so many letters: texts without quotes, and all else as in a file.
+    def texts(self, width: int) -> tuple[str | None, str | None]:
+        """Return both entries in at most `width` letters: texts without quotes, others as in a file.
 
         Examples
         --------
-        >>> Difference("mesh.stiffness", "2.5e8 N/m", None).written(70)
+        >>> Difference("mesh.stiffness", "2.5e8 N/m", None).texts(70)
         ('2.5e8 N/m', None)
-        >>> Difference("losses", {"mesh": 0.12}, "a long text").written(8)
+        >>> Difference("losses", {"mesh": 0.12}, "a long text").texts(8)
         ('{"mes...', 'a lon...')
         """
-        return _written(self.a, width), _written(self.b, width)
+        return _text(self.a, width), _text(self.b, width)
 
 
 def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference, ...]:
-    """Entries in which two TOML files of a kind differ, trains or scenes, in the order of the
-    first; what is asked of the shafts of a train alone is left out.
+    """Return the entries in which two TOML files of trains or of scenes differ, in the order of the
+    first; the [ask] of shafts of a train is left out.
 
     Examples
     --------
-    >>> found = differences("geometry/axle_overhung.toml", "geometry/axle_straddle.toml")
-    >>> [one.path for one in found][:3]
+    >>> pairs = differences("geometry/axle_overhung.toml", "geometry/axle_straddle.toml")
+    >>> [pair.path for pair in pairs][:3]
     ['title', 'pinion.scene', 'pinion.title']
-    >>> found[1].a, found[1].b
+    >>> pairs[1].a, pairs[1].b
     ('pinion_overhung.toml', 'pinion_straddle.toml')
     """
-    return tuple(_Files(os.fspath(a), os.fspath(b)).found())
+    return tuple(_Files(os.fspath(a), os.fspath(b)).differences())
 
 
 def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
-    """Fields in which two scenes differ, SI, whatever files they come from.
+    """Return the fields in which two scenes differ, SI, whatever files they come from.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> long, short = (sg.Segment.cylinder("rod", length=x, diameter=0.02) for x in (0.6, 0.5))
-    >>> found = scene_differences(*(sg.Scene.from_parts([rod]) for rod in (long, short)))
-    >>> (found[0].path, found[0].a, found[0].b)
+    >>> pairs = scene_differences(*(sg.Scene.from_parts([rod]) for rod in (long, short)))
+    >>> (pairs[0].path, pairs[0].a, pairs[0].b)
     ('segments.rod.y1', 0.6, 0.5)
     """
     first, second = (scene.model_dump(mode="json") for scene in (a, b))
@@ -99,9 +98,9 @@ class _Tables:
     def differing(
         self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()
     ) -> Iterator[Difference]:
-        """Their differences, by paths that begin with one."""
+        """Yield the differences of two tables at a path."""
         for key in dict.fromkeys([*a, *b]):
-            if key not in left_out and not self._holds_anyway(a, b, key):
+            if key not in left_out and not self._is_default(a, b, key):
                 entry_path = f"{path}.{key}" if path else key
                 yield from self._entries(entry_path, key, a.get(key), b.get(key))
 
@@ -110,11 +109,11 @@ class _Tables:
             yield from self.differing(path, a, b)
         elif _are_tables(a) and _are_tables(b):
             yield from self._lists(path, a, b)
-        elif not _alike(a, b) or self._other_file(key, a, b):
+        elif not _is_equal(a, b) or self._other_content(key, a, b):
             yield Difference(self.prefix + path, a, b)
 
     def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
-        """Differences of lists of tables, by names or numbers."""
+        """Yield the differences of lists of tables, by names or numbers."""
         names = _names(a), _names(b)
         keys = names if all(names) else (range(len(a)), range(len(b)))
         first, second = dict(zip(keys[0], a)), dict(zip(keys[1], b))
@@ -122,17 +121,17 @@ class _Tables:
             entry_path = f"{path}.{key + 1 if isinstance(key, int) else key}"
             yield from self._entries(entry_path, "", first.get(key), second.get(key))
 
-    def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
-        """True for a key that one has alone, and that would change nothing in the other."""
+    def _is_default(self, a: dict, b: dict, key: str) -> bool:
+        """Return True for a key of one table alone that would change nothing in the other."""
         return False
 
-    def _other_file(self, key: str, a: Any, b: Any) -> bool:
-        """True for a name that means two files which hold something else."""
+    def _other_content(self, key: str, a: Any, b: Any) -> bool:
+        """Return True for one name of two files with different content."""
         return False
 
 
 class _Files(_Tables):
-    """Two files of the same kind, and where they stand in the files that name them."""
+    """Two files of the same kind, with the path of the entry that names them."""
 
     def __init__(self, a: str, b: str, prefix: str = ""):
         self.files, self.prefix = (a, b), prefix
@@ -141,28 +140,28 @@ class _Files(_Tables):
             for raw in self.raw:
                 if isinstance(raw.get(key), Mapping):
                     raw[key] = [raw[key]]
-        self.meant = [self._meaning(k) for k in range(2)]
+        self.models = [self._model(k) for k in range(2)]
 
-    def found(self) -> Iterator[Difference]:
-        """Their differences."""
+    def differences(self) -> Iterator[Difference]:
+        """Yield the differences of both files."""
         a, b = self.raw
         yield from self.differing("", a, b, left_out=("ask",) if self.prefix else ())
 
-    def _meaning(self, k: int) -> Any:
-        """Scene or train of a file, whatever it leaves out; None where it cannot be read alone."""
+    def _model(self, k: int) -> Any:
+        """Return the scene or train of a file; None where it cannot be read alone."""
         read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
         try:
             return read(self.raw[k], self.files[k])
         except SceneError:
             return None
 
-    def _holds_anyway(self, a: dict, b: dict, key: str) -> bool:
+    def _is_default(self, a: dict, b: dict, key: str) -> bool:
         if key in a and key in b:
             return False
-        k, other, value = (1, b, a[key]) if key in a else (0, a, b[key])
-        other[key] = value
-        unchanged = self.meant[k] is not None and self._meaning(k) == self.meant[k]
-        del other[key]
+        k, table, value = (1, b, a[key]) if key in a else (0, a, b[key])
+        table[key] = value
+        unchanged = self.models[k] is not None and self._model(k) == self.models[k]
+        del table[key]
         return unchanged
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
@@ -170,21 +169,21 @@ class _Files(_Tables):
         first, _, key_name = path.rpartition(".")
         if key_name == "scene" and (first in SIDES or first.startswith("shaft.")):
             side = f"{first}."
-            yield from _Files(*self._beside(a, b), self.prefix + side).found()
+            yield from _Files(*self._paths(a, b), self.prefix + side).differences()
 
-    def _beside(self, a: str, b: str) -> tuple[str, str]:
-        """Files that both name."""
-        mine, its = (str(Path(own).parent / name) for own, name in zip(self.files, (a, b)))
-        return mine, its
+    def _paths(self, a: str, b: str) -> tuple[str, str]:
+        """Return the paths of files that both files name."""
+        first, second = self.files
+        return str(Path(first).parent / a), str(Path(second).parent / b)
 
-    def _other_file(self, key: str, a: Any, b: Any) -> bool:
+    def _other_content(self, key: str, a: Any, b: Any) -> bool:
         if key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
             return False
-        files = [Path(path) for path in self._beside(a, b)]
+        files = [Path(path) for path in self._paths(a, b)]
         return all(f.is_file() for f in files) and files[0].read_bytes() != files[1].read_bytes()
 
 
-def _written(value: Any, width: int) -> str | None:
+def _text(value: Any, width: int) -> str | None:
     if value is None or not isinstance(value, str):
         return None if value is None else show(value, width)
     return value if len(value) <= width else f"{value[: width - 3]}..."
@@ -195,15 +194,15 @@ def _are_tables(value: Any) -> bool:
 
 
 def _names(entries: list[dict]) -> list[str]:
-    """Names of the tables of a list; none unless each has one of its own."""
+    """Return the names of the tables of a list; none unless all have different names."""
     names = [entry.get("name") for entry in entries]
     distinct = [name for name in dict.fromkeys(names) if isinstance(name, str)]
     return distinct if len(distinct) == len(names) else []
 
 
-def _alike(a: Any, b: Any) -> bool:
+def _is_equal(a: Any, b: Any) -> bool:
     if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(_alike, a, b))
+        return len(a) == len(b) and all(map(_is_equal, a, b))
     first, second = _in_si(a), _in_si(b)
     if first is None or second is None:
         return bool(a == b)
@@ -211,7 +210,7 @@ def _alike(a: Any, b: Any) -> bool:
 
 
 def _in_si(value: Any) -> float | None:
-    """A number, or a text of a number and a unit, whatever it is of; None for what is neither."""
+    """Return a number, or the SI value of a text with a unit of any dimension; None for others."""
     for dimension in DIMENSIONS:
         if dimension != "dimensionless":
             try:

@@ -28,7 +28,7 @@ SHARE = 0.25
 Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 
 
-def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
+def snap_seats(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
     """Stations with the ends of their seats moved onto the faces and joints that they miss by a
     hair; the same ones where there are none.
     """
@@ -36,7 +36,7 @@ def snapped(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[S
     return tuple(_snapped(station, marks) for station in stations)
 
 
-def seated(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
+def seat_masses(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
     """Masses with names, each on the longest piece of a seat that steps divide; the same ones where
     there is nothing to do.
     """
@@ -58,7 +58,7 @@ def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
     return mass.model_copy(update=moved)
 
 
-def on_face(words: Along, table: Mapping[str, Any]) -> None:
+def check_face_words(words: Along, table: Mapping[str, Any]) -> None:
     """Refuse a bearing on a face with a position as well, or without a width."""
     words.refuse("give either face, or position with from, not both", "position", "from_")
     if "seat_width" not in table:

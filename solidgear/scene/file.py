@@ -16,33 +16,33 @@ from pydantic import BeforeValidator, model_validator
 
 from solidgear.errors import SceneError
 from solidgear.scene import rules
-from solidgear.scene.arrangement import Arrangement, Pair, facing, pairs
+from solidgear.scene.arrangement import Arrangement, Pair, read_pairs, readable_tables
 from solidgear.scene.ask import Ask
 from solidgear.scene.blends import BLENDS
 from solidgear.scene.body_file import BodyTable, with_port
 from solidgear.scene.catalogue import BearingLoad
-from solidgear.scene.ends import seated
+from solidgear.scene.ends import seat_masses
 from solidgear.scene.features import FEATURES
-from solidgear.scene.housing import Housing, housing_of
+from solidgear.scene.housing import Housing, read_housing
 from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.materials import by_name
 from solidgear.scene.model import Scene
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.places import Placed, Places
 from solidgear.scene.point_mass import PointMass
-from solidgear.scene.recognised import Reader, Recognised, unread, with_seats
+from solidgear.scene.recognised import Reader, Recognised, refuse_parts, with_seats
 from solidgear.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.scene.stations import Attachment, Bearing, Port
 from solidgear.scene.toml_file import (
     FileOrder,
     describes_train,
     name_of,
-    of_tables,
     parse,
     place_of,
+    with_table_paths,
 )
-from solidgear.scene.typed import Gathered, Holds, Model
-from solidgear.scene.uncertain import stated
+from solidgear.scene.typed import Holds, Model, Problems
+from solidgear.scene.uncertain import with_ranges
 
 Table = dict[str, Any]
 #: entries of the lists of a file
@@ -50,18 +50,18 @@ MOST = {"segment": rules.MOST_SEGMENTS, "bearing": rules.MOST_BEARINGS, "mass": 
 
 
 class _Ask(Ask):
-    """The [ask], with the lumped point that is the main one."""
+    """The [ask] of a file, which also names the main lumped point."""
 
     port: str | None = None
 
 
 def _several(ports: Any) -> Any:
-    """One [port] is a list of one."""
+    """Return a single [port] as a list of one."""
     return [ports] if isinstance(ports, Mapping) else ports
 
 
 class SceneFile(Model):
-    """A scene file, but for what is read once the shaft is known."""
+    """A scene file; tables of stations and features are read later, once the shaft is known."""
 
     title: str = ""
     source: str = ""
@@ -70,7 +70,7 @@ class SceneFile(Model):
     arrangement: Arrangement = ()
     body: BodyTable | None = None
     segment: list[Shape]
-    # what they describe is read once the shaft is known
+    # read once the shaft is known
     bearing: Annotated[list[Table], Holds(Bearing)] = []
     mass: Annotated[list[Table], Holds(PointMass)] = []
     feature: list[Table] = []
@@ -98,25 +98,25 @@ class ScenePartFile(SceneFile):
     def _one_shaft(self) -> ScenePartFile:
         if self.material is None and not self.body.materials:
             raise SceneError("this key is missing", path=("material",))
-        for key, what in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
+        for key, verb in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
             if getattr(self, key):
                 raise SceneError(
-                    f"a [[{key}]] {what}, which a [body] does itself; leave one of both out",
+                    f"a [[{key}]] {verb}, which a [body] does itself; leave one of both out",
                     path=(key,),
                 )
         return self
 
 
-def load(path: str | os.PathLike, part_of: Reader = unread) -> Scene:
-    """A scene file as it is written, bearings of catalogue data without their stiffness; `part_of`
-    reads the part that a [body] names.
+def load(path: str | os.PathLike, part_of: Reader = refuse_parts) -> Scene:
+    """Read a scene file, bearings of catalogue data without stiffness; `part_of` reads the part that
+    a [body] names.
     """
     file_path = os.fspath(path)
     return scene_of(parse(file_path), file_path, part_of)
 
 
-def scene_of(raw: Table, file_path: str, part_of: Reader = unread) -> Scene:
-    """Resolve the tables of a scene file; what it names lies relative to `where`, its path."""
+def scene_of(raw: Table, file_path: str, part_of: Reader = refuse_parts) -> Scene:
+    """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
     if describes_train(raw):
         raise SceneError(
             "describes a train of shafts and not a shaft; run solidgear compare, check, "
@@ -125,22 +125,21 @@ def scene_of(raw: Table, file_path: str, part_of: Reader = unread) -> Scene:
     try:
         return _Reading(dict(raw), file_path, part_of).scene()
     except SceneError as error:
-        found = of_tables(error, raw).problems
         # both ends of a cylinder are one diameter
-        problems = {(one.path, one.reason): one for one in found}
+        problems = {(p.path, p.reason): p for p in with_table_paths(error, raw).problems}
         order = FileOrder(raw)
-        ordered = sorted(problems.values(), key=lambda one: order.of(one.path))
+        ordered = sorted(problems.values(), key=lambda problem: order.positions(problem.path))
         raise SceneError.of(ordered).located(raw, where=place_of(file_path)) from None
 
 
 def _drop_tag(path: tuple) -> tuple:
-    """pydantic puts the kind of a segment into its location; the file has no such key."""
+    """Return a path without the kind of a segment, which pydantic puts in and no file has."""
     tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
     return (*path[:2], *path[3:]) if tagged else path
 
 
 class _Row(NamedTuple):
-    """A thing that was read, or None without a place, and the table that it was read from."""
+    """A thing that was read, None without a place, and the table that it was read from."""
 
     thing: Any
     kind: type[Placed]
@@ -153,7 +152,7 @@ class _Reading:
 
     def __init__(self, raw: Table, file_path: str, part_of: Reader):
         self.raw, self.where = raw, file_path
-        self.problems = Gathered()
+        self.problems = Problems()
         self.file, self.spoilt = self._tables()
         self.part: Recognised | None = None
         if (body := self.file.body) is not None:
@@ -167,22 +166,24 @@ class _Reading:
             self.places.forget()
 
     def scene(self) -> Scene:
-        """The scene, once nothing is wrong with it."""
+        """Return the scene, or raise all problems."""
         file, place = self.file, self.places
         paired = None
         if "arrangement" not in self.spoilt:
-            paired = self.problems.read(lambda: pairs(file.arrangement, file.bearing))
+            paired = self.problems.read(lambda: read_pairs(file.arrangement, file.bearing))
         if paired is None:
             self.spoilt.add("arrangement")
-        bearings = [self._bearing(k, table) for k, table in enumerate(facing(file.bearing, paired))]
+        bearings = [
+            self._bearing(k, table) for k, table in enumerate(readable_tables(file.bearing, paired))
+        ]
         housing = None
-        if (given := file.housing) is not None:
-            housing = self.problems.read(lambda: housing_of(given, place), ("housing",))
+        if (table := file.housing) is not None:
+            housing = self.problems.read(lambda: read_housing(table, place), ("housing",))
         if not (file.port or {"port", "body"} & self.spoilt):
             self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
-        features = [row for k, one in enumerate(file.feature) for row in self._feature(k, one)]
+        features = [row for k, t in enumerate(file.feature) for row in self._feature(k, t)]
         rows = {
             "bearings": self._turned(bearings, paired or []),
             "ports": self._main_first(ports),
@@ -192,8 +193,8 @@ class _Reading:
         }
         if self.segments:
             self._judge(rows)
-        self.problems.tell()
-        things = {key: tuple(row.thing for row in of) for key, of in rows.items()}
+        self.problems.raise_any()
+        things = {key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()}
         main, *further = things.pop("ports")
         stations = [main, *further, *things["bearings"], *things["masses"]]
         scene = Scene.from_parts(
@@ -212,10 +213,10 @@ class _Reading:
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
-        return stated(scene, file.uncertain, file.bearing)
+        return with_ranges(scene, file.uncertain, file.bearing)
 
     def _tables(self) -> tuple[SceneFile, set[str]]:
-        """The file without the keys that cannot be used, and these keys."""
+        """Return the file without spoilt keys, and these keys."""
         raw, kind = self.raw, ScenePartFile if "body" in self.raw else SceneFile
         for key, most in MOST.items():
             if isinstance(raw.get(key), list) and len(raw[key]) > most:
@@ -234,9 +235,7 @@ class _Reading:
         return SceneFile(**{**needed, **with_port(sound)}), spoilt
 
     def _name_datums(self) -> None:
-        """Tell what is called by which name, read from the file as it stands: a segment of a wrong
-        length still has its name.
-        """
+        """Name the datums, from the file as it stands: a segment of a wrong length has its name."""
         places = self.places
         shapes: Any = self.raw.get("segment")
         if self.part is not None:
@@ -248,8 +247,8 @@ class _Reading:
             or "bearing" in self.spoilt
             or not all(isinstance(table.get("name"), str) for table in shapes)
         ):
-            places.known = None  # without sound names, what refers to them cannot be judged
-        for k, table in enumerate(shapes if places.known is not None else ()):
+            places.names = None  # without sound names, what refers to them cannot be judged
+        for k, table in enumerate(shapes if places.names is not None else ()):
             if table["name"] in places.segments:
                 reason = "another segment has this name; each needs its own"
                 self.problems.append(SceneError(reason, path=("segment", k, "name")))
@@ -258,13 +257,13 @@ class _Reading:
                 places.add(f"{table['name']}.{datum}")
 
     def _shaft(self) -> list[Segment]:
-        """Segments end to end, or those of the part."""
+        """Return segments end to end, or those of the part."""
         if self.part is None and not self.file.segment:
             raise SceneError("a scene needs at least one [[segment]]", path=("segment",))
         if (part := self.part) is not None and (body := self.file.body) is not None:
             usual = self._material()
-            segments, path_of = part.laid(usual, self.places), self._part_path
-            self.problems.read(lambda: part.weigh(body.mass_check, usual))
+            segments, path_of = part.lay_out(usual, self.places), self._part_path
+            self.problems.read(lambda: part.check_mass(body.mass_check, usual))
         else:
             laid = lay_out(self.file.segment, self._material(), self.places)
             segments, path_of = laid.segments, laid.path
@@ -276,11 +275,11 @@ class _Reading:
         return segments
 
     def _material(self) -> Material:
-        """The material of whatever has none of its own."""
+        """Return the material of parts without one."""
         return self.file.material or self.part.usual_material()  # type: ignore[union-attr]
 
     def _part_path(self, path: tuple) -> tuple:
-        """The key that an entry of a segment of the part comes from."""
+        """Return the key of the file that an entry of a segment of the part comes from."""
         assert self.file.body is not None  # that the part was read from
         return ("material", *path[3:]) if "material" in path else ("body", self.file.body.key)
 
@@ -289,7 +288,7 @@ class _Reading:
         return _Row(thing, kind, path, table)
 
     def _bearing(self, index: int, table: Table) -> _Row:
-        """A bearing, whose middle is a datum of what follows."""
+        """Read a bearing, whose middle is a datum for tables that follow."""
         row = self._row(Bearing, ("bearing", index), table)
         if isinstance(name := table.get("name"), str):
             self.places.add(f"bearing.{name}", row.thing.y if row.thing else None)
@@ -297,7 +296,7 @@ class _Reading:
 
     @staticmethod
     def _turned(rows: list[_Row], paired: list[Pair]) -> list[_Row]:
-        """Bearings of pairs, turned as their arrangement says now that their places are known."""
+        """Turn bearings of pairs as their arrangement says, once their places are known."""
         for pair in paired:
             if all(rows[k].thing for k in pair.bearings):
                 for k, way in pair.ways(rows[k].thing.y for k in pair.bearings):
@@ -305,7 +304,7 @@ class _Reading:
         return rows
 
     def _feature(self, index: int, table: Table) -> list[_Row]:
-        """A feature of a kind that there is; it may have no name."""
+        """Read a feature, which may have no name; no row for an unknown kind."""
         path, kinds = ("feature", index), {**FEATURES, **BLENDS}
         kind = table.get("kind")
         if isinstance(kind, str) and kind in kinds:
@@ -319,7 +318,7 @@ class _Reading:
         return []
 
     def _main_first(self, ports: list[_Row]) -> list[_Row]:
-        """Lumped points, the one first that the file calls the main one."""
+        """Return the lumped points, the main one of the file first."""
         main_name = self.file.ask.port
         names = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
         sound = not any(problem.path[0] == "port" for problem in self.problems)
@@ -330,14 +329,14 @@ class _Reading:
         return main + [row for row in ports if row not in main]
 
     def _judge(self, rows: dict[str, list[_Row]]) -> None:
-        """Gather what is wrong between things that are sound by themselves."""
+        """Gather problems between things that are sound by themselves."""
         # names are judged where all are known
         complete = not {"bearing", "port", "arrangement"} & self.spoilt
         complete &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in kind_rows if row.thing] for key, kind_rows in rows.items()}
         things = {key: [row.thing for row in kind_rows] for key, kind_rows in sound.items()}
-        things["masses"] = [*seated(things["masses"], self.segments)]
-        problems = [*rules.problems_between(self.segments, **things, whole=complete)]
+        things["masses"] = [*seat_masses(things["masses"], self.segments)]
+        problems = [*rules.problems_between(self.segments, **things, complete=complete)]
         if complete and things["ports"]:
             problems += rules.question_problems(things["ports"], self.file.ask.quantities)
         self.problems += [
@@ -350,7 +349,7 @@ LISTS = {"bearings": "bearing", "ports": "port", "masses": "mass"}
 
 
 def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
-    """The key of the file that an entry of a scene came from."""
+    """Return the path in the file that an entry of a scene came from."""
     if path[0] == "port":
         path = ("ports", 0, *path[1:])
     elif path[0] == "further_ports":

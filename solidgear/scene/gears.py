@@ -11,7 +11,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from solidgear.errors import SceneError, listed, nearest
-from solidgear.scene.cylindrical import cylindrical_problems, rolling
+from solidgear.scene.cylindrical import cylindrical_problems, rolling_fields
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.stations import Status
@@ -181,9 +181,9 @@ class Pair:
         """The same with pitch radii and angles of parallel shafts where their wheels roll on each
         other: what module, helix angle, profile shifts and centre distance come to.
         """
-        return replace(self, **rolling(self.pinion, self.gear, self.mesh))
+        return replace(self, **rolling_fields(self.pinion, self.gear, self.mesh))
 
-    def told(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
+    def with_file_paths(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
         """Problems with paths from ``pinion``, ``gear`` or ``mesh``, by the keys of a file."""
         for problem in problems:
             first, *further = problem.path

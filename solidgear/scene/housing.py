@@ -182,7 +182,7 @@ class Housing(Placed, Elastic):
         if table.get("stiffness") == {}:
             raise SceneError(EMPTY, path=("stiffness",))
         hint = 'write position = "120 mm", the place that the stiffness is about, with from'
-        words.needs("position", hint)
+        words.require("position", hint)
         return {"y": words.y(places)}
 
     def moves(self, y: float) -> np.ndarray:
@@ -219,7 +219,7 @@ class Housing(Placed, Elastic):
         return in_series(stiffness, np.vstack([self.moves(y) for y in places]), self.own)
 
 
-def housing_of(table: Mapping[str, Any], places: Places) -> Housing | float | None:
+def read_housing(table: Mapping[str, Any], places: Places) -> Housing | float | None:
     """Support of all bearings by the [housing] of a file: a housing, or a spring along the axis
     (N/m); None where its place is not known.
     """

@@ -1,4 +1,4 @@
-"""Layout of a train: what meshes with what, how fast it turns, and the way a torque takes."""
+"""Layout of a train: which shafts mesh, how fast they turn, and the way a torque takes."""
 
 from __future__ import annotations
 
@@ -28,19 +28,18 @@ OTHER_FLANK = {"left": "right", "right": "left", "concave": "convex", "convex": 
 
 
 class PerTurn(float):
-    """Teeth that pass in one turn of a shaft, and which."""
+    """Teeth that pass in one turn of the shaft `of`."""
 
     of: str
 
     def __new__(cls, value: float, of: str = "pinion") -> PerTurn:
-        """A number that knows its shaft."""
         out = super().__new__(cls, value)
         out.of = of
         return out
 
 
 def layout_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of names, of meshes between shafts that are not there, and of shafts left out."""
+    """Yield problems of names, of meshes between unknown shafts, and of shafts without a mesh."""
     for name in train.shafts:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
             reason = f"a shaft cannot be called {name!r}; give it another name, without dots"
@@ -105,12 +104,10 @@ def _rotors(train: Train) -> Iterator[SceneError]:
             yield SceneError(reason, path=path)
         if rotor.shaft not in train.shafts:
             names = listed(train.shafts)
-            said = (
-                "says which shaft it turns with"
-                if not rotor.shaft
-                else (f"names no shaft{nearest(rotor.shaft, train.shafts)}")
-            )
-            yield SceneError(f"{said}; known here: {names}", path=(*path, "shaft"))
+            problem = f"names no shaft{nearest(rotor.shaft, train.shafts)}"
+            if not rotor.shaft:
+                problem = "says which shaft it turns with"
+            yield SceneError(f"{problem}; known here: {names}", path=(*path, "shaft"))
 
 
 def _named_twice(train: Train) -> Iterator[SceneError]:
@@ -122,7 +119,7 @@ def _named_twice(train: Train) -> Iterator[SceneError]:
 
 
 def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Shaft and lumped point of both gears of a mesh."""
+    """Return shaft and lumped point of both gears of mesh k."""
     out = []
     for word in train.meshes[k].between:
         side, _, port = word.partition(".")
@@ -130,25 +127,25 @@ def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
     return out[0], out[1]
 
 
-def idle(train: Train, end: tuple[str, str]) -> bool:
-    """True of a gear that is first in a mesh, and so drives another, wherever else it is second."""
+def is_idler(train: Train, end: tuple[str, str]) -> bool:
+    """Return True for a gear (shaft and lumped point) that is first in a mesh, and so drives another."""
     return end in [ends_of(train, k)[0] for k in range(len(train.meshes))]
 
 
 def with_flanks(train: Train, k: int, pinion: Member, gear: Member) -> tuple[Member, Member]:
-    """The two gears of a mesh with the flanks that are loaded there: those of a file, or on parallel
-    shafts without an operating point the usual ones.
+    """Return both gears of mesh k with their loaded flanks: those of the file, or on parallel shafts
+    without an operating point the usual ones.
     """
     ends = ends_of(train, k)
-    pinion, gear = told_flanks(train, ends, pinion, gear)
+    pinion, gear = flanks_from_file(train, ends, pinion, gear)
     if pinion.loaded_side is None and train.point is None and not train.meshes[k].shaft_angle:
         pinion = pinion.with_changes(loaded_side=_usual_flank(train, ends[0][0]))
     return pinion, gear
 
 
 def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
-    """Flank of gears that a shaft drives with, where no file tells it: of the first shaft the left
-    one, and each in turn is driven on one flank and drives with the other.
+    """Return the flank that a shaft drives with where the file gives none: left on the first shaft;
+    a shaft that is driven on one flank drives with the other.
     """
     for k in range(len(train.meshes)):
         (driver, port), (driven, _) = ends_of(train, k)
@@ -158,17 +155,17 @@ def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
     return "left"
 
 
-def told_flanks(
+def flanks_from_file(
     train: Train, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
 ) -> tuple[Member, Member]:
-    """The two gears of a mesh with the flanks that a file tells.
+    """Return both gears of a mesh with the loaded flanks that follow from the file.
 
-    A gear that is second in one mesh and first in another passes a torque on: what drives it pushes
-    on the flank behind those that it drives with.  Its `loaded_side` is that of the mesh in which it
-    is first, and follows from the other where it is not told.
+    An idler, second in one mesh and first in another, is driven on the flank behind the one that it
+    drives with.  Its `loaded_side` is that of the mesh in which it is first, and follows from the
+    driver where it is not given.
     """
     meshes = [ends_of(train, k) for k in range(len(train.meshes))]
-    if gear.loaded_side and idle(train, ends[1]):
+    if gear.loaded_side and is_idler(train, ends[1]):
         gear = gear.with_changes(loaded_side=OTHER_FLANK[gear.loaded_side])
     if pinion.flank is None and gear.loaded_side in ("left", "right"):
         return pinion.with_changes(loaded_side=gear.loaded_side), gear  # they touch their own kind
@@ -185,15 +182,15 @@ def told_flanks(
 
 
 def _joined(train: Train) -> list[tuple[str, str]]:
-    """Shafts that each mesh joins, and each planetary stage."""
+    """Return the two shafts that each mesh joins, and each planetary stage."""
     words = [mesh.between for mesh in train.meshes]
     words += [(stage.sun, stage.carrier) for stage in train.planetary.values()]
     return [(first.partition(".")[0], second.partition(".")[0]) for first, second in words]
 
 
 def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str, int]]:
-    """Shafts as joints lead from one to them, each with the joint it is come by, -1 for the first; by
-    all joints but one.
+    """Yield the shafts that joints lead to from the first, each with the joint that leads to it (-1 for
+    the first); the joint `excluded` is not passed.
     """
     queue, reached = deque([(first, -1)]), {first}
     while queue:
@@ -210,15 +207,15 @@ def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str
 def outward(
     train: Train, first: str, without: Joint | None = None
 ) -> Iterator[tuple[str, Joint | None]]:
-    """Shafts as meshes and planetary stages lead from one to them, each with what it is come by, the
-    first by none; by all but one.
+    """Yield the shafts that meshes and stages lead to from the first, each with the joint that leads to
+    it (None for the first); the joint `without` is not passed.
     """
     for side, joint in _outward(train, first, train.joints.index(without) if without else -1):
         yield side, None if joint < 0 else train.joints[joint]
 
 
 def turns_of(train: Train) -> dict[str, float]:
-    """Turns of every shaft in one turn of the engine's, by the teeth."""
+    """Return the turns of every shaft in one turn of the engine's, by the teeth."""
     out: dict[str, float] = {}
     for side, pair in outward(train, train.reference):
         if pair is None:
@@ -231,7 +228,7 @@ def turns_of(train: Train) -> dict[str, float]:
 
 
 def _loops(train: Train) -> Iterator[SceneError]:
-    """Meshes that close a loop and whose teeth ask for another ratio than the rest of it."""
+    """Yield problems of meshes that close a loop with another ratio than the rest of it."""
     turns = turns_of(train)
     for stage in train.stages:
         sun, carrier = stage.shafts

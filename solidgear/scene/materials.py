@@ -18,7 +18,7 @@ LIGHT_SOURCE = "EN 1999-1-1:2007, 3.2.5: wrought alloys"
 
 
 @dataclass(frozen=True)
-class Known:
+class MaterialConstants:
     """Constants of a material in SI, and their source."""
 
     E: float  #: pa
@@ -27,9 +27,9 @@ class Known:
     source: str
 
 
-_STEEL = Known(210e9, 0.3, 7850.0, STEEL_SOURCE)
-_ALUMINIUM = Known(70e9, 0.3, 2700.0, LIGHT_SOURCE)
-_FERRITIC = Known(169e9, 0.275, 7100.0, IRON_SOURCE)
+_STEEL = MaterialConstants(210e9, 0.3, 7850.0, STEEL_SOURCE)
+_ALUMINIUM = MaterialConstants(70e9, 0.3, 2700.0, LIGHT_SOURCE)
+_FERRITIC = MaterialConstants(169e9, 0.275, 7100.0, IRON_SOURCE)
 
 MATERIALS = {
     "steel": _STEEL,
@@ -42,8 +42,8 @@ MATERIALS = {
     "100Cr6": _STEEL,
     "EN-GJS-400": _FERRITIC,
     "EN-GJS-500": _FERRITIC,
-    "EN-GJS-600": Known(174e9, 0.275, 7200.0, IRON_SOURCE),
-    "EN-GJS-700": Known(176e9, 0.275, 7200.0, IRON_SOURCE),
+    "EN-GJS-600": MaterialConstants(174e9, 0.275, 7200.0, IRON_SOURCE),
+    "EN-GJS-700": MaterialConstants(176e9, 0.275, 7200.0, IRON_SOURCE),
     "aluminium": _ALUMINIUM,
 }
 #: what has no constants of its own

@@ -32,7 +32,7 @@ class Cycle(Model):
         """Angle that it covers, rad."""
         return self.angle[-1] - self.angle[0]
 
-    def told(self, key: str, plural: str, values: Sequence) -> None:
+    def check_values(self, key: str, plural: str, values: Sequence) -> None:
         """Refuse angles that do not ascend, or other than one value at each."""
         if len(self.angle) != len(values) or len(self.angle) < LEAST_OF_CYCLE:
             counts = f"{len(values)} {plural} for {len(self.angle)} angles"
@@ -49,7 +49,7 @@ class StiffnessCycle(Cycle):
 
     @model_validator(mode="after")
     def _periodic(self):
-        self.told("stiffness", "stiffnesses", self.stiffness)
+        self.check_values("stiffness", "stiffnesses", self.stiffness)
         first, last = self.stiffness[0], self.stiffness[-1]
         if not isclose(first, last, rel_tol=CYCLE_CLOSES):
             raise SceneError(
@@ -69,8 +69,8 @@ class LineCycle(Cycle):
 
     @model_validator(mode="after")
     def _periodic(self):
-        self.told("point", "points", self.point)
-        self.told("normal", "normals", self.normal)
+        self.check_values("point", "points", self.point)
+        self.check_values("normal", "normals", self.normal)
         for number, normal in enumerate(self.normal, start=1):
             if not isclose(hypot(*normal), 1.0, abs_tol=UNIT):
                 raise SceneError(

@@ -21,7 +21,7 @@ from solidgear.scene.ask import Ask
 from solidgear.scene.blends import Blend, Corner
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
-from solidgear.scene.ends import seated, snapped
+from solidgear.scene.ends import seat_masses, snap_seats
 from solidgear.scene.features import Feature
 from solidgear.scene.housing import Housing
 from solidgear.scene.lubrication import Lubrication
@@ -113,9 +113,9 @@ class Scene(Displayed, Model):
         problems = rules.shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
             for name in ("bearings", "masses", "further_ports"):
-                object.__setattr__(self, name, snapped(getattr(self, name), self.segments))
-            object.__setattr__(self, "port", snapped([self.port], self.segments)[0])
-            object.__setattr__(self, "masses", seated(self.masses, self.segments))
+                object.__setattr__(self, name, snap_seats(getattr(self, name), self.segments))
+            object.__setattr__(self, "port", snap_seats([self.port], self.segments)[0])
+            object.__setattr__(self, "masses", seat_masses(self.masses, self.segments))
             problems += rules.problems_between(
                 self.segments,
                 ports=self.ports,

@@ -34,7 +34,7 @@ class Frustum(NamedTuple):
     inner1: float
 
     @classmethod
-    def of(cls, segment: Segment) -> Frustum:
+    def of_segment(cls, segment: Segment) -> Frustum:
         """The shape of a segment."""
         return cls(*(float(getattr(segment, name)) for name in cls._fields))
 

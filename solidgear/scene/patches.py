@@ -88,11 +88,13 @@ def refuse_elsewhere(raw: Mapping[str, Any], body_kind: str) -> None:
         raise SceneError.of(problems)
 
 
-def on_patch(words: Any, table: Mapping[str, Any], places: Any, *sizes: str) -> dict[str, Any]:
+def fields_on_patch(
+    words: Any, table: Mapping[str, Any], places: Any, *sizes: str
+) -> dict[str, Any]:
     """Fields of a station on a patch; along y it is as long as the patch is large."""
     reason = "a patch has its place and size itself; leave one of both out"
-    words.refuse(reason, "position", "from_", "at", "attach_to", "span", "seat", beside=None)
-    words.refuse(reason, "face", "seat_width", beside=table)
+    words.refuse(reason, "position", "from_", "at", "attach_to", "span", "seat", table=None)
+    words.refuse(reason, "face", "seat_width", table=table)
     patch = places.patch(words.patch, words.point)
     if patch is None:
         return dict.fromkeys(("y", *sizes))

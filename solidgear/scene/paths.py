@@ -1,10 +1,10 @@
 """Paths of entries of a scene or train file: ``bearing.A.seat_width``, ``mesh.stiffness``.
 
-A path names keys of tables with dots between. In a list of tables the name of one stands for it, or
-its number, counted from one; the only one of a list may go without. In a list of numbers a number
-stands for its place. A material by its name is a table of its numbers, and an entry of a stiffness
-may go without the table or matrix that it stands in. A key that the file does not hold is one that
-the format may know: whoever reads the changed tables tells.
+A path names keys of tables with dots between. A table of a list is given by its name or its number,
+counted from one; the only table of a list may be left out. An entry of a list of numbers is given by
+its number. A material given by name is a table of its constants, and an entry of a stiffness may go
+without the table or matrix that it stands in. A key that the file does not hold may be one of the
+format: the reader of the changed tables refuses others.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.materials import as_table
 
 Tables = Mapping[str, Any]
-#: what springs are multiplied by
+#: key of the factor on springs
 FACTOR = "scale"
 #: keys and places from the root of a file to an entry
 Keys = tuple[str | int, ...]
 
 
 def keys_of(path: str, tables: Tables) -> Keys:
-    """Keys and places that a path stands for, in the tables of a file as they are written; refuses
-    a name or number that a list does not have, and a path that ends at a table.
+    """Return the keys and places that a path stands for in the tables of a file; refuse a name or
+    number that a list does not have, and a path that ends at a table.
 
     Examples
     --------
@@ -42,11 +42,11 @@ def keys_of(path: str, tables: Tables) -> Keys:
         if isinstance(table, list):
             place, remainder = _place_in(table, remainder, ".".join(map(str, keys)))
             keys.append(place)
-        elif isinstance(table, Mapping) and keys and _is_own(table, remainder):
+        elif isinstance(table, Mapping) and keys and _names_itself(table, remainder):
             remainder = _after(remainder, _word(remainder))
             continue
         elif remainder in STIFFNESS_NAMES and keys[:1] in (["bearing"], ["housing"]):
-            keys += _within_stiffness(tuple(keys), table or {}, remainder)
+            keys += _stiffness_keys(tuple(keys), table or {}, remainder)
             return tuple(keys)
         elif isinstance(table, Mapping) or table is None:
             word = _first(remainder, table or {}) or _word(remainder)
@@ -55,18 +55,18 @@ def keys_of(path: str, tables: Tables) -> Keys:
         else:
             reason = f"holds {show(table, 40)}, in which there is no {_word(remainder)}"
             raise SceneError(reason, field=label_of(tuple(keys), tables))
-        table = _child(table, keys[-1]) if remainder else _held(table, keys[-1])
+        table = _child(table, keys[-1]) if remainder else _value(table, keys[-1])
     if isinstance(table, list) and len(table) == 1 and isinstance(table[0], Mapping):
         table = table[0]
     if isinstance(table, (Mapping, list)):
-        within = table if isinstance(table, Mapping) else _names(table)
-        reason = f"is no single entry; add one of {listed(within)}"
+        names = table if isinstance(table, Mapping) else _names(table)
+        reason = f"is no single entry; add one of {listed(names)}"
         raise SceneError(reason, field=label_of(tuple(keys), tables))
     return tuple(keys)
 
 
 def label_of(keys: Keys, tables: Tables) -> str:
-    """The path of an entry with names where it has names.
+    """Return the path of an entry, with names of tables where they have one.
 
     Examples
     --------
@@ -82,21 +82,20 @@ def label_of(keys: Keys, tables: Tables) -> str:
 
 
 def entry(keys: Keys, tables: Tables) -> Any:
-    """Value that a file holds at an entry; None where it holds nothing, but 1 for a factor."""
+    """Return the value of an entry of a file; where it holds none 1 for a factor, else None."""
     table: Any = tables
     for key in keys[:-1]:
         table = _child(table, key)
-    value = _held(table, keys[-1])
+    value = _value(table, keys[-1])
     return 1.0 if value is None and keys[-1] == FACTOR else value
 
 
-def changed(tables: Any, keys: Keys, value: Any) -> Any:
-    """Tables with one entry replaced, and tables made on the way to it; those given stay as they
-    are.
+def with_entry(tables: Any, keys: Keys, value: Any) -> Any:
+    """Return a copy of tables with one entry replaced, and missing tables on the way to it made.
 
     Examples
     --------
-    >>> changed({"losses": {"mesh": 0.1}}, ("losses", "shafts"), 0.02)
+    >>> with_entry({"losses": {"mesh": 0.1}}, ("losses", "shafts"), 0.02)
     {'losses': {'mesh': 0.1, 'shafts': 0.02}}
     """
     if not keys:
@@ -104,23 +103,23 @@ def changed(tables: Any, keys: Keys, value: Any) -> Any:
     first, *further = keys
     if isinstance(first, int):
         out = list(tables)
-        out[first] = changed(out[first], tuple(further), value)
+        out[first] = with_entry(out[first], tuple(further), value)
         return out
     table = tables if isinstance(tables, Mapping) else {}
-    within = _child(table, first) if further else None
-    return {**table, first: changed(within, tuple(further), value)}
+    inner = _child(table, first) if further else None
+    return {**table, first: with_entry(inner, tuple(further), value)}
 
 
-def put(tables: Tables, keys: Keys, value: Any) -> Tables:
-    """Tables with an entry replaced, of a stiffness matrix with its mirror."""
-    out = changed(tables, keys, value)
+def replace_entry(tables: Tables, keys: Keys, value: Any) -> Tables:
+    """Return :func:`with_entry`, of a stiffness matrix with the mirrored entry as well."""
+    out = with_entry(tables, keys, value)
     if len(keys) > 2 and keys[-3] == "matrix":
-        out = changed(out, (*keys[:-2], keys[-1], keys[-2]), value)
+        out = with_entry(out, (*keys[:-2], keys[-1], keys[-2]), value)
     return out
 
 
 def entries(tables: Any, before: Keys = ()) -> Iterator[Keys]:
-    """Keys of every entry of a file that is no table."""
+    """Yield the keys of every entry of a file that is no table."""
     if isinstance(tables, Mapping):
         for key in tables:
             yield from entries(_child(tables, key), (*before, key))
@@ -132,7 +131,7 @@ def entries(tables: Any, before: Keys = ()) -> Iterator[Keys]:
 
 
 def _place_in(things: list, remainder: str, label: str) -> tuple[int, str]:
-    """Place of a thing in a list, and what is left of the path."""
+    """Return the place of a thing in a list, and the remainder of the path."""
     names = _names(things)
     for k in sorted(range(len(names)), key=lambda k: -len(names[k])):
         if _name(things[k]) and _begins(remainder, names[k]):
@@ -146,18 +145,18 @@ def _place_in(things: list, remainder: str, label: str) -> tuple[int, str]:
 
 
 def _names(things: list) -> list[str]:
-    """Names of things in a list, or their numbers."""
+    """Return the names of things in a list, or their numbers."""
     return [_name(thing) or str(k) for k, thing in enumerate(things, start=1)]
 
 
-def _is_own(table: Mapping[str, Any], remainder: str) -> bool:
-    """True where a path names a table that is alone as if it were one of a list."""
+def _names_itself(table: Mapping[str, Any], remainder: str) -> bool:
+    """Return True where a path names a single table as if it were one of a list."""
     word = _word(remainder)
     return word not in table and word in (_name(table), "1") and remainder != word
 
 
 def _first(remainder: str, table: Mapping[str, Any]) -> str:
-    """The longest key of a table that a path begins with; empty for none."""
+    """Return the longest key of a table that a path begins with; empty for none."""
     return max((key for key in table if _begins(remainder, key)), key=len, default="")
 
 
@@ -178,8 +177,8 @@ def _name(thing: Any) -> str:
     return name if isinstance(name, str) else ""
 
 
-def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
-    """Place of an entry of a stiffness in the table of a bearing or a housing."""
+def _stiffness_keys(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
+    """Return the keys of an entry of a stiffness in the table of a bearing or a housing."""
     if "catalogue" in table:
         reason = (
             f"bearing {show(_name(table))} has its stiffness from its catalogue data; vary "
@@ -195,13 +194,13 @@ def _within_stiffness(keys: Keys, table: Mapping[str, Any], name: str) -> Keys:
 
 
 def _child(table: Any, key: str | int) -> Any:
-    """Value under a key, a material by name as its table."""
-    value = _held(table, key)
+    """Return the value under a key, a material given by name as a table."""
+    value = _value(table, key)
     return as_table(value) if key == "material" else value
 
 
-def _held(table: Any, key: str | int) -> Any:
-    """Value that a file holds under a key; None where it holds nothing."""
+def _value(table: Any, key: str | int) -> Any:
+    """Return the value that a file holds under a key; None where it holds none."""
     if isinstance(table, Mapping):
         return table.get(key)
     return table[key] if isinstance(table, list) and isinstance(key, int) else None

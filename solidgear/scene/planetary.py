@@ -1,5 +1,4 @@
-"""Planetary stages of a train: sun, planets and ring between the shaft of the sun and that of the
-carrier; data only.
+"""Planetary stages of a train, between the shaft of the sun and that of the carrier: data only.
 
 Azimuths are those of the sun's scene: right-handed about y from x.
 """
@@ -30,7 +29,7 @@ MOST_PLANETS = 20
 
 
 class Seat(Model):
-    """Springs of a body that turns on them freely: pin and bearing of a planet."""
+    """Springs on which a body turns freely: pin and bearing of a planet."""
 
     #: radial, axial: N/m
     radial: MeshSpring
@@ -44,20 +43,20 @@ class Seat(Model):
 
 
 class HeldSeat(Seat):
-    """The same of a body that is held against turning, with torsional stiffness in N m/rad."""
+    """Springs that also hold a body against turning, with torsional stiffness in N m/rad."""
 
     turning: TorsionSpring
 
     @property
     def diagonal(self) -> list[float]:
         """Stiffness on x y z thx thy thz."""
-        held = super().diagonal
-        held[4] = self.turning
-        return held
+        stiffness = super().diagonal
+        stiffness[4] = self.turning
+        return stiffness
 
 
 class PlanetTable(HeadInertia):
-    """Each of the planets, rigid."""
+    """A planet, rigid; all are alike."""
 
     teeth: Teeth
     pin: Seat | None = None  #: between planet and carrier
@@ -77,7 +76,7 @@ class RingTable(HeadInertia):
 
 
 class PlanetMeshes(Model):
-    """The teeth in contact of every planet."""
+    """Meshes of every planet with sun and ring."""
 
     #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m
     sun_stiffness: MeshSpring
@@ -89,7 +88,7 @@ class PlanetMeshes(Model):
 
 
 class Planetary(Model):
-    """A planetary stage as a file tells it."""
+    """A planetary stage as a file describes it."""
 
     #: a gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
     #: those of the stage
@@ -118,7 +117,7 @@ class Planetary(Model):
 
 @dataclass(frozen=True)
 class PlanetMesh:
-    """Mesh of planets with sun or ring, told as a `Pair` is."""
+    """Mesh of planets with sun or ring, with the interface of a `Pair`."""
 
     #: ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the
     #: first
@@ -134,19 +133,15 @@ class PlanetMesh:
 
     @property
     def stiffness(self) -> float:
-        """Of each, N/m."""
+        """Stiffness of each planet's mesh, N/m."""
         return float(getattr(self.mesh, f"{self.mate}_stiffness"))
 
     def phases(self, way: float) -> dict[str, float]:
-        """Angle by which the error at each planet is behind the first, rad, by the name of its mesh.
+        """Return the phase lag of the error at each planet behind the first, rad, by name of the mesh;
+        `way` is 1 where the sun turns about +y of its scene, else -1.
 
         Teeth of the sun reach a planet at the azimuth psi later by ``z_s psi``, and of the ring, for
         planets assemble, by as much (Parker, Journal of Sound and Vibration 236, 2000, p. 561-573).
-
-        Parameters
-        ----------
-        way : float
-            1 where the sun turns about +y of its scene, else -1.
         """
         teeth, name = self.stage.teeth, f"{self.stage.name} {self.mate}"
         angles = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
@@ -180,25 +175,25 @@ class Stage:
 
     @cached_property
     def teeth(self) -> PlanetaryTeeth:
-        """Its teeth, transverse; refuses those that do not mesh or assemble, planets that overlap,
-        or another ratio.
+        """Transverse teeth; refuses teeth that do not mesh or assemble, planets that overlap, and
+        another ratio.
         """
         assert self.sun.module is not None
         table, helix = self.table, self.sun.helix_angle or 0.0
         return PlanetaryTeeth(
-            self.sun.teeth,
-            table.planet.teeth,
-            table.ring_teeth,
-            self.sun.module / cos(helix),
-            table.planets or table.angles,
-            atan(tan(table.mesh.pressure_angle) / cos(helix)),
-            table.ratio,
-            -helix if self.sun.hand == "left" else helix,
+            sun=self.sun.teeth,
+            planet=table.planet.teeth,
+            ring=table.ring_teeth,
+            module=self.sun.module / cos(helix),
+            planets=table.planets or table.angles,
+            pressure_angle=atan(tan(table.mesh.pressure_angle) / cos(helix)),
+            ratio=table.ratio,
+            helix=-helix if self.sun.hand == "left" else helix,
         )
 
     @property
     def ratio(self) -> float:
-        """Turns of the first shaft in one of the second, of its sun in one of its carrier."""
+        """Turns of the first shaft in one of the second: of the sun in one of the carrier."""
         return self.teeth.speed_ratio
 
     @property
@@ -211,7 +206,7 @@ class Stage:
 
     @cached_property
     def meshes(self) -> tuple[PlanetMesh, ...]:
-        """Those of each planet with the sun, then those with the ring."""
+        """Meshes of each planet with the sun, then those with the ring."""
         return tuple(
             PlanetMesh(f"{mesh.name} {k}", self, mesh.mate, (k,))
             for mesh in self.together
@@ -220,13 +215,13 @@ class Stage:
 
     @property
     def together(self) -> tuple[PlanetMesh, ...]:
-        """Those of all planets with the sun, and with the ring."""
+        """Meshes of all planets together with the sun, and with the ring."""
         planets = tuple(range(1, len(self.teeth.azimuths) + 1))
         return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, planets) for mate in MATES)
 
 
 def stage_of(train: Train, name: str) -> Stage:
-    """A planetary stage on its shafts."""
+    """Return a planetary stage on the shafts of a train."""
     table = train.planetary[name]
     sun, _, port = table.sun.partition(".")
     carrier, _, flange = table.carrier.partition(".")
@@ -236,7 +231,7 @@ def stage_of(train: Train, name: str) -> Stage:
 
 
 def stage_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of planetary stages: no such shafts or gears, names, teeth that do not go together."""
+    """Yield problems of planetary stages: unknown shafts or gears, names, teeth that do not fit."""
     for name, table in train.planetary.items():
         path = ("planetary", name)
         if "." in name or not name.strip() or name in train.shafts or name in train.rotors:
@@ -250,7 +245,7 @@ def stage_problems(train: Train) -> Iterator[SceneError]:
 
 
 def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
-    """Problems of the gear that is the sun, and of the shaft that is the carrier."""
+    """Yield problems of the gear that is the sun, and of the shaft that is the carrier."""
     for key, word in (("sun", table.sun), ("carrier", table.carrier)):
         side, dot, port = word.partition(".")
         if side not in train.shafts:
@@ -276,7 +271,7 @@ def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
 
 
 def _teeth(train: Train, name: str) -> Iterator[SceneError]:
-    """Problems of teeth that are told right each by itself."""
+    """Yield problems of teeth that are sound each by itself."""
     stage = stage_of(train, name)
     gear, (side, _), (port, _) = stage.sun, stage.shafts, stage.ports
     gear_label = f"the gear {side}.{port}, the sun,"
@@ -298,16 +293,16 @@ def _teeth(train: Train, name: str) -> Iterator[SceneError]:
                 )
 
 
-def turned(train: Train, name: str, by: float) -> Train:
-    """A train with the carrier of a stage at another position, rad beyond its own."""
+def with_carrier_turned(train: Train, name: str, angle: float) -> Train:
+    """Return a train with the carrier of a stage turned by an angle, rad."""
     table = train.planetary[name]
-    turned_table = table.with_changes(position=(table.position + by) % (2 * pi))
+    turned_table = table.with_changes(position=(table.position + angle) % (2 * pi))
     return train.with_changes(planetary={**train.planetary, name: turned_table})
 
 
 def named_pair(train: Train, word: str | None) -> Pair:
-    """A mesh of two shafts by its name, as of :meth:`solidgear.scene.train.Train.named_mesh`;
-    refuses one of planets, whose teeth have no backlash.
+    """Return a mesh of two shafts by name, as :meth:`solidgear.scene.train.Train.named_mesh`; refuse
+    a mesh of planets, whose teeth have no backlash.
     """
     mesh = train.named_mesh(word)
     if isinstance(mesh, PlanetMesh):
@@ -320,7 +315,7 @@ def named_pair(train: Train, word: str | None) -> Pair:
 
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
-    """Transmission error of a mesh that drives a motion; refuses one that has none."""
+    """Return the transmission error of a mesh that drives a motion; refuse a mesh without one."""
     if (error := driver.mesh.transmission_error) is not None:
         return error
     table: tuple

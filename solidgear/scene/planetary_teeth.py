@@ -1,4 +1,4 @@
-"""Tooth numbers of a planetary stage: do they assemble, how fast does it turn, how large is it."""
+"""Tooth numbers of a planetary stage: whether they assemble, ratio of speeds and radii."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.errors import SceneError
 from solidgear.scene.units import TYPED
 
-#: of a tooth; an azimuth that is typed with six digits is that far from where a planet fits
+#: share of a tooth by which an azimuth typed with six digits is off from where a planet fits
 FITS = 1e-3
 #: tip of a tooth beyond its pitch circle, modules
 ADDENDUM = 1.0
@@ -87,13 +87,13 @@ class PlanetaryTeeth:
 
     @property
     def azimuths(self) -> tuple[float, ...]:
-        """Of all planets, rad."""
+        """Azimuths of all planets, rad."""
         if isinstance(self.planets, int):
             return tuple(2 * pi * k / self.planets for k in range(self.planets))
         return tuple(self.planets)
 
     def _assembles(self) -> None:
-        """Every planet stands a whole number of teeth of sun and ring together from the first."""
+        """Refuse planets that do not stand a whole number of teeth of sun and ring from the first."""
         around = self.sun + self.ring
         if isinstance(self.planets, int) and around % self.planets:
             fit = ", ".join(str(n) for n in range(2, 9) if around % n == 0)
@@ -113,7 +113,7 @@ class PlanetaryTeeth:
                 )
 
     def _side_by_side(self) -> None:
-        """Tips of neighbours stay apart."""
+        """Refuse neighbours whose tips overlap."""
         tips = self.module * (self.planet + 2 * ADDENDUM)
         turns = np.sort(np.array(self.azimuths) % (2 * pi))
         if len(turns) < 2:
@@ -134,12 +134,12 @@ class PlanetaryTeeth:
 
     @property
     def pin_radius(self) -> float:
-        """m."""
+        """Radius of the circle of pins, m."""
         return self.module * (self.sun + self.planet) / 2
 
     @property
     def base_radii(self) -> tuple[float, float, float]:
-        """Of sun, planet and ring, m."""
+        """Base radii of sun, planet and ring, m."""
         sun, planet, ring = (
             self.module * teeth * cos(self.pressure_angle) / 2
             for teeth in (self.sun, self.planet, self.ring)
@@ -152,5 +152,5 @@ class PlanetaryTeeth:
         return atan(tan(self.helix) * cos(self.pressure_angle))
 
     def mesh_frequency(self, sun: float) -> float:
-        """Of both meshes, Hz, at a speed of the sun, turns a second."""
+        """Return the frequency of both meshes, Hz, at a speed of the sun, turns a second."""
         return self.ring * sun / self.speed_ratio

@@ -91,12 +91,12 @@ class PointMass(Placed):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if "on" not in table:
             hint = 'name the port or bearing that carries it, or write position = "28 mm"'
-            words.needs("position", hint, "on")
+            words.require("position", hint, "on")
             return {"y": words.y(places)}
         if words.position is not None:
             raise SceneError("give either on or position, not both", path=("position",))
         reason = "belongs to a seat of its own; a mass on a station has that of the station"
-        words.refuse(reason, "from_", "seat_width", "attachment", beside=table)
+        words.refuse(reason, "from_", "seat_width", "attachment", table=table)
         return {"attachment": "average"}
 
     @property

@@ -91,14 +91,14 @@ class Recognised(NamedTuple):
             )
         ]
 
-    def laid(self, usual: Material, places: Places) -> list[Segment]:
+    def lay_out(self, usual: Material, places: Places) -> list[Segment]:
         """Its frusta, and where they lie told to the places of a file."""
         segments = self.segments(usual)
-        places.at |= {"start": 0.0, "end": segments[-1].y1, "origin": self.origin}
+        places.datums |= {"start": 0.0, "end": segments[-1].y1, "origin": self.origin}
         for s in segments:
             middle = (s.y0 + s.y1) / 2
-            places.at |= {f"{s.name}.start": s.y0, f"{s.name}.end": s.y1}
-            places.at[f"{s.name}.middle"] = middle
+            places.datums |= {f"{s.name}.start": s.y0, f"{s.name}.end": s.y1}
+            places.datums[f"{s.name}.middle"] = middle
             places.surface[s.name] = (s.y0, s.y1)
         return segments
 
@@ -107,13 +107,13 @@ class Recognised(NamedTuple):
         groups = [g for g in self.body.groups if g.material is None]
         if groups:
             raise SceneError(
-                f"{groups[0].said}, {1e6 * groups[0].volume:.4g} cm^3, has no material: name its groups "
+                f"{groups[0].label}, {1e6 * groups[0].volume:.4g} cm^3, has no material: name its groups "
                 "here, or write [material] for all the rest",
                 path=("body", "materials"),
             )
         return next(g.material for g in self.body.groups if g.material is not None)
 
-    def weigh(self, expected: float | None, usual: Material) -> None:
+    def check_mass(self, expected: float | None, usual: Material) -> None:
         """Refuse a part that does not have the mass (kg) that its file says."""
         mass = self.body.mass(usual)
         if expected is not None and abs(mass / expected - 1) > MASS_CHECK:
@@ -172,7 +172,7 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
 Reader = Callable[[BodyTable, Path], Recognised]
 
 
-def unread(table: BodyTable, folder: Path) -> Recognised:
+def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
     """A reader that reads no parts."""
     raise SceneError(
         "a part from a file is read by solidgear.load alone; a train or a study of bearings takes "

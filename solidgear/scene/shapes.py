@@ -1,4 +1,4 @@
-"""Shapes that a file describes a shaft by, and how they are laid end to end."""
+"""Shapes by which a file describes a shaft, and the segments that they make end to end."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _segment_name(name: str) -> str:
 
 
 class Frustum(NamedTuple):
-    """A part of a shape, by its radii at both ends, m."""
+    """A part of a shape, by the radii at both ends, m."""
 
     part: Literal["shaft", "frustum", "backcone"]
     length: float
@@ -34,7 +34,7 @@ class Frustum(NamedTuple):
     outer1: float
 
     def turned(self) -> Frustum:
-        """End for end."""
+        """Return the frustum turned end for end."""
         return self._replace(outer0=self.outer1, outer1=self.outer0)
 
 
@@ -48,9 +48,9 @@ class OtherMaterial(Model):
 
 
 class _Shape(Model):
-    """A [[segment]] of a file, by itself; laid end to end with others it gives segments."""
+    """A [[segment]] of a file, which makes one segment or several."""
 
-    keys: ClassVar[Mapping[str, str]]  #: fields of its segments, and the keys that they come from
+    keys: ClassVar[Mapping[str, str]]  #: keys of the file, by the fields of segments they give
     #: places on it that others can be counted from
     datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
 
@@ -66,11 +66,11 @@ class _Shape(Model):
                 )
 
     def frusta(self) -> list[Frustum]:
-        """Frusta that it is made of, in the order of the shaft."""
+        """Return the frusta that make up the shape, in the order of the shaft."""
         raise NotImplementedError
 
     def key_of(self, field: str) -> str:
-        """The key that a field of one of its segments came from."""
+        """Return the key of the file that a field of a segment came from."""
         return {"inner0": "bore", "inner1": "bore", **self.keys}.get(field, field)
 
 
@@ -155,7 +155,6 @@ class BevelHead(_Shape):
         return [frustum.turned() for frustum in reversed(frusta)] if self.toe == "end" else frusta
 
 
-#: any of them
 Shape: TypeAlias = Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]
 SHAPES: dict[str, type[_Shape]] = {"cylinder": Cylinder, "cone": Cone, "bevel_head": BevelHead}
 
@@ -167,7 +166,7 @@ class Laid(NamedTuple):
     shapes: list[tuple[int, Shape]]  #: of each segment, with its place in the file
 
     def path(self, path: tuple) -> tuple:
-        """The key of the file that an entry of the segments came from."""
+        """Return the path in the file that an entry of the segments came from."""
         if not path[1:]:
             return ("segment",)
         _, place, key, *further = path
@@ -178,11 +177,11 @@ class Laid(NamedTuple):
 
 
 def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
-    """Lay shapes end to end from y = 0, and tell the places where they lie; problems have paths of
-    a file.
+    """Lay shapes end to end from y = 0 and enter their datums in `places`; problems have paths of the
+    file.
     """
     laid, problems, y = Laid([], []), [], 0.0
-    places.at["start"] = 0.0
+    places.datums["start"] = 0.0
     for index, shape in enumerate(shapes):
         start = y
         material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
@@ -202,8 +201,8 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
                 places.surface[shape.name] = (segment.y0, y)
         lo, hi = places.surface.get(shape.name, (start, y))
         datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
-        places.at |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
-    places.at["end"] = y
+        places.datums |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
+    places.datums["end"] = y
     if problems:
         raise SceneError.of(problems)
     return laid

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError
-from solidgear.scene.bearing_stiffness import one_stiffness
-from solidgear.scene.housing import housing_of
+from solidgear.scene.bearing_stiffness import refuse_two_stiffnesses
+from solidgear.scene.housing import read_housing
 from solidgear.scene.paths import Keys, Tables
 from solidgear.scene.places import Places
 from solidgear.scene.stations import Bearing
@@ -43,7 +43,7 @@ def resprung(scene: Scene, tables: Tables, touched: Iterable[Keys]) -> Scene:
 
 def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
     """A bearing with the springs of a table."""
-    one_stiffness(table)
+    refuse_two_stiffnesses(table)
     try:
         return bearing.with_changes(**{key: table[key] for key in _SPRINGS if key in table})
     except SceneError as error:
@@ -58,12 +58,12 @@ def _housing(scene: Scene, table: Mapping[str, Any]) -> dict[str, Any]:
     """Fields of a scene with the housing of a table, where it is."""
     housing = scene.housing
     places = Places("average")
-    places.at["start"] = 0.0
+    places.datums["start"] = 0.0
     housing_table = {key: value for key, value in table.items() if key != "from"}
     if housing is not None:
         housing_table["position"] = housing.y
     try:
-        support = housing_of(housing_table, places)
+        support = read_housing(housing_table, places)
     except SceneError as error:
         raise error.located(None, prefix=("housing",)) from None
     axial = support if isinstance(support, float) else None

@@ -10,11 +10,11 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
 from solidgear.frames import DOF_NAMES
-from solidgear.scene.bearing_stiffness import Matrix, one_stiffness
+from solidgear.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
 from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.ends import on_face
+from solidgear.scene.ends import check_face_words
 from solidgear.scene.housing import Elastic, elastic
-from solidgear.scene.patches import Patch, Point, on_patch, patch_problems
+from solidgear.scene.patches import Patch, Point, fields_on_patch, patch_problems
 from solidgear.scene.places import Along, Placed, Places
 from solidgear.scene.recognised import Seat
 from solidgear.scene.support import (
@@ -26,7 +26,7 @@ from solidgear.scene.support import (
     sliding,
     support_problems,
 )
-from solidgear.scene.typed import Gathered
+from solidgear.scene.typed import Problems
 from solidgear.scene.units import (
     POSITION_DECIMALS,
     SOFTEST,
@@ -138,22 +138,22 @@ class Bearing(Placed):
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
-        one_stiffness(table)
+        refuse_two_stiffnesses(table)
         face = table.get("face")
         if words.patch is not None:
-            return on_patch(words, table, places, "seat_width")
+            return fields_on_patch(words, table, places, "seat_width")
         if words.seat is not None:
             reason = "a seat has its place and width in seat; leave one of both out"
-            words.refuse(reason, "position", "from_", "face", "seat_width", beside=table)
+            words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
             lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
             if lo is None or hi is None:
                 return {"y": None, "seat_width": None}
             return {"y": (lo + hi) / 2, "seat_width": hi - lo}
         if face is None:
-            words.needs("position", 'write position = "28 mm" with from, or face = "start"')
+            words.require("position", 'write position = "28 mm" with from, or face = "start"')
             return {"y": words.y(places)}
-        on_face(words, table)
-        return {"y": places.at.get(face) if face in ("start", "end") else None}
+        check_face_words(words, table)
+        return {"y": places.datums.get(face) if face in ("start", "end") else None}
 
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
@@ -365,11 +365,11 @@ class Port(Placed):
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if words.patch is not None:
-            return on_patch(words, table, places, "lo", "hi")
-        problems = Gathered()
+            return fields_on_patch(words, table, places, "lo", "hi")
+        problems = Problems()
         y = problems.read(lambda: cls._y(words, places))
         lo, hi = problems.read(lambda: cls._span(words, places)) or (None, None)
-        problems.tell()
+        problems.raise_any()
         if words.at is None and words.position is None and lo is not None and hi is not None:
             y = (lo + hi) / 2
         return {"y": y, "lo": lo, "hi": hi}
@@ -379,9 +379,9 @@ class Port(Placed):
         """Its place, m."""
         if words.at is not None:
             words.refuse("give either at, or position with from, not both", "position", "from_")
-            return places.of(words.at, "at")
+            return places.datum(words.at, "at")
         if words.seat is None:
-            words.needs("position", 'write at = "<segment>.middle", or position with from', "at")
+            words.require("position", 'write at = "<segment>.middle", or position with from', "at")
         return words.y(places)
 
     @staticmethod
@@ -392,5 +392,5 @@ class Port(Placed):
                 words.refuse(f"give either seat or {key}, not both", key)
             return places.span_of_seat(words.seat, "span, or attach_to with the name of a segment")
         hint = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
-        words.one_of("attach_to", "span", hint)
+        words.require_one("attach_to", "span", hint)
         return words.span or places.span_of(words.attach_to, "attach_to")

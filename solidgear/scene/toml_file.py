@@ -1,4 +1,6 @@
-"""A TOML file as plain tables, or one sentence on where it is wrong and what would be right."""
+"""Reading of TOML files as plain tables, or one sentence on where a file is wrong and how to correct
+it.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,7 @@ from typing import Any, TextIO
 
 from solidgear.errors import SceneError, printable
 
-#: bytes; a shipped scene takes some thousands, the largest shaft and bearings there may be some ten
-#: thousands
+#: bytes; a shipped scene takes some thousands, the largest possible shaft some ten thousands
 LARGEST = 300_000
 #: full stops in one line: a 6x6 matrix has 36. The parser's time grows with the cube of the parts
 #: of a key
@@ -25,8 +26,8 @@ STANDARD_INPUT = "-"
 
 
 def parse(file_path: str) -> dict[str, Any]:
-    """Tables of a TOML file, or a refusal: no such file, no plain file, too large, no UTF-8 text or
-    no TOML.
+    """Read the tables of a TOML file; refuse a missing, odd or too large file, text that is not UTF-8
+    and text that is not TOML.
     """
     try:
         text = _text(file_path)
@@ -36,18 +37,15 @@ def parse(file_path: str) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         reason = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
     except tomllib.TOMLDecodeError as error:
-        reason = _what_is_wrong(text, str(error))
+        reason = _syntax_reason(text, str(error))
     except RecursionError:
         reason = "not a scene: its tables are nested too deeply"
     except SceneError as error:
         reason = error.reason
     except (OSError, ValueError) as error:
-        long = "digits" in str(error)
-        reason = (
-            "not a scene: a number in it has thousands of digits"
-            if long
-            else f"cannot be read: {getattr(error, 'strerror', None) or error}"
-        )
+        reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        if "digits" in str(error):
+            reason = "not a scene: a number in it has thousands of digits"
     raise SceneError(reason, where=place_of(file_path))
 
 
@@ -62,18 +60,18 @@ def is_train(path: str | os.PathLike) -> bool:
 
 
 def name_of(file_path: str) -> str:
-    """Name of the scene in a file: that of the file."""
+    """Return the name of the scene in a file: the stem of its path."""
     return "scene" if file_path == STANDARD_INPUT else Path(file_path).stem
 
 
 def place_of(file_path: str) -> str:
-    """A path as errors name it."""
+    """Return a path as errors name it."""
     return "standard input" if file_path == STANDARD_INPUT else file_path
 
 
 @lru_cache(maxsize=1)
 def _standard_input(stream: TextIO) -> bytes:
-    """Text of standard input; a file is read more than once, to say where it is wrong."""
+    """Read standard input once: a file is read again to locate its problems."""
     return stream.buffer.read(LARGEST + 1)
 
 
@@ -113,9 +111,8 @@ def _text(file_path: str) -> str:
 
 # --------------------------------------------------------------------------- plain words
 _NUMBER = r"[+-]?\d[\d_]*"
-#: what people write, by the line the parser stopped in, the more telling first: pattern and plain
-#: words, with groups of the pattern
-_HABITS = (
+#: common mistakes, by the line the parser stopped in, the most specific first: pattern and hint
+_MISTAKES = (
     (
         re.compile(rf"=\s*({_NUMBER}),(\d+)\s*([^\s\d,\]#]*)$"),
         'a decimal comma; decimals take a point, and a unit quotes, such as 3.5 or "3.5 mm"',
@@ -158,8 +155,8 @@ _PARSER = {
 }
 
 
-def _what_is_wrong(text: str, message: str) -> str:
-    """The parser's message in plain words, with the line it stopped in."""
+def _syntax_reason(text: str, message: str) -> str:
+    """Return the parser's message in plain words, with the line it stopped in."""
     words, _, place = message.partition(" (at ")
     position = re.match(r"line (\d+)", place)
     lines = text.split("\n")
@@ -187,7 +184,7 @@ def _plain_words(words: str, line: str) -> str:
     if words.startswith("Duplicate inline table key"):
         return "a key is given twice in its table"
     bare = re.sub(r"\s*#.*$", "", line[:300])
-    for pattern, plain in _HABITS:
+    for pattern, plain in _MISTAKES:
         if pattern.search(bare):
             return plain
     return next(
@@ -196,25 +193,25 @@ def _plain_words(words: str, line: str) -> str:
     )
 
 
-def of_tables(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Problems of the one entry of a list told as those of a table, where a file has a table."""
-    return SceneError.of(
-        problem.located(None, path=(problem.path[0], *problem.path[2:]))
-        if problem.path[1:2] == (0,) and isinstance(raw.get(problem.path[0]), Mapping)
-        else problem
-        for problem in error.problems
-    )
+def with_table_paths(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
+    """Return an error with paths of the file, where it has a table in place of a list of one."""
+    problems = []
+    for problem in error.problems:
+        if problem.path[1:2] == (0,) and isinstance(raw.get(problem.path[0]), Mapping):
+            problem = problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        problems.append(problem)
+    return SceneError.of(problems)
 
 
 class FileOrder:
-    """Order of the entries of a file."""
+    """Order of the entries of a file, to sort problems by."""
 
     def __init__(self, raw: Mapping):
         self.raw = raw
         self.places: dict[int, dict] = {}
 
-    def of(self, path: tuple) -> list[int]:
-        """Places of the keys of a path in their tables, the last one for a key that is missing."""
+    def positions(self, path: tuple) -> list[int]:
+        """Return the positions of the keys of a path in their tables; a missing key comes last."""
         out: list[int] = []
         table = self.raw
         for key in path:

@@ -20,7 +20,7 @@ from math import acos, atan, copysign, cos, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 from solidgear.errors import SceneError
-from solidgear.scene.cylindrical import working
+from solidgear.scene.cylindrical import working_cylinders
 
 if TYPE_CHECKING:
     from solidgear.scene.gears import Pair
@@ -116,7 +116,7 @@ class ToothFit:
     def tight(self) -> float:
         """Centre distance without backlash of two wheels with outer teeth, m."""
         known = self.module, self.helix_angle, self.pressure_angle, self.shift
-        return working(self.teeth, *known).without_backlash
+        return working_cylinders(self.teeth, *known).without_backlash
 
     @property
     def clearances(self) -> tuple[float, float]:
@@ -165,7 +165,7 @@ def fit_of(pair: Pair) -> ToothFit | None:
     Raises
     ------
     SceneError
-        As :func:`solidgear.scene.cylindrical.working`.
+        As :func:`solidgear.scene.cylindrical.working_cylinders`.
     """
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     module = pinion.module or gear.module
@@ -174,7 +174,7 @@ def fit_of(pair: Pair) -> ToothFit | None:
     helix = pinion.helix_angle or gear.helix_angle or 0.0
     teeth, shift = (pinion.teeth, gear.teeth), (pinion.profile_shift, gear.profile_shift)
     known = (teeth, module, helix, mesh.pressure_angle, shift)
-    wheels = working(*known, mesh.centre_distance)
+    wheels = working_cylinders(*known, mesh.centre_distance)
     faces = [wheel.face_width for wheel in (pinion, gear) if wheel.face_width]
     return ToothFit(*known, sum(wheels.radii), min(faces, default=0.0))
 

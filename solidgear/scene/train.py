@@ -1,8 +1,8 @@
-"""Shafts that mesh, with what drives them and what they drive: data only.
+"""Trains of shafts that mesh, with engines and loads: data only.
 
-The shafts are scenes of their own.  Vectors of a mesh are told in the frame of its *pinion*, the
-first of its two gears: y along its shaft from the pitch apex towards its back, the mesh on its -x
-side, z up (:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumped point.
+Each shaft has a scene.  Vectors of a mesh are given in the frame of the *pinion*, the first of both
+gears: y along the shaft from the pitch apex towards the back, the mesh on the -x side, z up
+(:mod:`solidgear.system.gear_mesh` draws it), from the pinion's lumped point.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from solidgear.scene.gears import HeadInertia, Member, Pair, Shaft, pair_problem
 from solidgear.scene.layout import (
     PerTurn,
     ends_of,
-    idle,
+    is_idler,
     layout_problems,
     turns_of,
     with_flanks,
@@ -41,7 +41,7 @@ from solidgear.scene.typed import Model
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
-#: what turns one shaft with another
+#: teeth by which one shaft turns another
 Joint = Pair | Stage
 
 
@@ -104,7 +104,9 @@ class Train(Model):
         if problems := list(layout_problems(self)):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))
-        problems = [problem for pair in self.pairs for problem in pair.told(pair_problems(pair))]
+        problems = [
+            problem for pair in self.pairs for problem in pair.with_file_paths(pair_problems(pair))
+        ]
         problems += [*spring_problems(self), *share_problems(self), *housing_problems(self)]
         problems += [] if problems else running_problems(self)
         if problems:
@@ -210,8 +212,8 @@ class Train(Model):
             name = "mesh" if alone else f"mesh {mesh.name or '-'.join(sides)}"
             pinion, gear = (self.shafts[side].member(port) for side, port in ends)
             pinion, gear = with_flanks(self, k, pinion, gear)
-            behind = idle(self, ends[1])
-            out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point, behind))
+            idle = is_idler(self, ends[1])
+            out.append(Pair(name, sides, ports, paths, pinion, gear, mesh, self.point, idle))
         return tuple(out)
 
     @cached_property
@@ -353,8 +355,8 @@ class Train(Model):
         """Scene of a shaft, with the place of every torsional spring as a free station if that is
         none of its ports; tied as the others are, where all of them are tied alike.
         """
-        own = self.shafts[side]
-        scene = own.member().scene if len(own.gears) == 1 else own.scene
+        side_shaft = self.shafts[side]
+        scene = side_shaft.member().scene if len(side_shaft.gears) == 1 else side_shaft.scene
         ties = {s.attachment for s in scene.stations}
         datum = {"start": 0.0, "end": scene.length} | {s.name: s.y for s in scene.stations}
         stations = [

@@ -1,7 +1,7 @@
 """From a TOML file of a train to a `Train`, errors named by the keys of the file.
 
-The format is documented by ``geometry/axle_overhung.toml``, and that of more than two shafts by
-``geometry/gearbox_two_stage.toml``, and of a housing by ``geometry/gearbox_housed.toml``.
+The format is documented by ``geometry/axle_overhung.toml``, for more than two shafts by
+``geometry/gearbox_two_stage.toml``, and with a housing by ``geometry/gearbox_housed.toml``.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from solidgear.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.scene.model import Scene
 from solidgear.scene.operation import Operation
 from solidgear.scene.planetary import Planetary
-from solidgear.scene.toml_file import name_of, of_tables, parse
+from solidgear.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_housing import HOUSING, TrainHousing
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
-from solidgear.scene.typed import Gathered, Model
+from solidgear.scene.typed import Model, Problems
 from solidgear.scene.units import TYPED
 
-#: reads the scene of a side from a file, told whether the shaft stands alone.
+#: reads the scene of a side from a file, given whether the shaft stands alone
 ReadShaft = Callable[[str, Path, bool], Scene]
 
 CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
@@ -42,9 +42,8 @@ def _as_written(side: str, path: Path, alone: bool) -> Scene:
 
 
 def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
-    """Read a train file; the shafts it names lie relative to it. `shaft` reads the scene of a side
-    from its file, and is told whether the shaft stands alone: bearings of a shaft whose train has
-    an [operation] settle with the train.
+    """Read a train file, whose scenes lie relative to it. `shaft` reads the scene of a side from its
+    file, given whether the shaft stands alone: with an [operation] bearings settle with the train.
     """
     file_path = os.fspath(path)
     return train_of(parse(file_path), file_path, shaft)
@@ -66,14 +65,14 @@ class _Tables(Model):
     @model_validator(mode="before")
     @classmethod
     def _by_name(cls, tables: dict[str, Any]) -> dict[str, Any]:
-        """One engine or load, which needs no name, by what it is."""
+        """Name a single engine or load, which needs no name, by its role."""
         roles = [role for role in SHORT if tables.get(role)]
         return {**tables, **{r: {r: tables[r]} for r in roles if not _several(tables[r])}}
 
     def train(
         self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
     ) -> Train:
-        """The train that they describe."""
+        """Return the train of shafts, meshes and rotors with these tables."""
         fields = {
             key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
         }
@@ -95,8 +94,8 @@ class ShortFile(_Tables):
     gear: Member
     mesh: Mesh
 
-    def whole(self) -> Train:
-        """The train."""
+    def build_train(self) -> Train:
+        """Return the train, rotors without a shaft on those of their role."""
         rotors = {
             kind: {
                 name: rotor if rotor.shaft else rotor.with_changes(shaft=side)
@@ -117,13 +116,13 @@ class LongFile(_Tables):
     planetary: dict[str, Planetary] = {}
     rotor: dict[str, Rotor] = {}
 
-    def whole(self) -> Train:
-        """The train."""
+    def build_train(self) -> Train:
+        """Return the train."""
         return self.train(self.shaft, self.mesh, self.rotor, planetary=self.planetary)
 
 
 def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_written) -> Train:
-    """Resolve the tables of a train file; what it names lies relative to `where`, its path."""
+    """Resolve the tables of a train file; files that it names lie relative to `file_path`."""
     folder = Path(file_path).parent
     try:
         if "segment" in raw:
@@ -135,7 +134,7 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
             )
         data: dict[str, Any] = {"name": name_of(file_path), **raw}
         read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
-        problems, kind = Gathered(), LongFile if "shaft" in raw else ShortFile
+        problems, kind = Problems(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
             data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)
         for side in SIDES:
@@ -146,16 +145,16 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
             data[HOUSING] = _with_matrices(box, folder)
         for role in (role for role in SHORT if role in raw):
             for name in [*raw[role]] if _several(raw.get(role)) else [""]:
-                problems.read(partial(_whole_rotor, raw, role, name))
+                problems.read(partial(_check_rotor, raw, role, name))
         if kind is LongFile:
-            problems.tell()
+            problems.raise_any()
         known_paths = {problem.path for problem in problems}
         try:
-            train = kind(**data).whole()
+            train = kind(**data).build_train()
         except SceneError as error:
             problems_of_file = as_written(error, raw).problems
             problems += [problem for problem in problems_of_file if problem.path not in known_paths]
-        problems.tell()
+        problems.raise_any()
         return train
     except SceneError as error:
         if error.where:
@@ -164,21 +163,20 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Problems told by the keys of a file: as of :func:`of_tables`, and those of the only engine or
-    load as its own.
+    """Return an error with paths of the file: as :func:`with_table_paths`, and those of a single
+    engine or load without its name.
     """
     alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
-    problems = (
-        problem.located(None, path=(problem.path[0], *problem.path[2:]))
-        if problem.path[:2] in alone
-        else problem
-        for problem in error.problems
-    )
-    return of_tables(SceneError.of(problems), raw)
+    problems = []
+    for problem in error.problems:
+        if problem.path[:2] in alone:
+            problem = problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        problems.append(problem)
+    return with_table_paths(SceneError.of(problems), raw)
 
 
 def _several(table: Any) -> bool:
-    """True if a table holds others by their names, and is none of an engine or a load itself."""
+    """Return True for a table of named engines or loads, and not of a single one."""
     tables = isinstance(table, Mapping) and all(
         isinstance(v, (Mapping, Rotor)) for v in table.values()
     )
@@ -186,10 +184,10 @@ def _several(table: Any) -> bool:
 
 
 def _shafts(
-    problems: Gathered, tables: Any, read_scene: Callable, carriers: bool
+    problems: Problems, tables: Any, read_scene: Callable, carriers: bool
 ) -> dict[str, Shaft]:
-    """Shafts by their names: with a table for each of several gears, or the one gear in their own;
-    a carrier may have none.
+    """Return shafts by name: with a table for each of several gears, or a single gear in the table of
+    the shaft; a carrier may have none.
     """
     if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
         reason = "holds a table for each shaft, such as [shaft.input]"
@@ -211,21 +209,20 @@ def _shafts(
 
 
 def _read_meshes(data: dict[str, Any], many: bool, folder: Path) -> None:
-    """Put the contact cells that meshes name into them; one mesh is a list of one."""
+    """Read the contact cells that meshes name into `data`."""
     meshes = data.get("mesh")
     tables = meshes if many and isinstance(meshes, list) else [meshes]
-    read = [
-        _with_cells(table, folder, ("mesh", k) if many else ("mesh",))
-        if isinstance(table, Mapping) and "contact_cells" in table
-        else table
-        for k, table in enumerate(tables)
-    ]
+    read = []
+    for k, table in enumerate(tables):
+        if isinstance(table, Mapping) and "contact_cells" in table:
+            table = _with_cells(table, folder, ("mesh", k) if many else ("mesh",))
+        read.append(table)
     if "mesh" in data:
         data["mesh"] = read if many else read[0]
 
 
-def _read(problems: Gathered, reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
-    """As `Gathered.read`; problems of another file are told by themselves."""
+def _read(problems: Problems, reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """Return a result as `Problems.read`; problems of another file are raised at once."""
     try:
         return reader()
     except SceneError as error:
@@ -245,15 +242,15 @@ def _with_scene(
     return {**table, "scene": shaft(path[-1], folder / name, alone)}
 
 
-def _whole_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
-    """The spring is what is most often left out: say what it is for."""
+def _check_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
+    """Refuse a rotor without its spring, which is most often left out, and say what it is for."""
     path = (rotor, name) if name else (rotor,)
     table = raw[rotor][name] if name else raw.get(rotor)
     if not isinstance(table, Mapping):
         reason = f"holds inertia and a spring: write [{rotor}] with inertia, and [{rotor}.spring]"
         raise SceneError(reason, path=(rotor,))
     side = table.get("shaft", SHORT[rotor])
-    misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # told as such
+    misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # refused as such
     if not isinstance(table.get("spring"), Mapping) and not misspelt:
         raise SceneError(
             f"the torsional spring between the {name or rotor} and the {side}'s shaft is missing; "
@@ -282,16 +279,16 @@ def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
-    """Contact cells of a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
-    `Mesh` takes them: ``point``, ``normal`` (of unit length) and ``force``.
+    """Read contact cells from a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
+    `Mesh` takes them: ``point``, unit ``normal`` and ``force``.
     """
     file_path = os.fspath(path)
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file, skipinitialspace=True))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        said = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
-        raise SceneError(f"the contact cells cannot be read: {said}", where=file_path) from None
+        cause = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
+        raise SceneError(f"the contact cells cannot be read: {cause}", where=file_path) from None
     if not rows or len(rows) > MOST_CELLS:
         raise SceneError(
             f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=file_path

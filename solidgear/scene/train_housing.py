@@ -1,6 +1,6 @@
-"""A housing under the bearings of a train, with mass and mounts: data only.
+"""Housing under the bearings of a train, with mass and mounts: data only.
 
-All of it is told in the axes of the train, which are those of the first shaft's scene.
+Everything is in the axes of the train, which are those of the first shaft's scene.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from solidgear.scene.units import TYPED, Loss, Mass, quantity
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
 
-#: what the housing is called among the parts of a train, and its centre of mass among its points
+#: names of the housing among the parts of a train, and of the centre of mass among its points
 HOUSING, CENTRE = "housing", "centre"
-#: loss factor of castings with their joints, where none is told
+#: loss factor of castings with their joints, where none is given
 LOSS = 0.01
 
 
 def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
-    """Three moments of inertia about the axes of the train, or the rows of a tensor, kg m^2."""
+    """Return a tensor of inertia, kg m^2, from its rows or the three moments about the axes."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     form = "three moments of inertia about x, y and z, or three rows of three"
     if not isinstance(rows, (list, tuple)) or len(rows) != 3:
@@ -96,7 +96,7 @@ class TrainHousing(Model):
     #: shafts whose bearings stand in it, and with them rings of planetary stages; all by default
     carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     mounts: tuple[Mount, ...] = Field((), alias="mount")  #: ``mount`` in a file
-    points: dict[str, Vector] = {}  #: places of a rigid one whose motion is told, by name, m
+    points: dict[str, Vector] = {}  #: places of a rigid one whose motion is given, by name, m
     status: Status = "assumed"  #: of mass and inertia
 
     def __init__(self, /, **data: Any):
@@ -110,7 +110,7 @@ class TrainHousing(Model):
     def _named_once(self):
         if self.loss is not None and self.matrices is None:
             raise SceneError("is of an elastic housing; a rigid one loses nothing", path=("loss",))
-        places, names = [*self.known], [CENTRE]
+        places, names = [*self.point_places], [CENTRE]
         for k, mount in enumerate(self.mounts):
             if mount.at is not None and mount.at not in places:
                 reason = f"names no point of the housing{nearest(mount.at, places)}; known here: "
@@ -130,31 +130,34 @@ class TrainHousing(Model):
         return self
 
     @property
-    def known(self) -> Mapping[str, tuple[float, ...]]:
-        """Points by their names, m, the centre of mass apart."""
+    def point_places(self) -> Mapping[str, tuple[float, ...]]:
+        """Points by name, m, without the centre of mass."""
         if self.matrices is None:
             return self.points
-        return {name: tuple(at.tolist()) for name, at in self.matrices.positions.items()}
+        return {name: tuple(place.tolist()) for name, place in self.matrices.positions.items()}
 
     @property
     def mounted(self) -> dict[str, Mount]:
-        """Mounts by their names."""
+        """Mounts by name."""
         return {mount.name or str(k): mount for k, mount in enumerate(self.mounts, start=1)}
 
     @property
     def feet(self) -> dict[str, str]:
-        """Points that mounts stand at, by the names of the mounts."""
+        """Points that mounts stand at, by name of the mount."""
         return {name: mount.at or name for name, mount in self.mounted.items()}
 
     def foot(self, name: str) -> tuple[float, ...]:
-        """Place of a mount, m."""
+        """Return the place of a mount, m."""
         mount = self.mounted[name]
-        return tuple(mount.position or map(float, self.known[mount.at or ""]))
+        return tuple(mount.position or map(float, self.point_places[mount.at or ""]))
 
     @property
-    def told(self) -> list[str]:
-        """Points whose motion is told: all that are named and carry neither bearing nor mount."""
-        return [CENTRE, *(n for n in self.known if "." not in n and n not in self.feet.values())]
+    def free_points(self) -> list[str]:
+        """Points whose motion is reported: all without a bearing or a mount."""
+        return [
+            CENTRE,
+            *(n for n in self.point_places if "." not in n and n not in self.feet.values()),
+        ]
 
     @property
     def mass_matrix(self) -> np.ndarray:
@@ -165,14 +168,14 @@ class TrainHousing(Model):
 
     @property
     def places(self) -> dict[str, np.ndarray]:
-        """(3,) all points of a rigid one from its centre of mass, m."""
+        """(3,) places of all points of a rigid housing from the centre of mass, m."""
         mounts = {name: mount.position for name, mount in self.mounted.items() if mount.at is None}
         points = {CENTRE: self.centre, **mounts, **self.points}
         return {name: np.subtract(place, self.centre) for name, place in points.items()}
 
 
 def housing_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of the housing of a train: shafts that are not there or stand in another, and names."""
+    """Yield problems of the housing of a train: unknown or doubly housed shafts, and names."""
     if train.housing is None:
         return
     for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):

@@ -1,4 +1,4 @@
-"""The tables of a train file, each checked by itself: meshes, engine and load, losses."""
+"""Tables of a train file, each checked by itself: meshes, engine and load, losses."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ Azimuth = Annotated[SignedAngle, AfterValidator(_within_a_turn)]
 
 
 class TorsionSpringTable(Model):
-    """The spring between a shaft and what turns with it, and where on the shaft it sits."""
+    """Torsional spring between a shaft and a rotor, and where on the shaft it sits."""
 
     stiffness: TorsionSpring  #: N m/rad
     at: str | None = None  #: a port of the shaft: its lumped point or a bearing
     position: Length | None = None
     from_: str = Field("start", alias="from")
-    #: value, slope: of that place, m
+    #: at that place, m
     seat_width: PositiveLength | None = None
     status: Status = "assumed"
 
@@ -73,8 +73,7 @@ class Rotor(Model):
     shaft: str = ""  #: that it turns with
     inertia: Inertia  #: about the shaft, kg m^2
     spring: TorsionSpringTable
-    #: of several engines or loads: what it brings or takes of the power, which is of the torque
-    #: told at one speed
+    #: share of the power that one of several engines or loads brings or takes
     share: Annotated[float, Field(gt=0, le=1)] | None = None
     status: Status = "assumed"
 
@@ -107,7 +106,7 @@ class ErrorTable(Model):
 
 
 def constant_or_table(value: Any) -> Any:
-    """One number as a table of one order."""
+    """Return a number as a table of one order; anything else as it is."""
     if value is None or isinstance(value, (dict, ErrorTable)):
         return value
     return {"orders": (value,)}
@@ -118,7 +117,7 @@ Error = Annotated[ErrorTable | None, BeforeValidator(constant_or_table)]
 
 
 class Cell(Model):
-    """One cell of a loaded tooth contact, in the pinion's frame from its lumped point."""
+    """A cell of a loaded tooth contact, in the pinion's frame from the lumped point."""
 
     point: tuple[float, float, float]  #: m
     normal: tuple[float, float, float]  #: unit, the direction of the force on the pinion
@@ -218,7 +217,7 @@ class Losses(Model):
 
 
 class TrainAsk(Model):
-    """The questions: up to what frequency, and what counts as the same answer."""
+    """Questions of a train: the frequency range, and the tolerance of answers."""
 
     #: elastic modes that system-modes lists; by default all up to `max_frequency`
     modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] | None = None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError, show
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
-from solidgear.scene.typed import Gathered, Model
+from solidgear.scene.typed import Model, Problems
 from solidgear.scene.units import quantity
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Uncertain(Model):
         return spread / (2.0 if PLUS_MINUS.fullmatch(self.said) else math.sqrt(12.0))
 
 
-def stated(
+def with_ranges(
     scene: Scene, table: Mapping[str, Any], bearings: Sequence[Mapping[str, Any]] = ()
 ) -> Scene:
     """A scene with ranges of its entries: a table of texts by paths, nested or not, and the tables
@@ -59,7 +59,7 @@ def stated(
     Examples
     --------
     >>> import solidgear as sg
-    >>> scene = stated(sg.load("geometry/shaft_stepped.toml"), {"material.E": "± 3 %"})
+    >>> scene = with_ranges(sg.load("geometry/shaft_stepped.toml"), {"material.E": "± 3 %"})
     >>> scene.uncertain[0].low, scene.uncertain[0].high
     (0.97, 1.03)
     """
@@ -72,16 +72,16 @@ def stated(
     for path in file_texts:  # an entry of a bearing, or all of it: what is said says enough
         head, part, _ = path.partition(".stiffness")
         texts.pop(head + part, None)
-    problems = Gathered()
+    problems = Problems()
     ranges = [
         problems.read(partial(_read, scene, path, text), ("uncertain", path))
         for path, text in {**texts, **file_texts}.items()
     ]
-    problems.tell()
+    problems.raise_any()
     return scene.unjudged(uncertain=tuple(ranges)) if ranges else scene
 
 
-def scaled(scene: Scene, path: str, factor: float) -> Scene:
+def with_scaled_entry(scene: Scene, path: str, factor: float) -> Scene:
     """The scene with the entry of a path multiplied; factors of all loads and of preloads are
     nothing of a scene (:class:`solidgear.bearings.solved.Choice`).
     """
@@ -155,7 +155,7 @@ def _read(scene: Scene, path: str, text: Any) -> Uncertain:
     value, dimension = _entry(scene, path)
     if not isinstance(text, str):
         raise SceneError('must be a text such as "± 3 %" or "0.5 : 2"', value=show(text))
-    low, high = sorted(end / value for end in ends(text, value, dimension))
+    low, high = sorted(end / value for end in range_ends(text, value, dimension))
     if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
         nominal = "1" if dimension == FACTOR else f"{value:.6g} in SI"
         raise SceneError(
@@ -201,7 +201,7 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
     return value, dimension
 
 
-def ends(text: str, value: float, dimension: str) -> tuple[float, float]:
+def range_ends(text: str, value: float, dimension: str) -> tuple[float, float]:
     """Ends of a range about a value, SI."""
 
     def number(word: str) -> float:

@@ -103,8 +103,8 @@ def budget(
     Examples
     --------
     >>> import solidgear as sg
-    >>> from solidgear.scene.uncertain import stated
-    >>> scene = stated(sg.load("geometry/shaft_stepped.toml"), {"material.density": "± 1 %"})
+    >>> from solidgear.scene.uncertain import with_ranges
+    >>> scene = with_ranges(sg.load("geometry/shaft_stepped.toml"), {"material.density": "± 1 %"})
     >>> first = sg.budget(scene).of("bending 1")
     >>> round(first.total.low, 4), round(first.total.high, 4)
     (-0.005, 0.005)

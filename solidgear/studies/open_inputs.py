@@ -20,7 +20,7 @@ from solidgear.judge.quantities import measure
 from solidgear.ladder import build
 from solidgear.quantity import STIFFNESS, Quantity
 from solidgear.scene import Scene
-from solidgear.scene.uncertain import scaled
+from solidgear.scene.uncertain import with_scaled_entry
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.statics import condense
 from solidgear.studies.loading import SHAFT
@@ -133,7 +133,7 @@ class Points:
         scene = self.scene
         for path, value in values.items():
             if path != "load" and not path.endswith((INSIDE, CLEARANCE, PRELOAD)):
-                scene = scaled(scene, path, value)
+                scene = with_scaled_entry(scene, path, value)
         beam = None
         if self.body is None or wants_equilibrium(scene):
             key = tuple(segment.material for segment in scene.segments)

@@ -81,7 +81,7 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
     if not body.groups:
         return
     told = [
-        f"{group.said} {1e6 * group.volume:.6g} cm^3, {material.density * group.volume:.6g} kg, "
+        f"{group.label} {1e6 * group.volume:.6g} cm^3, {material.density * group.volume:.6g} kg, "
         f"E {material.E / 1e9:.6g} GPa"
         for group, material in zip(body.groups, body.materials(scene.material))
     ]

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from unittest import mock
 
-from solidgear.errors import TOLD, SceneError, SolidgearError
+from solidgear.errors import MOST_PROBLEMS, SceneError, SolidgearError
 from solidgear.studies.loading import load
 from validation.fuzz.limits import Limits, Overrun
 from validation.shipped import GEOMETRY
@@ -174,7 +174,7 @@ def refusing(names: Sequence[str], *, reading: bool = False) -> Iterator[None]:
     names : sequence of str
         Of the files, one of which a sentence must name.
     reading : bool
-        A file is read: one sentence for each problem, `TOLD` at most, each with the file.
+        A file is read: one sentence for each problem, `MOST_PROBLEMS` at most, each with the file.
     """
     try:
         yield
@@ -189,8 +189,8 @@ def refusing(names: Sequence[str], *, reading: bool = False) -> Iterator[None]:
 def _faults(error: SolidgearError, names: Sequence[str], reading: bool) -> dict[str, bool]:
     lines = str(error).splitlines()
     count = len(error.problems) if isinstance(error, SceneError) and reading else 1
-    wanted = 1 if count == 1 else 1 + min(count, TOLD) + (count > TOLD)
-    named = all(any(name in line for name in names) for line in lines[: 1 + TOLD])
+    wanted = 1 if count == 1 else 1 + min(count, MOST_PROBLEMS) + (count > MOST_PROBLEMS)
+    named = all(any(name in line for name in names) for line in lines[: 1 + MOST_PROBLEMS])
     return {
         "is not one line for each problem": len(lines) != wanted,
         "does not name the file": reading and not named,

@@ -45,7 +45,7 @@ class Cut(OnSegment):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         # along the segment, unless another datum is given
         y = words.y(places, f"{table.get('segment')}.start")
-        strange = words.from_ is None and bool(places.at)  # which is told of the segment
+        strange = words.from_ is None and bool(places.datums)  # which is told of the segment
         return {"y": words.position or 0.0 if y is None and strange else y}
 
     def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:

@@ -179,7 +179,7 @@ def _soft_materials(probe: Probe) -> Iterator[tuple[Material, str]]:
     """Materials that are nearly incompressible, and what is of them."""
     body = probe.whole.body
     if body is not None and without_axis(probe.whole):
-        groups = [g.said for g in body.groups] or [body.name]
+        groups = [g.label for g in body.groups] or [body.name]
         named = list(zip(body.materials(probe.whole.material), groups))
     else:
         named = [(s.material, f"segment {s.name!r}") for s in probe.scene.segments]

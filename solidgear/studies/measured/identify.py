@@ -14,7 +14,7 @@ from solidgear.body import as_supports
 from solidgear.errors import SolidgearError
 from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
-from solidgear.scene.paths import Tables, put
+from solidgear.scene.paths import Tables, replace_entry
 from solidgear.scene.toml_file import parse
 from solidgear.solve.adjoint import of_mode
 from solidgear.studies.loading import scene_of
@@ -122,7 +122,7 @@ class _Study:
         """Tables with the logarithms of entries moved by `x`."""
         tables = self.tables
         for keys, value in zip(self.keys, self.before * np.exp(x)):
-            tables = put(tables, keys, float(value))
+            tables = replace_entry(tables, keys, float(value))
         return tables
 
     def scene_at(self, x: np.ndarray) -> Scene:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from solidgear.errors import SceneError, SolidgearError, show
 from solidgear.scene.paths import Keys, Tables, entry, keys_of, label_of
-from solidgear.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, ends
+from solidgear.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, range_ends
 from solidgear.scene.units import DIMENSIONS, quantity
 from solidgear.studies.sweep.amounts import in_si
 
@@ -73,7 +73,7 @@ def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
             )
         label = label_of(keys, tables)
         if equals:
-            low, high = sorted(ends(said, before, _dimension(there, said)))
+            low, high = sorted(range_ends(said, before, _dimension(there, said)))
             return _known(Varied(keys, label, before), said, low / before, high / before)
     except SceneError as error:
         raise SolidgearError(f"--vary {text}: {error}") from None

@@ -12,7 +12,7 @@ from solidgear.errors import SceneError, SolidgearError, nearest
 from solidgear.scene import Scene
 from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.scene.file import scene_of
-from solidgear.scene.paths import Keys, Tables, entries, entry, label_of, put
+from solidgear.scene.paths import Keys, Tables, entries, entry, label_of, replace_entry
 from solidgear.studies.loading import part_of
 from solidgear.studies.sweep.amounts import amount, in_si
 
@@ -87,7 +87,7 @@ def around(scene: Scene, tables: Tables, keys: Keys, where: str) -> Around:
         try:
             other = _in_place(scene, tables, keys, at + sign * step)
             text = _text(float(number) + sign * step / one, unit)
-            sides.append(other or _held(put(tables, keys, text), scene, where))
+            sides.append(other or _held(replace_entry(tables, keys, text), scene, where))
         except SceneError as error:
             sides.append(None)
             refused = error

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from solidgear.errors import SceneError, SolidgearError, did_you_mean, near, nearest
-from solidgear.scene.paths import Keys, Tables, entries, entry, keys_of, label_of, put
+from solidgear.scene.paths import Keys, Tables, entries, entry, keys_of, label_of, replace_entry
 from solidgear.scene.text_keys import is_text
 from solidgear.studies.sweep.amounts import amount, in_si
 from solidgear.studies.sweep.spans import Span, spread
@@ -233,7 +233,7 @@ class Kept:
 
     def put(self, tables: Tables) -> Tables:
         """Tables with the last entry given what is left."""
-        return put(tables, keys_of(self.places[-1].path, tables), self.left(tables))
+        return replace_entry(tables, keys_of(self.places[-1].path, tables), self.left(tables))
 
 
 def kept_of(
@@ -277,7 +277,7 @@ def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[flo
     for one, value in zip(varied, row):
         for place in one.places:
             if place.file == file and not math.isnan(value):
-                tables = put(tables, keys_of(place.path, tables), one.put(value))
+                tables = replace_entry(tables, keys_of(place.path, tables), one.put(value))
     return tables
 
 

@@ -14,7 +14,7 @@ from solidgear.errors import SolidgearError, listed
 from solidgear.scene import Scene
 from solidgear.scene.file import KEYS
 from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.paths import Tables, changed
+from solidgear.scene.paths import Tables, with_entry
 from solidgear.scene.toml_file import parse
 from solidgear.scene.train import SHORT, SIDES, Train
 from solidgear.scene.train_file import train_of
@@ -135,7 +135,7 @@ def train_variants(
         places = [(k,) for k in range(len(meshes))] if isinstance(meshes, list) else [()]
         for place in places:
             keys = ("mesh", *place, "local_harmonics")
-            files[OWN] = changed(files[OWN], keys, list(local_harmonics))
+            files[OWN] = with_entry(files[OWN], keys, list(local_harmonics))
     return TrainVariants(path, files, varied, values, kept, design, at)
 
 

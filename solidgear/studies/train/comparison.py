@@ -165,7 +165,7 @@ def _housing(train: Train) -> dict[str, Any]:
         "centre": own.centre,
         "carries": train.housed,
         "mounts": mounts,
-        "points": {name: own.known[name] for name in own.told[1:]},
+        "points": {name: own.point_places[name] for name in own.free_points[1:]},
         "elastic": own.matrices is not None,
         "alone_hz": alone_hz(own).tolist(),
     }

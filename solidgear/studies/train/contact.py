@@ -88,7 +88,7 @@ def contact(pair: Pair, coast: bool | None = None) -> Contact:
     try:
         return _contact(pair.rolling, coast)
     except SceneError as error:
-        raise SceneError.of(pair.told(error.problems)) from None
+        raise SceneError.of(pair.with_file_paths(error.problems)) from None
 
 
 def axes_of(pair: Pair, side: str) -> np.ndarray:

@@ -10,7 +10,7 @@ from math import cos, pi, sin, sqrt
 
 from solidgear.scene import Scene
 from solidgear.scene.gears import HeadInertia, Pair
-from solidgear.scene.layout import ends_of, told_flanks
+from solidgear.scene.layout import ends_of, flanks_from_file
 from solidgear.scene.planetary import Stage
 from solidgear.scene.tooth_fit import (
     ADDENDUM,
@@ -108,7 +108,7 @@ def _told(train: Train, k: int) -> bool:
     if mesh.shaft_angle or mesh.line_of_action or mesh.contact_cells:
         return True
     pinion, gear = (train.shafts[side].member(port) for side, port in ends)
-    return told_flanks(train, ends, pinion, gear)[0].flank is not None
+    return flanks_from_file(train, ends, pinion, gear)[0].flank is not None
 
 
 def _called(train: Train, side: str, port: str) -> str:

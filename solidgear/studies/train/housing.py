@@ -159,7 +159,7 @@ def columns_of(drive: Drive, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
     if train.housing is None:
         return out
     loads = mount_rows(train, system)
-    places = train.housing.told
+    places = train.housing.free_points
     rows = [*loads.values(), *(system.motion(f"{HOUSING}.{place}") for place in places)]
     found = np.split(drive.motion(frequency_hz, np.vstack(rows)), len(rows), axis=1)
     for name, load in zip(loads, found):

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.machine.threads import pinned
-from solidgear.scene.planetary import Stage, turned
+from solidgear.scene.planetary import Stage, with_carrier_turned
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import OperatingState, settled
@@ -163,7 +163,9 @@ def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names
             )
             continue
         found = [
-            workshop.with_train(turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT))
+            workshop.with_train(
+                with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT)
+            )
             .system(*models.values())
             .elastic[0]
             for k in range(LOOKED_AT)

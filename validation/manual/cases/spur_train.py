@@ -181,7 +181,7 @@ def spur_train() -> Train:
         n: {"inertia": 1e-9, "spring": {"stiffness": 1.0, "at": at}}
         for n, at in zip(("engine", "load"), _MEMBERS)
     }
-    return ShortFile(name="spur_train", mesh=mesh, **members, **idle).whole()
+    return ShortFile(name="spur_train", mesh=mesh, **members, **idle).build_train()
 
 
 _MEMBERS = {"turbine": TURBINE, "generator": GENERATOR}
