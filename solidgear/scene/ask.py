@@ -1,4 +1,4 @@
-"""Questions that a scene asks."""
+"""Questions of a scene."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from solidgear.scene.units import Frequency, Tolerance
 _KNOWN = ", ".join(f"'{name}'" for name in QUANTITIES[:-1]) + f" or '{QUANTITIES[-1]}'"
 
 
-def _asked(value: Any) -> Quantity:
-    """A quantity, or one of the lumped points by ``quantity@name``."""
+def _read_quantity(value: Any) -> Quantity:
+    """Return a quantity, at a further lumped point as ``quantity@name``."""
     quantity = Quantity(value) if isinstance(value, str) else None
     if quantity is None or quantity.symbol not in QUANTITIES:
         raise SceneError(f"must be {_KNOWN}")
@@ -29,7 +29,7 @@ def _asked(value: Any) -> Quantity:
     return quantity
 
 
-Asked = Annotated[Quantity, BeforeValidator(_asked)]
+Asked = Annotated[Quantity, BeforeValidator(_read_quantity)]
 
 
 class Ask(Model):

@@ -1,4 +1,4 @@
-"""Ways in which a body attaches its stations."""
+"""Attachments of stations to a body."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 def attached_stations(
     stations: Iterable[Any], attachments: Sequence[str] | None = None
 ) -> Iterator[tuple[Any, str]]:
-    """Stations, each with every way in which a body is to attach it: its own, or those given; the
-    middle of an end face is a section all the same.
+    """Yield stations with each of their attachments: those given, else the one of the station; the
+    middle of an end face is always a section.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The 6x6 stiffness of a bearing as people write it: named entries or rows, checked once.
+"""The 6x6 stiffness of a bearing as a file gives it, named entries or rows, and its checks.
 
 Order (x, y, z, thx, thy, thz), SI.
 """
@@ -32,13 +32,13 @@ def _entry_names() -> dict[str, tuple[int, int, str]]:
 
 #: name of a stiffness entry -> (row, column, dimension); 21 names make the symmetric 6x6
 STIFFNESS_NAMES = _entry_names()
-#: words of catalogues -> entries, for those who write them here
+#: words of catalogues -> entries, for hints
 SPOKEN = {"radial": "kxx and kzz", "axial": "kyy", "tilting": "kthx and kthz", "torsional": "kthy"}
 
 
 def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
-    """Symmetric (6, 6) ndarray from named entries (`STIFFNESS_NAMES`); the ones not named are zero,
-    and plain numbers are SI (N/m, N/rad, N m/rad).
+    """Return the symmetric (6, 6) matrix of named entries (`STIFFNESS_NAMES`), others zero; plain
+    numbers are SI (N/m, N/rad, N m/rad).
     """
     K = np.zeros((6, 6))
     problems: list[SceneError] = []
@@ -64,14 +64,14 @@ def stiffness_matrix(entries: Mapping[str, Any]) -> np.ndarray:
 
 
 def stiffness_entries(K: Any) -> dict[str, float]:
-    """Named non-zero entries (SI) of a symmetric 6x6: the inverse of `stiffness_matrix`."""
+    """Return the non-zero entries (SI) of a symmetric 6x6 by name, the inverse of `stiffness_matrix`."""
     K = np.asarray(K, dtype=float)
     return {name: float(K[i, j]) for name, (i, j, _) in STIFFNESS_NAMES.items() if K[i, j] != 0.0}
 
 
 def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
-    """A checked 6x6 stiffness, hashable and comparable, of named entries or of rows in SI: six of
-    six finite numbers, symmetric to 1e-9 and positive semidefinite.
+    """Return a 6x6 stiffness, hashable, from named entries or rows in SI; refuse one that is not
+    finite, symmetric to 1e-9 and positive semidefinite.
     """
     if isinstance(value, Mapping):
         K = stiffness_matrix(value)
@@ -139,7 +139,7 @@ Matrix = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix
 
 
 def refuse_two_stiffnesses(table: Mapping[str, Any]) -> None:
-    """Refuse a bearing in a file that is described twice."""
+    """Refuse a table of a bearing with two descriptions of its stiffness."""
     keys = [k for k in ("stiffness", "matrix", "catalogue", "hold") if k in table]
     if len(keys) > 1:
         raise SceneError(f"give either {keys[0]} or {keys[-1]}, not both", path=(keys[0],))

@@ -26,7 +26,7 @@ Edge = Literal["root", "rim"]
 
 @dataclass(frozen=True)
 class Corner:
-    """An edge of a shaft with its fillet or chamfer, in plain floats."""
+    """An edge of a shaft with a fillet or chamfer, in plain floats."""
 
     #: name, kind: kind is fillet or chamfer
     name: str
@@ -55,7 +55,7 @@ class Corner:
 
     @property
     def face_owner(self) -> int:
-        """That segment."""
+        """Segment whose plane face the outline leaves."""
         return self.joint if self.face_side > 0 else self.joint - 1
 
     @property
@@ -65,7 +65,7 @@ class Corner:
 
     @property
     def on_cylinder(self) -> tuple[float, float]:
-        """(r, y) where it meets the cylinder, m."""
+        """(r, y) where the outline meets the cylinder, m."""
         return self.r, self.y + self.side * self.axial
 
     @property
@@ -89,7 +89,7 @@ class Corner:
         return min(ends), max(ends)
 
     def point_at(self, share: float) -> tuple[float, float]:
-        """(r, y) at a share of its length from the face to the cylinder, m."""
+        """Return (r, y) at a share of the outline from the face to the cylinder, m."""
         if self.centre is None:
             (a, b), (c, d) = self.on_face, self.on_cylinder
             return a + share * (c - a), b + share * (d - b)
@@ -99,7 +99,7 @@ class Corner:
         return r - self.out * f * math.sin(turn), y - self.side * f * math.cos(turn)
 
     def points(self, count: int = 9) -> list[tuple[float, float]]:
-        """(r, y) along the outline from the face to the cylinder, m."""
+        """Return (r, y) along the outline from the face to the cylinder, m."""
         if self.centre is None:
             return [self.on_face, self.on_cylinder]
         between = [self.point_at(k / (count - 1)) for k in range(1, count - 1)]
@@ -107,7 +107,7 @@ class Corner:
 
 
 class _At(Model):
-    """Of a file: the datum of the edge."""
+    """Words for the place of an edge: its datum."""
 
     at: str
 
@@ -132,22 +132,22 @@ class _Blend(Placed):
 
     @property
     def what(self) -> str:
-        """Its kind in words."""
+        """Kind in words."""
         return self.kind
 
     @property
     def extents(self) -> tuple[float, float]:
-        """Along the shaft and across, m."""
+        """Extents along the shaft and across, m."""
         raise NotImplementedError
 
     @property
     def size_key(self) -> str:
-        """The field that gives its size."""
+        """Field that gives the size."""
         raise NotImplementedError
 
     def corner(self, segments: Sequence[Segment]) -> Corner:
-        """Its edge on a shaft; refuses, under one of its fields, where there is none or it cannot
-        be rounded.
+        """Return the edge on a shaft; refuse, under a field, an edge that is missing or cannot be
+        rounded.
         """
         outer = self.surface == "outer"
         i, low, high = self._place(segments)
@@ -192,21 +192,21 @@ class _Blend(Placed):
             )
         axial, radial = self.extents
         return Corner(
-            self.name,
-            self.what,
-            owner_segment.y0 if owner == i else owner_segment.y1,
-            radius,
-            self.surface,
-            edge == "root",
-            owner,
-            1 if owner == i else -1,
-            1 if (edge == "root") == outer else -1,
-            axial,
-            radial,
+            name=self.name,
+            kind=self.what,
+            y=owner_segment.y0 if owner == i else owner_segment.y1,
+            r=radius,
+            surface=self.surface,
+            root=edge == "root",
+            owner=owner,
+            side=1 if owner == i else -1,
+            out=1 if (edge == "root") == outer else -1,
+            axial=axial,
+            radial=radial,
         )
 
     def _place(self, segments):
-        """Number of the segment that begins at the edge, and the segments on its two sides."""
+        """Return the number of the segment that begins at the edge, and the segments on both sides."""
         ends = [0.0, *(s.y1 for s in segments)]
         near = [k for k, y in enumerate(ends) if abs(y - self.y) <= TOUCH]
         if not near:
@@ -223,18 +223,8 @@ class _Blend(Placed):
 class Fillet(_Blend):
     """A quarter of a circle at an edge.
 
-    Attributes
-    ----------
-    y : float
-        Place of the edge, m: a step, or an end face.
-    edge : {'root', 'rim'} or None
-        Root adds material in the corner of a step, rim rounds off its edge; by default the root,
-        and the rim at an end face.
-
-    Raises
-    ------
-    SceneError
-        A radius that is not positive.
+    `y` is the place of the edge, m: a step, or an end face. The edge 'root' adds material in the
+    corner of a step, 'rim' rounds off its edge; by default the root, and the rim at an end face.
 
     Examples
     --------
@@ -256,7 +246,7 @@ class Fillet(_Blend):
 
 
 def slope(value: Any) -> float:
-    """Angle of a chamfer to the axis, rad."""
+    """Return the angle of a chamfer to the axis, rad."""
     angle = quantity(value, "angle")
     if not math.radians(5) <= angle <= math.radians(85):
         raise SceneError("the angle of a chamfer to the axis lies between 5 and 85 deg")
@@ -264,17 +254,7 @@ def slope(value: Any) -> float:
 
 
 class Chamfer(_Blend):
-    """A straight cut across an edge.
-
-    Attributes
-    ----------
-    name, y, surface, edge
-        As for :class:`Fillet`; a chamfer at a root fills the corner.
-
-    Raises
-    ------
-    SceneError
-        A length that is not positive, or an angle outside 5 to 85 degrees.
+    """A straight cut across an edge, with the fields of :class:`Fillet`; at a root it fills the corner.
 
     Examples
     --------
@@ -298,6 +278,5 @@ class Chamfer(_Blend):
         return "length"
 
 
-#: either of them
 Blend: TypeAlias = Fillet | Chamfer
 BLENDS: dict[str, type[_Blend]] = {"fillet": Fillet, "chamfer": Chamfer}

@@ -1,4 +1,5 @@
-"""A part from a STEP or mesh file in place of segments: its table, and what is known of it.
+"""A part from a STEP or mesh file in place of segments: the table of a scene file, and the part once
+it is read.
 
 The segments of such a scene are the body of revolution inside the part, which was recognised when
 the file was read.
@@ -25,17 +26,17 @@ from solidgear.scene.units import Mass, PositiveLength, quantity
 #: units of length of a file, m
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}
 Unit = Literal["mm", "cm", "m", "inch", "in"]
-#: axes of a shaft, and that of a body that is none
+#: axes of a shaft, and the word for a body that is no shaft
 AxisWord = Literal["x", "y", "z", "-x", "-y", "-z", "none"]
 NONE = "none"
 #: meshes of one body, coarse to fine
 MOST_MESHES = 5
-#: share of the surface and relative difference of volume to which a part is its segments
+#: share of the surface, and relative difference of volume, within which a part equals its segments
 ALL_ROUND, SAME_VOLUME = 1 - 1e-9, 1e-6
 
 
 def _place(value: Any) -> Any:
-    """A length along the axis, or three."""
+    """Return a length along the axis, or three."""
     if value is None:
         return None
     if isinstance(value, (list, tuple)):
@@ -46,11 +47,13 @@ def _place(value: Any) -> Any:
 
 
 def _direction(value: Any) -> Any:
-    """A word, or three numbers, brought to a length of one."""
+    """Return a word, or three numbers as a unit vector."""
     if isinstance(value, str) and value in get_args(AxisWord):
         return value
     numbers = value if isinstance(value, (list, tuple)) and len(value) == 3 else ()
-    length = hypot(*numbers) if all(type(v) in (int, float) for v in numbers) else 0.0
+    length = 0.0
+    if all(type(v) in (int, float) for v in numbers):
+        length = hypot(*numbers)
     if not 0 < length < inf:
         raise SceneError(
             "must be x, y, z, -x, -y, -z or none, or three numbers: the direction of the "
@@ -60,7 +63,7 @@ def _direction(value: Any) -> Any:
 
 
 def _several(value: Any) -> Any:
-    """One file is a list of one."""
+    """Return a single file as a list of one."""
     return [value] if isinstance(value, str) else value
 
 
@@ -112,23 +115,23 @@ class BodyTable(Model):
 
     @property
     def about(self) -> str:
-        """The axis in a sentence."""
+        """Axis in a sentence."""
         return self.axis if isinstance(self.axis, str) else "its axis"
 
     @property
     def key(self) -> str:
-        """The key that names the file."""
+        """Key that names the file."""
         return next(k for k in ("step", "mesh", "block") if getattr(self, k) is not None)
 
     @property
     def files(self) -> list[str]:
-        """The files as written, the finest mesh last."""
+        """Files as written, the finest mesh last."""
         return [self.step] if self.step is not None else self.mesh or []
 
 
 def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a file; of a body without an axis that names no lumped point, with the port that
-    every scene has, on the face at y = 0: nothing is lumped into it.
+    """Return the tables of a file, for a body without an axis and without a lumped point with a port
+    on the face at y = 0, since every scene has one: nothing is lumped into it.
     """
     body = raw.get("body")
     if not isinstance(body, Mapping) or ("block" not in body and body.get("axis") != NONE):
@@ -140,21 +143,21 @@ def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
 class PartGroup(Model):
     """Share of a part from a file that is of one material."""
 
-    name: str  #: of the group of elements or the solid in the file; empty for all the rest
-    material: Material | None = None  #: none is that of the scene
+    name: str  #: of the group of elements or the solid in the file; empty for the remainder
+    material: Material | None = None  #: None for that of the scene
     volume: float  #: m^3
-    members: tuple[str, ...] = ()  #: of the rest: groups of the file with elements in it
+    members: tuple[str, ...] = ()  #: of the remainder: groups of the file with elements in it
 
     @property
     def label(self) -> str:
-        """Its name in a sentence."""
+        """Name in a sentence."""
         if self.name:
             return f'"{self.name}"'
-        return f"the rest{self.members and f' ({listed(self.members, 6)})' or ''}"
+        return f"the rest ({listed(self.members, 6)})" if self.members else "the rest"
 
 
 class CoarseMesh(Model):
-    """A coarser mesh of a part, in a file of its own."""
+    """A file with a coarser mesh of a part."""
 
     name: str
     path: str = Field(exclude=True, repr=False)
@@ -162,7 +165,7 @@ class CoarseMesh(Model):
 
 
 class BodyFile(Model):
-    """A part from a file, or a rectangular block, as far as a scene knows it.
+    """A part from a file, or a rectangular block, as far as a scene describes it.
 
     Examples
     --------
@@ -175,58 +178,58 @@ class BodyFile(Model):
     kind: Literal["step", "mesh", "block"]
     name: str  #: of the file, without its folder; of a block its edges in words
     path: str = Field(exclude=True, repr=False)  #: where it is; no part of what identifies the body
-    sha256: str  #: of what is in it
+    sha256: str  #: of the content
     unit: float  #: m for each unit of length of the file
-    #: turn, foot: its place in the scene: ``turn @ (unit * x - foot)``, m
+    #: turn, foot: place in the scene: ``turn @ (unit * x - foot)``, m
     turn: tuple[Triple, Triple, Triple]
     foot: Triple
     volume: float  #: m^3
-    #: share of its surface, faces across the axis left out, that is of revolution
+    #: share of the surface, without faces across the axis, that is of revolution
     round_share: float
     round_volume: float  #: of the segments over that of the part
-    #: volume between round surfaces and the facets that a mesh file has of them, over that of the
-    #: part: so far its volume may be off of a part that is round
+    #: volume between round surfaces and the facets of a mesh file, over that of the part: possible
+    #: error of the volume of a part that is round
     facets: float = 0.0
-    beside_arcs: float = 0.0  #: largest distance of segments from the arcs that they stand for, m
+    beside_arcs: float = 0.0  #: largest distance of segments from the arcs that they replace, m
     tori: tuple[Torus, ...] = Field((), exclude=True, repr=False)
     element: str = ""  #: of a mesh file
     #: vertices, edges, faces and cells of a mesh file
     counts: tuple[int, int, int, int] | None = None
-    #: what has a material of its own, and the rest; empty where all of it is of one
+    #: groups with a material, and the remainder; empty where the part is of one material
     groups: tuple[PartGroup, ...] = ()
-    #: groups of the file that tell materials, none of which a scene names
+    #: groups of the file with materials, none of which a scene names
     told: tuple[str, ...] = ()
-    mixed: tuple[str, ...] = ()  #: segments of the round part that are of several materials across
-    remarks: tuple[str, ...] = ()  #: what is odd about the file
+    mixed: tuple[str, ...] = ()  #: segments of the round part with several materials across
+    remarks: tuple[str, ...] = ()  #: oddities of the file
     #: along x, y and z, m, of a block, or around a body without an axis
     edges: Triple | None = None
-    #: meshes of the same part, coarse to fine, of which it is the finest
+    #: coarser meshes of the same part, coarse to fine
     coarser: tuple[CoarseMesh, ...] = ()
     patches: tuple[Patch, ...] = ()  #: named faces of a body without an axis
-    file_materials: tuple[FileMaterial, ...] = ()  #: that a mesh file says itself, of its groups
+    file_materials: tuple[FileMaterial, ...] = ()  #: that a mesh file gives its groups
 
     @property
     def sort(self) -> str:
-        """Its sort among features and parts."""
+        """Sort among features and parts."""
         return "part" if self.edges is None else "body"
 
     @property
     def what(self) -> str:
-        """Its kind in words."""
+        """Kind in words."""
         if self.edges is not None:
             return self.kind if self.kind == "block" else "body"
         return "part of several materials side by side," if self.mixed else "part"
 
     @property
     def round(self) -> bool:
-        """True where it is its segments, and nothing else."""
+        """True where the part equals its segments."""
         if self.mixed:
             return False
         difference = abs(self.round_volume - 1)
         return self.round_share >= ALL_ROUND and difference <= SAME_VOLUME + self.facets
 
     def doubts(self, usual: Material) -> tuple[str, ...]:
-        """Sentences on what its file may not mean, or says otherwise than a scene of a material."""
+        """Return doubts about the file, and about materials of the file that the scene contradicts."""
         out = [
             f"{self.name}: {remark}" for remark in (*self.remarks, *self._other_materials(usual))
         ]
@@ -238,7 +241,7 @@ class BodyFile(Model):
         return tuple(out)
 
     def _other_materials(self, usual: Material) -> Iterator[str]:
-        """One sentence on materials that the file says to be others than those of the scene."""
+        """Yield a sentence on materials of the file that differ from those of the scene."""
         group_materials = {
             group.name: group.material for group in self.groups if group.material is not None
         }
@@ -265,19 +268,17 @@ class BodyFile(Model):
         )
 
     def materials(self, usual: Material) -> tuple[Material, ...]:
-        """Of its groups in their order, in a scene of a material."""
+        """Return the materials of the groups in order, in a scene of a material."""
         return tuple(g.material or usual for g in self.groups) or (usual,)
 
     def mass(self, usual: Material) -> float:
-        """Of the whole part, kg, in a scene of a material."""
+        """Return the mass of the part, kg, in a scene of a material."""
         if not self.groups:
             return usual.density * self.volume
         return sum(m.density * g.volume for m, g in zip(self.materials(usual), self.groups))
 
     def with_material(self, **changes: Any) -> BodyFile:
-        """The same part with constants (`E`, `nu`, `density`) replaced in the materials of its
-        groups.
-        """
+        """Return the part with constants (`E`, `nu`, `density`) replaced in the materials of groups."""
         groups = tuple(
             g.with_changes(material=g.material.with_changes(**changes)) if g.material else g
             for g in self.groups
@@ -285,11 +286,11 @@ class BodyFile(Model):
         return self.with_changes(groups=groups)
 
     def placed(self, point: Sequence[float]) -> Triple:
-        """A point (m) in the axes of its file, in those of the scene."""
+        """Return a point (m) in the axes of the file in those of the scene."""
         x, y, z = np.array(self.turn) @ (np.array(point) - self.foot)
         return float(x), float(y), float(z)
 
     @property
     def one_mesh(self) -> bool:
-        """True where its mesh is what it is, and no finer one can be made."""
+        """True where the mesh of the file is the only one, and no finer one can be made."""
         return self.kind == "mesh"

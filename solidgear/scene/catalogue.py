@@ -1,17 +1,18 @@
-"""A bearing by its catalogue data: what a user knows of it, checked, and nothing computed.
+"""Catalogue data of a bearing, checked, and the rules that they have to keep.
 
-The 6x6 at a load is worked out from these data by :mod:`solidgear.bearings`.
+:mod:`solidgear.bearings` computes the 6x6 at a load from these data.
 """
 
 from __future__ import annotations
 
+import math
 import re
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.errors import SceneError, show
-from solidgear.scene.catalogue_rules import problems
 from solidgear.scene.designation import boundary
 from solidgear.scene.typed import Model
 from solidgear.scene.units import (
@@ -43,7 +44,7 @@ Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to
 ClearanceClass = Literal["C2", "CN", "C3", "C4"]
 CLASSES = ("C2", "CN", "C3", "C4")
 BALLS = ("deep_groove", "angular_contact", "thrust_ball")
-#: kinds with a contact angle of their own
+#: kinds with a contact angle
 ANGLED = ("angular_contact", "tapered", "spherical")
 #: kinds whose rows hold the shaft in one direction along y
 ONE_SIDED = ("angular_contact", "tapered", "thrust_ball")
@@ -52,9 +53,9 @@ FLOATING = ("cylindrical", "needle")
 PAIRED = ("tandem", "back_to_back", "face_to_face")
 #: direction along y in which the lower and the upper row of two hold the shaft
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
-#: other words of the field for these
+#: other words of the field for arrangements
 _CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
-#: what people call a moment about the axis
+#: names that people give a moment about the axis
 ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
@@ -84,12 +85,12 @@ class BearingLoad(Model):
 
     @property
     def six(self) -> list[float]:
-        """In the order (x, y, z, thx, thy, thz), N and N m."""
+        """(6,) load in the order (x, y, z, thx, thy, thz), N and N m."""
         return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
 
     @property
     def held_tilts(self) -> tuple[int, ...]:
-        """Tilts without a moment of their own, by their place among the six."""
+        """Tilts without a given moment, by their place among the six."""
         return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)
 
 
@@ -104,7 +105,7 @@ class BearingDisplacement(Model):
 
     @property
     def six(self) -> list[float]:
-        """In the order (x, y, z, thx, thy, thz)."""
+        """(6,) displacement in the order (x, y, z, thx, thy, thz), m and rad."""
         return [self.x, self.y, self.z, self.thx, 0.0, self.thz]
 
 
@@ -138,7 +139,7 @@ def _preload(value: Any) -> Any:
 
 
 def arrangement_word(value: Any) -> Any:
-    """The word of a catalogue for an arrangement as people write it."""
+    """Return the word of a catalogue for an arrangement as people write it."""
     if not isinstance(value, str):
         return value
     plain = re.sub(r"[\s-]+", "_", value.strip().lower())
@@ -208,7 +209,7 @@ class Catalogue(Model):
         Of the rows' middles, m; the width where not given.
     holds : {'+y', '-y'} or None
         Direction in which single rows and tandems with a contact angle keep the shaft from moving;
-        these have to tell it, as their mounting decides it, or `arrangement` of the scene does.
+        their mounting decides it, so that they need it, or `arrangement` of the scene.
     clearance : float or str
         Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
     shaft_interference, housing_interference : float
@@ -277,37 +278,37 @@ class Catalogue(Model):
 
     @property
     def one_sided(self) -> bool:
-        """True where it holds the shaft in one direction along y only."""
+        """True where the bearing holds the shaft in one direction along y only."""
         return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
 
     @property
     def angled(self) -> bool:
-        """True where its kind has a contact angle."""
+        """True for kinds with a contact angle."""
         return self.kind in ANGLED
 
     @property
     def own_rows(self) -> int:
-        """Rows that a bearing of its kind has by nature."""
+        """Rows of a single bearing of this kind."""
         return 2 if self.kind == "spherical" else 1
 
     @property
     def grooved(self) -> bool:
-        """True where the conformity of grooves has a part in its contacts."""
+        """True for kinds whose contacts depend on the conformity of grooves."""
         return self.balls or self.kind == "spherical"
 
     @property
     def floats(self) -> bool:
-        """True where its kind carries nothing along y."""
+        """True for kinds that carry nothing along y."""
         return self.kind in FLOATING
 
     @property
     def balls(self) -> bool:
-        """True where its elements are balls."""
+        """True for kinds with balls."""
         return self.kind in BALLS
 
     @property
     def paired(self) -> bool:
-        """True where it is two bearings side by side."""
+        """True for two bearings side by side."""
         return self.arrangement in PAIRED
 
     @property
@@ -317,17 +318,17 @@ class Catalogue(Model):
 
     @property
     def both_ways(self) -> bool:
-        """True where it holds the shaft along y in both directions."""
+        """True where the bearing holds the shaft along y in both directions."""
         return not (self.floats or self.one_sided)
 
     @property
     def rated_rows(self) -> int:
-        """Rows that its load ratings are told for."""
+        """Rows that the load ratings are given for."""
         return 2 if self.arrangement == "double_row" else self.own_rows
 
     @property
     def estimated(self) -> tuple[str, ...]:
-        """Inner dimensions that are not given, by their names here."""
+        """Inner dimensions that are not given, by field name."""
         inner = ["elements", "element_diameter", "pitch_diameter"]
         inner += ["conformity"] * self.grooved + ["element_length"] * (not self.balls)
         if self.angled:
@@ -336,14 +337,13 @@ class Catalogue(Model):
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:
-        found_problems = list(problems(self))
-        if found_problems:
-            raise SceneError.of(found_problems)
+        if problems := [*catalogue_problems(self)]:
+            raise SceneError.of(problems)
         return self
 
 
 def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
-    """Data with what the designation tells, where they are silent."""
+    """Return catalogue data completed by the standard dimensions of the designation."""
     try:
         standard = boundary(data["designation"])
     except SceneError as error:
@@ -359,3 +359,130 @@ def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in fields.items() if data.get(key) is None} | {
         key: value for key, value in data.items() if value is not None or key not in fields
     }
+
+
+def catalogue_problems(data: Catalogue) -> Iterator[SceneError]:
+    """Yield all problems of catalogue data, one sentence each."""
+    if data.outer_diameter <= data.bore:
+        yield SceneError(
+            f"must be larger than the bore ({data.bore:.6g} m)", path=("outer_diameter",)
+        )
+        return
+    yield from _belongs(data)
+    yield from _fits(data)
+    if data.load is not None and data.displacement is not None:
+        yield SceneError("give either load or displacement, not both", path=("displacement",))
+
+
+def _belongs(data: Catalogue) -> Iterator[SceneError]:
+    """Yield problems of keys that the kind or the arrangement does not have."""
+    kind = data.kind.replace("_", " ")
+    if data.kind in ("spherical", "thrust_ball"):
+        yield from _by_nature(data, kind)
+    elif not data.angled:
+        if data.contact_angle is not None:
+            yield SceneError(
+                f"a {kind} bearing has no contact angle of its own: leave it out, or write "
+                f'kind = "{"angular_contact" if data.balls else "tapered"}"',
+                path=("contact_angle",),
+            )
+        if data.arrangement not in ("single", "double_row"):
+            yield SceneError(
+                f"{kind} bearings have no contact angle to pair: write single or double_row",
+                path=("arrangement",),
+            )
+        if data.preload is not None:
+            yield SceneError(
+                f"a {kind} bearing is not preloaded along y: write a negative clearance",
+                path=("preload",),
+            )
+    elif data.arrangement == "double_row":
+        yield SceneError(
+            f"two rows of {kind} bearings are back_to_back, face_to_face or tandem",
+            path=("arrangement",),
+        )
+    if data.one_sided and data.holds is None:
+        yield SceneError(
+            f"{data.arrangement} {kind} bearings hold the shaft in one direction only: "
+            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
+            'for a pair arrangement = "O" or "X" above all tables',
+            path=("holds",),
+        )
+    for key, allowed, owner in (
+        ("conformity", data.grooved, "balls and spherical rollers"),
+        ("element_length", not data.balls, "rollers"),
+        ("speed", data.balls, "balls"),
+    ):
+        if getattr(data, key) and not allowed:
+            yield SceneError(
+                f"belongs to {owner}; a {kind} bearing has none: leave it out", path=(key,)
+            )
+    if data.preload_spring is not None and data.speed:
+        yield SceneError(
+            "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
+            path=("speed",),
+        )
+    if data.preload_spring is not None and (
+        data.arrangement not in ("back_to_back", "face_to_face")
+        or data.preload is None
+        or data.preload.force is None
+    ):
+        yield SceneError(
+            'presses one row of a pair with a force: it needs arrangement = "back_to_back" or '
+            '"face_to_face" and a preload such as "500 N"',
+            path=("preload_spring",),
+        )
+
+
+def _by_nature(data: Catalogue, kind: str) -> Iterator[SceneError]:
+    """Yield problems of keys that spherical and thrust bearings do not have."""
+    if data.kind == "spherical":
+        kind = "spherical roller"
+        refused = {
+            "arrangement": "has two rows of its own",
+            "preload": "is preloaded by a negative clearance and not along y",
+            "profile": "has barrels, whose profile is their conformity",
+        }
+    else:
+        refused = {
+            "arrangement": "has one row and holds one way (of two, write holds at each)",
+            "contact_angle": "stands at 90 degrees",
+            "clearance": "has no clearance across the shaft",
+            "shaft_interference": "is not made tighter by its fit",
+            "housing_interference": "is not made tighter by its fit",
+            "inner_ring_warmer": "is not made tighter by a warm shaft",
+            "speed": "is computed at rest only, without what speed does to its balls",
+        }
+    for key, reason in refused.items():
+        if getattr(data, key) != type(data).model_fields[key].get_default():
+            yield SceneError(f"a {kind} bearing {reason}: leave it out", path=(key,))
+
+
+def _fits(data: Catalogue) -> Iterator[SceneError]:
+    """Yield problems of sizes that leave no room for each other."""
+    room = (data.outer_diameter - data.bore) / 2
+    if data.element_diameter is not None and data.element_diameter >= room:
+        yield SceneError(
+            f"does not fit between bore and outer_diameter, {room:.6g} m apart",
+            path=("element_diameter",),
+        )
+        return
+    if data.element_length is not None and data.element_length > data.width:
+        yield SceneError(
+            f"must not be longer than the width ({data.width:.6g} m)", path=("element_length",)
+        )
+    pitch = data.pitch_diameter or (data.bore + data.outer_diameter) / 2
+    if not data.bore < pitch < data.outer_diameter:
+        yield SceneError(
+            f"must lie between bore and outer_diameter ({data.bore:.6g} and "
+            f"{data.outer_diameter:.6g} m)",
+            path=("pitch_diameter",),
+        )
+    elif data.elements is not None and data.element_diameter is not None:
+        most = int(math.pi / math.asin(min(data.element_diameter / pitch, 1.0)) + 1e-9)
+        if data.elements > most:
+            yield SceneError(
+                f"more than fit on the pitch circle of {pitch:.6g} m: at most {most} elements of "
+                f"{data.element_diameter:.6g} m",
+                path=("elements",),
+            )

@@ -1,7 +1,6 @@
 """Volume, mass and inertia of a shaft of revolution in closed form, by lines and arcs of its outline.
 
-What lies between the axis and a line or an arc is a solid of revolution; those of bores count with
-the other sign.
+Between the axis and each line or arc lies a solid of revolution; those of bores count negative.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def volume_of(outline: Outline) -> float:
-    """Volume of a shaft, closed form, m^3.
+    """Compute the volume of a shaft, m^3.
 
     Examples
     --------
@@ -44,7 +43,7 @@ class MassProperties:
 
 
 def mass_properties(outline: Outline[Segment]) -> MassProperties:
-    """Mass, centre and inertia of a shaft of segments with a material, by exact integration.
+    """Compute mass, centre and inertia of a shaft of segments with a material, exactly.
 
     Examples
     --------
@@ -66,7 +65,7 @@ def mass_properties(outline: Outline[Segment]) -> MassProperties:
 
 
 def whole_mass(scene: Scene) -> MassProperties:
-    """Mass, centre and inertia of a shaft with the rigid masses on it; transverse about x."""
+    """Compute mass, centre and inertia of a shaft with its rigid masses; transverse about x."""
     shaft, places = mass_properties(scene.outline), {s.name: s.y for s in scene.stations}
     mass_places = [
         (m, places[m.on] + m.offset[1] if m.on else m.y + m.offset[1]) for m in scene.masses
@@ -85,8 +84,8 @@ def whole_mass(scene: Scene) -> MassProperties:
 
 
 def _inside(piece: Piece, density: float) -> tuple[float, ...]:
-    """Mass, moment of mass in y, polar inertia of what lies between the axis and a piece, and a place
-    with first and second moment of mass about it.
+    """Compute mass, moment of mass in y and polar inertia of the solid between the axis and a piece,
+    and a place with first and second moment of mass about it.
     """
     weight = np.pi * (density if piece.surface == "outer" else -density)
     if piece.corner and piece.corner.centre:
@@ -98,7 +97,9 @@ def _inside(piece: Piece, density: float) -> tuple[float, ...]:
 
 
 def integrals_along(h: float, a: float, b: float) -> tuple[float, float, float, float]:
-    """Integrals of r^2, r^2 s, r^2 s^2 and r^4 over a length h from radius a to b, s from its start."""
+    """Compute the integrals of r^2, r^2 s, r^2 s^2 and r^4 over a length h from radius a to b, s from
+    the start.
+    """
     return (
         h * (a * a + a * b + b * b) / 3.0,
         h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0,
@@ -108,7 +109,7 @@ def integrals_along(h: float, a: float, b: float) -> tuple[float, float, float, 
 
 
 def _under_arc(corner: Corner) -> tuple[float, ...]:
-    """The same along the arc of a fillet, s from its middle."""
+    """Compute these integrals along the arc of a fillet, s from its middle."""
     assert corner.centre is not None
     # r = c - s q with q = sqrt(f^2 - t^2), t from the centre of the arc towards the face
     c, f, s = corner.centre[0], corner.radial, corner.out

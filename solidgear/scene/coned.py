@@ -1,4 +1,4 @@
-"""Chamfers in shoulders as what they are: short cones."""
+"""Chamfers in shoulders as short cones."""
 
 from __future__ import annotations
 
@@ -12,12 +12,10 @@ if TYPE_CHECKING:
 
 
 def coned(scene: Any) -> Any:
-    """The shaft of a scene with a cone of its own for every chamfer that fills a shoulder; the
-    scene as it was where there is none, or where another fillet or chamfer needs the length of the
-    cone.
+    """Return a scene without features, with a short cone for every chamfer that fills a shoulder; the
+    scene unchanged where there is none, or where another fillet or chamfer needs the length.
 
-    Its two ends are corners of the outline like others then, to which meshes have layers; its
-    features do not count.
+    Both ends of a cone are corners of the outline, to which meshes have layers.
 
     Examples
     --------
@@ -45,7 +43,7 @@ def coned(scene: Any) -> Any:
 
 
 def _pieces(segment: Segment, chamfers: list[Corner]) -> list[Segment]:
-    """A segment cut where its chamfers end, the longest piece by its own name."""
+    """Return the pieces of a segment cut where its chamfers end; the longest piece keeps the name."""
     marks = sorted({segment.y0, segment.y1, *(y for c in chamfers for y in c.span)})
     cuts = list(zip(marks, marks[1:]))
     longest = max(cuts, key=lambda ends: ends[1] - ends[0])

@@ -1,4 +1,4 @@
-r"""Cylindrical gears in their own terms: module, helix, profile shift, centre distance (ISO 21771).
+r"""Cylindrical gears by module, helix, profile shift and centre distance (ISO 21771).
 
 With the normal module m, teeth z, helix angle beta and normal pressure angle alpha at the reference
 cylinder ``r = m z / (2 cos beta)``, the transverse pressure angle is ``tan alpha_t = tan alpha / cos
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from solidgear.scene.gears import Member
     from solidgear.scene.train_tables import Mesh
 
-#: relative, of a pitch radius that is typed with three digits
+#: relative difference of a pitch radius that is typed with three digits
 RADIUS = 5e-3
-#: words of cylindrical gears, by the table that has them
+#: keys of cylindrical gears, by table
 WORDS = {
     "pinion": ("module", "helix_angle", "profile_shift"),
     "gear": ("module", "helix_angle", "profile_shift"),
@@ -37,13 +37,13 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Working:
-    """Two cylindrical gears where they roll on each other."""
+    """Working pitch cylinders of two cylindrical gears."""
 
-    radii: tuple[float, float]  #: of the pinion's and the gear's working pitch cylinder, m
+    radii: tuple[float, float]  #: of pinion and gear, m
     #: helix_angle, pressure_angle: at these cylinders, the latter normal to the tooth, rad
     helix_angle: float
     pressure_angle: float
-    without_backlash: float  #: centre distance that the profile shifts ask for, m
+    without_backlash: float  #: centre distance without backlash, m
 
 
 def working_cylinders(
@@ -54,7 +54,7 @@ def working_cylinders(
     shift: Sequence[float] = (0.0, 0.0),
     centre_distance: float | None = None,
 ) -> Working:
-    """Working cylinders of a pair of cylindrical gears.
+    """Compute the working cylinders of a pair of cylindrical gears.
 
     Parameters
     ----------
@@ -80,8 +80,8 @@ def working_cylinders(
     56.4999 mm.
 
     >>> from math import degrees, radians
-    >>> found = working_cylinders((12, 24), 3e-3, 0.0, radians(20), shift=(0.6, 0.36))
-    >>> round(degrees(found.pressure_angle), 4), round(1e3 * sum(found.radii), 4)
+    >>> wheels = working_cylinders((12, 24), 3e-3, 0.0, radians(20), shift=(0.6, 0.36))
+    >>> round(degrees(wheels.pressure_angle), 4), round(1e3 * sum(wheels.radii), 4)
     (26.0886, 56.4999)
     """
     ratio, tooth_sum = teeth[1] / teeth[0], sum(teeth)
@@ -105,7 +105,7 @@ def working_cylinders(
 
 
 def _of_involute(value: float) -> float:
-    """Angle, rad, of an involute function tan minus angle."""
+    """Compute the angle, rad, of an involute function tan minus angle."""
     from scipy.optimize import brentq  # slow to import, and seldom needed
 
     if not 0 < value < tan(0.4 * pi) - 0.4 * pi:
@@ -117,7 +117,7 @@ def _of_involute(value: float) -> float:
 
 
 def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[SceneError]:
-    """Problems of the words of cylindrical gears among themselves and with those of bevel gears."""
+    """Yield problems between keys of cylindrical gears, and with those of bevel gears."""
     tables = {"pinion": pinion, "gear": gear, "mesh": mesh}
     if mesh.shaft_angle:
         for table, keys in WORDS.items():
@@ -160,17 +160,17 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
 
 
 def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
-    """Fields of a train of parallel shafts as bevel gears have them: pitch radii and angles where the
-    wheels roll on each other; none for other shafts.
+    """Return `pinion`, `gear` and `mesh` of parallel shafts with pitch radii and angles as bevel gears
+    have them, where the wheels roll on each other; nothing for other shafts.
     """
     if mesh.shaft_angle:
         return {}
     wheels = pinion, gear
-    helix = _either(*(w.helix_angle for w in wheels), *(w.spiral_angle for w in wheels))
+    helix = _first(*(w.helix_angle for w in wheels), *(w.spiral_angle for w in wheels))
     if helix is None and not any(w.hand for w in wheels):
         helix = 0.0  # straight teeth have no hand
     angle, radii = helix, (pinion.pitch_radius, gear.pitch_radius)
-    pressure, module = mesh.pressure_angle, _either(pinion.module, gear.module)
+    pressure, module = mesh.pressure_angle, _first(pinion.module, gear.module)
     if module is not None and pressure is not None:
         shift = pinion.profile_shift, gear.profile_shift
         teeth = pinion.teeth, gear.teeth
@@ -199,6 +199,6 @@ def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     return {"pinion": changed[0], "gear": changed[1], "mesh": working_mesh}
 
 
-def _either(*values: float | None) -> float | None:
-    """The first that is given."""
+def _first(*values: float | None) -> float | None:
+    """Return the first value that is given."""
     return next((value for value in values if value is not None), None)

@@ -1,6 +1,6 @@
-"""Boundary dimensions behind a catalogue designation: ISO 15, 104, 355 and drawn cups, in mm.
+"""Boundary dimensions of a catalogue designation: ISO 15, 104, 355 and drawn cups, in mm.
 
-Only what is standard: bore, outside diameter, width.  What is inside is the maker's, and estimated
+Only bore, outside diameter and width are standard.  Inner dimensions are the maker's, and estimated
 in :mod:`solidgear.bearings.geometry`.
 """
 
@@ -16,7 +16,7 @@ _BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
 
 
 def _series(text: str, first: int = 10) -> dict[int, tuple[float, float]]:
-    """Bore to outside diameter and width, from ``D x B`` in the order of bores, a dash for none."""
+    """Return outside diameter and width by bore, from ``D x B`` in the order of bores, a dash for none."""
     pairs = zip(_BORES[_BORES.index(first) :], text.split())
     sizes = {bore: pair.split("x") for bore, pair in pairs if pair != "-"}
     return {bore: (float(D), float(B)) for bore, (D, B) in sizes.items()}
@@ -112,7 +112,7 @@ _BALLS = {"60": _LIGHT, "62": _MEDIUM, "63": _HEAVY}
 _ANGULAR = {"70": _LIGHT, "72": _MEDIUM, "73": _HEAVY}
 _ROLLERS = {"10": _LIGHT, "2": _MEDIUM, "3": _HEAVY, "22": _WIDE}
 _SUFFIX = {"": None, "C": 15.0, "AC": 25.0, "A5": 25.0, "B": 40.0, "BE": 40.0}
-#: under the rollers to outside diameter of drawn cups, ISO 3245
+#: outside diameter of drawn cups by the diameter under the rollers, ISO 3245
 _CUPS = {4: 8, 5: 9, 6: 10, 7: 11, 8: 12, 9: 13, 10: 14, 12: 18, 13: 19, 14: 20, 15: 21, 16: 22}
 _CUPS |= {18: 24, 20: 26, 22: 28, 25: 32, 28: 35, 30: 37, 35: 42, 40: 47, 45: 52, 50: 58}
 
@@ -123,7 +123,7 @@ _READ = (
 )
 _CLASS = "CN|C[234]"
 
-#: kind, pattern, sizes by series, and how a refusal tells them
+#: kind, pattern, sizes by series, and words in a refusal
 _WRITTEN = (
     (
         "deep_groove",
@@ -168,22 +168,22 @@ _WRITTEN = (
 
 
 class Boundary(NamedTuple):
-    """Kind and sizes behind a designation."""
+    """Kind and sizes of a designation."""
 
     kind: str
     #: bore, outer_diameter, width: m; the bore of a drawn cup is the diameter under its rollers
     bore: float
     outer_diameter: float
     width: float
-    contact_angle: float | None = None  #: rad, where a suffix tells it
-    clearance: str | None = None  #: class of ISO 5753-1, where a suffix tells it
-    #: suffixes of seals, cages, tolerances and the like, which have no part in a stiffness
+    contact_angle: float | None = None  #: rad, where a suffix gives it
+    clearance: str | None = None  #: class of ISO 5753-1, where a suffix gives it
+    #: suffixes of seals, cages, tolerances and the like, which do not matter for stiffness
     ignored: str = ""
 
 
 def boundary(designation: str) -> Boundary:
-    """Kind and boundary dimensions of a bearing by its designation, such as ``6208-2RS1/C3``,
-    ``7210 BEP``, ``NU 206``, ``32018 X`` or ``BK0810``.
+    """Return kind and boundary dimensions of a designation, such as ``6208-2RS1/C3``, ``7210 BEP``,
+    ``NU 206``, ``32018 X`` or ``BK0810``.
     """
     plain = re.sub(r"[\s/-]", "", designation.upper())
     for kind, pattern, table, _ in _WRITTEN:
@@ -216,7 +216,7 @@ def boundary(designation: str) -> Boundary:
 
 
 def usual_angle(designation: str) -> float | None:
-    """Contact angle that tapered and spherical roller bearings of a series usually have, rad; None
+    """Return the usual contact angle of tapered and spherical roller bearings of a series, rad; None
     where none is known.
 
     Examples
@@ -235,8 +235,8 @@ def _bore(code: str) -> int:
     return _BORES[number] if number < 4 else 5 * number
 
 
-def _all() -> list[str]:
-    """Every designation that is known, without suffixes; not those of drawn cups."""
+def _designations() -> list[str]:
+    """Return all known designations without suffixes, except those of drawn cups."""
     first = {"cylindrical": ("NU", "NJ", "NUP", "N")}
     return [
         f"{before}{series}{_BORES.index(bore) if bore < 20 else bore // 5:02d}"
@@ -250,8 +250,9 @@ def _all() -> list[str]:
 def _unknown(designation: str) -> SceneError:
     series = ", ".join(words for *_, words in _WRITTEN)
     plain = re.sub(r"[\s/-]", "", designation.upper()).replace("O", "0")
-    swapped = [name for name in _all() if sorted(name) == sorted(plain)]
-    hint = did_you_mean(next(iter(swapped), near(plain, _all())))
+    designations = _designations()
+    swapped = [name for name in designations if sorted(name) == sorted(plain)]
+    hint = did_you_mean(next(iter(swapped), near(plain, designations)))
     return SceneError(
         f"this designation is not understood{hint}; known are {series} and drawn cups HK, BK, bores "
         "10 to 120 mm, with suffixes such as 2RS1, ZZ, TN9, P6, and C2, CN, C3, C4 of deep groove, "

@@ -1,9 +1,9 @@
-"""Seats that end a hair beside a face or a step end there, and rigid masses sit beside steps.
+"""Ends of seats: moved onto a face or step that they miss by a hair, and away from steps under masses.
 
 Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
-cell in one is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no line
-to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest piece,
-and the mass stays where it was.
+cell in such a gap is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no
+line to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest
+piece, and the mass stays in place.
 """
 
 from __future__ import annotations
@@ -19,27 +19,23 @@ if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Port, Segment
     from solidgear.scene.places import Along
 
-#: what is a hair, m, or over the length of the shaft if that is more: lines of 1e-7 m are none to
-#: the CAD kernel, and the least seat is a millionth of the length
+#: largest gap that is closed, m, or over the length of the shaft if that is more: the CAD kernel
+#: has no lines of 1e-7 m, and the least seat is a millionth of the length
 HAIR, HAIR_OF_LENGTH = 1.5e-7, 5e-7
-#: of its seat, that a hair is at most
+#: largest such gap over the seat
 SHARE = 0.25
 
 Station = TypeVar("Station", "Bearing", "Port", "PointMass")
 
 
 def snap_seats(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
-    """Stations with the ends of their seats moved onto the faces and joints that they miss by a
-    hair; the same ones where there are none.
-    """
+    """Return stations with ends of seats moved onto the faces and joints that they miss by a hair."""
     marks = [segments[0].y0, *(s.y1 for s in segments)]
     return tuple(_snapped(station, marks) for station in stations)
 
 
 def seat_masses(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
-    """Masses with names, each on the longest piece of a seat that steps divide; the same ones where
-    there is nothing to do.
-    """
+    """Return masses with names, each on the longest piece of its seat between steps."""
     steps = Outline(segments).steps if masses else ()
     return tuple(_seated(mass, steps, k) for k, mass in enumerate(masses, 1))
 

@@ -1,4 +1,4 @@
-"""Materials that a mesh file says itself, in a system of units that it does not say."""
+"""Materials that a mesh file gives, in a system of units that it does not give."""
 
 from __future__ import annotations
 
@@ -25,28 +25,29 @@ SAME, SAME_NU = 5e-3, 5e-3
 class FileMaterial(Model):
     """An isotropic material of a mesh file."""
 
-    name: str  #: as the file calls it
-    group: str  #: of elements that are of it
-    #: E, nu, density: in the units of the file; None where it does not say it
+    name: str  #: in the file
+    group: str  #: of elements of this material
+    #: E, nu, density: in the units of the file; None where the file gives none
     E: float | None = None
     nu: float | None = None
     density: float | None = None
 
     def is_like(self, material: Material) -> bool:
-        """Tell whether it is a material of a scene in some system of units."""
+        """Return True where it equals a material of a scene in some system of units."""
         if self.nu is not None and abs(self.nu - material.nu) > SAME_NU:
             return False
         return any(
-            _same(self.E, stress, material.E) and _same(self.density, dense, material.density)
+            _is_equal(self.E, stress, material.E)
+            and _is_equal(self.density, dense, material.density)
             for stress, dense in SYSTEMS
         )
 
     @property
     def numbers(self) -> str:
-        """Numbers that the file gives it, in a sentence."""
+        """Constants that the file gives, in a sentence."""
         constants = (("E", self.E), ("nu", self.nu), ("density", self.density))
         return ", ".join(f"{key} {value:.6g}" for key, value in constants if value is not None)
 
 
-def _same(file_value: float | None, unit: float, value: float) -> bool:
+def _is_equal(file_value: float | None, unit: float, value: float) -> bool:
     return file_value is None or abs(file_value * unit / value - 1) <= SAME

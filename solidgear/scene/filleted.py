@@ -1,4 +1,4 @@
-"""The round part of a file with its fillets as such, where its segments follow them as short cones."""
+"""Fillets of the round part of a file, in place of the short cones that follow them."""
 
 from __future__ import annotations
 
@@ -11,16 +11,14 @@ if TYPE_CHECKING:
     from solidgear.scene.outline import Torus
     from solidgear.scene.parts import Segment
 
-#: relative to the radius of an arc: where its ends are those of a quarter of a turn
+#: relative to the radius of an arc: distance of its ends from those of a quarter of a turn
 QUARTER = 1e-3
 
 
 def filleted(scene: Any) -> Any:
-    """The round part of a scene of a file, its segments, with a fillet for every quarter of a turn at the
-    root of an outer shoulder; other arcs stay cones. A scene of segments, or of a part whose fillets
-    reach into a seat, is as it was.
-
-    Segments keep their names, and those of cones go.
+    """Return the round part of a scene with a fillet for every quarter of a turn at the root of an
+    outer shoulder, other arcs as cones; a scene of segments, or of a part whose fillets reach into a
+    seat, unchanged. Segments keep their names, and those of cones go.
     """
     body = getattr(scene, "body", None)
     if body is None or not body.tori:
@@ -36,7 +34,9 @@ def filleted(scene: Any) -> Any:
 
 
 def _fillet(torus: Torus, segments: list[Segment]) -> Fillet | None:
-    """The fillet of an arc, whose cones give way to the cylinder that it runs into."""
+    """Return the fillet of an arc, and replace its cones in `segments` by the cylinder that it runs
+    into; None where the arc is no such fillet.
+    """
     near, radius = QUARTER * torus.radius, torus.r - torus.radius
     at_start = abs(torus.y0 - torus.y) < near and abs(torus.y1 - torus.y - torus.radius) < near
     at_end = abs(torus.y1 - torus.y) < near and abs(torus.y - torus.y0 - torus.radius) < near
@@ -56,8 +56,7 @@ def _fillet(torus: Torus, segments: list[Segment]) -> Fillet | None:
         return None
     place = segments[far_index].y0 if at_start else segments[far_index].y1
     reach = {"y1": place} if at_start else {"y0": place}
-    segments[min(cylinder_index, *cones) : max(cylinder_index, *cones) + 1] = [
-        cylinder.with_changes(**reach)
-    ]
+    replaced = sorted([cylinder_index, *cones])
+    segments[replaced[0] : replaced[-1] + 1] = [cylinder.with_changes(**reach)]
     end = "end" if at_start else "start"
     return Fillet(name=f"{cylinder.name}.{end}", y=place, radius=torus.radius)

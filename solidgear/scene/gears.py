@@ -38,7 +38,7 @@ FLANKS = ("left", "right")
 
 
 class HeadInertia(Model):
-    """A rigid body of revolution at the lumped point of a shaft, beside the mass of its segments."""
+    """A rigid body of revolution at the lumped point of a shaft, added to the mass of the segments."""
 
     mass: Mass  #: kg
     #: torsional, bending: about the shaft and across it, at the lumped point, kg m^2
@@ -82,7 +82,7 @@ class Gear(Model):
 
     @property
     def flank(self) -> str | None:
-        """The loaded flank of a cylindrical gear, ``left`` or ``right``; None where it is not told.
+        """Loaded flank of a cylindrical gear, ``left`` or ``right``; None where it is not given.
 
         A concave flank faces the way the teeth lean: right-handed teeth, seen from the apex, to the
         right.
@@ -99,8 +99,8 @@ class Shaft(Model):
 
     scene: Scene
     gears: dict[str, Gear] = {}  #: by the lumped point of the scene at which each sits
-    #: of a train with an operating point, the [load] of the scene: acts beside the mesh force, or
-    #: gives way to it; where neither is said it must be the mesh force
+    #: of a train with an operating point, the [load] of the scene: added to the mesh force, or
+    #: replaced by it; where neither is given it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
 
     @model_validator(mode="after")
@@ -120,7 +120,7 @@ class Shaft(Model):
         return self
 
     def member(self, port: str = "") -> Member:
-        """One of its gears, the first by default, on the scene with that lumped point as main one."""
+        """Return a gear, the first by default, with its lumped point as main point of the scene."""
         port = port or next(iter(self.gears))
         main = self.scene.port.name == port
         return Member(
@@ -131,14 +131,14 @@ class Shaft(Model):
 
 
 class Member(Gear):
-    """A gear and the shaft that it sits on, whose main lumped point is its own."""
+    """A gear and its shaft, whose main lumped point is that of the gear."""
 
     scene: Scene
     scene_load: Literal["added", "replaced"] | None = None  #: as of `Shaft`
 
     @property
     def shaft(self) -> Shaft:
-        """A shaft that carries this gear alone."""
+        """Shaft that carries this gear alone."""
         gear = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
         gears = {self.scene.port.name: gear}
         return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
@@ -157,13 +157,13 @@ class Pair:
     gear: Member
     mesh: Mesh
     point: OperatingPoint | None  #: at which the train is looked at
-    #: true where the other gear is first in a further mesh: it drives there with the flank that the
-    #: file names, and is driven here on the one behind
+    #: true where the second gear is first in a further mesh: it drives there with the flank that the
+    #: file names, and is driven here on the flank behind
     idle: bool = False
 
     @property
     def members(self) -> dict[str, Member]:
-        """Both by ``pinion`` and ``gear``."""
+        """Both gears, by ``pinion`` and ``gear``."""
         return {"pinion": self.pinion, "gear": self.gear}
 
     @property
@@ -178,20 +178,22 @@ class Pair:
 
     @cached_property
     def rolling(self) -> Pair:
-        """The same with pitch radii and angles of parallel shafts where their wheels roll on each
-        other: what module, helix angle, profile shifts and centre distance come to.
+        """The pair with pitch radii and angles of parallel shafts where the wheels roll on each other,
+        as module, helix angle, profile shifts and centre distance give them.
         """
         return replace(self, **rolling_fields(self.pinion, self.gear, self.mesh))
 
     def with_file_paths(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
-        """Problems with paths from ``pinion``, ``gear`` or ``mesh``, by the keys of a file."""
+        """Yield problems, whose paths begin with ``pinion``, ``gear`` or ``mesh``, with paths of the
+        file.
+        """
         for problem in problems:
             first, *further = problem.path
             yield problem.located(None, path=(*self.paths[first], *further))
 
 
 def pair_problems(pair: Pair) -> Iterator[SceneError]:
-    """Problems of two gears that mesh, with paths from ``pinion``, ``gear`` or ``mesh``."""
+    """Yield problems of two gears that mesh, with paths from ``pinion``, ``gear`` or ``mesh``."""
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     hands = (pinion.hand, gear.hand)
     curved = any(m.spiral_angle or m.helix_angle for m in (pinion, gear))
@@ -217,7 +219,7 @@ def pair_problems(pair: Pair) -> Iterator[SceneError]:
 
 
 def _cycles(pair: Pair) -> Iterator[SceneError]:
-    """Tables over a mesh cycle cover one tooth pitch of the pinion and begin at one angle."""
+    """Yield problems of tables over a mesh cycle, which cover one tooth pitch of the pinion."""
     teeth, pitch = pair.pinion.teeth, 2 * pi / pair.pinion.teeth
     tables = {key: getattr(pair.mesh, key) for key in ("stiffness_cycle", "line_cycle")}
     tables_given = {key: table for key, table in tables.items() if table is not None}
@@ -229,7 +231,7 @@ def _cycles(pair: Pair) -> Iterator[SceneError]:
                 path=("mesh", key, "angle"),
             )
     first = [table.angle[0] for table in tables_given.values()]
-    if len(first) > 1 and not isclose(*first, abs_tol=TYPED * pitch):
+    if len(first) > 1 and not isclose(first[0], first[1], abs_tol=TYPED * pitch):
         yield SceneError(
             f"begins at {first[1]:.5g} rad, and stiffness_cycle at {first[0]:.5g} rad; both tell "
             "one cycle and begin at one angle",
@@ -238,7 +240,7 @@ def _cycles(pair: Pair) -> Iterator[SceneError]:
 
 
 def _flanks(pair: Pair) -> Iterator[SceneError]:
-    """Left and right flanks are those of cylindrical gears, and touch their own kind."""
+    """Yield problems of left and right flanks: of cylindrical gears alone, left against left."""
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     sides = [side for side in pair.members if pair.members[side].loaded_side in FLANKS]
     if sides and mesh.shaft_angle:

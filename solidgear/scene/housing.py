@@ -1,7 +1,7 @@
-"""Supports that bearings stand in: the elastic seat of one of them, and the housing of all.
+"""Supports that bearings stand in: the elastic seat of one bearing, and the housing of all.
 
-A housing has no mass here.  A motion for which no stiffness is written is *rigid*, so that
-``[housing] axial`` and a stiffness of ``kyy`` alone say the same; one of zero is free.
+A housing has no mass here.  A motion without a stiffness is *rigid*, so that ``[housing] axial`` and
+a stiffness of ``kyy`` alone mean the same; a motion with zero stiffness is free.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)
 
 
 def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
-    """Motions of which named entries of a housing say nothing; refuses a coupling of one of them."""
+    """Return the motions without a named entry, which are rigid; refuse couplings of them."""
     rigid = [k for k, name in enumerate(OWN) if name not in entries]
     for name in entries:
         i, j, _ = STIFFNESS_NAMES.get(name, (-1, -1, ""))
@@ -40,12 +40,7 @@ def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 class Elastic(Model):
-    """Something elastic between the outer ring of a bearing and ground.
-
-    Raises
-    ------
-    SceneError
-        A matrix that is not symmetric or is indefinite, or one that couples rigid motions.
+    """An elastic support between the outer ring of a bearing and ground.
 
     Examples
     --------
@@ -61,7 +56,7 @@ class Elastic(Model):
     #: 6x6, SI, order (x, y, z, thx, thy, thz). The constructor also takes it as `stiffness`: named
     #: entries, of which those on the diagonal that are left out are rigid, or six rows.
     matrix: Matrix
-    rigid: tuple[str, ...] = ()  #: motions in which it does not give; their rows are zero
+    rigid: tuple[str, ...] = ()  #: rigid motions; their rows are zero
 
     def __init__(self, /, **data: Any):
         if "stiffness" in data:
@@ -90,33 +85,33 @@ class Elastic(Model):
 
     @property
     def gives(self) -> list[int]:
-        """Motions in which it is not rigid, by place."""
+        """Motions that are not rigid, by place."""
         return [k for k, name in enumerate(DOF_NAMES) if name not in self.rigid]
 
     @property
     def own(self) -> np.ndarray:
-        """(k, k) stiffness against these."""
+        """(k, k) stiffness against the motions `gives`."""
         return np.array(self.matrix)[np.ix_(self.gives, self.gives)]
 
     @property
     def entries(self) -> dict[str, float]:
-        """Named entries, those of free motions included; what is left out is rigid."""
+        """Named entries, those of free motions included; motions without one are rigid."""
         free = {OWN[k]: 0.0 for k in self.gives if self.matrix[k][k] == 0.0}
         return stiffness_entries(self.matrix) | free
 
     def scaled(self, factor: float):
-        """The same with every stiffness multiplied."""
+        """Return the support with every stiffness multiplied."""
         return self.with_changes(matrix=np.array(self.matrix) * factor)
 
-    def beneath_one(self, stiffness: np.ndarray, what: str = "the housing") -> np.ndarray:
-        """(6, 6) stiffness of a bearing that stands in it, both at one point; `what` it is called
-        in an error.
+    def beneath_one(self, stiffness: np.ndarray, name: str = "the housing") -> np.ndarray:
+        """Return the (6, 6) stiffness of a bearing in this support, both at one point; errors call the
+        support `name`.
         """
-        return in_series(stiffness, np.eye(6)[:, self.gives], self.own, what)
+        return in_series(stiffness, np.eye(6)[:, self.gives], self.own, name)
 
 
 def elastic(table: Any) -> Any:
-    """The housing of one bearing from the table of a file, named entries of a 6x6 or ``matrix``
+    """Return the housing of a bearing from a table of a file, named entries of a 6x6 or ``matrix``
     alone; anything else as it is.
     """
     if not isinstance(table, Mapping) or "rigid" in table:
@@ -159,7 +154,7 @@ class Housing(Placed, Elastic):
     """
 
     class Words(Along):
-        """Of a file: a place, or a spring along the axis alone."""
+        """Words for a place, or a spring along the axis alone."""
 
         axial: AxialSpring | None = None
 
@@ -220,8 +215,8 @@ class Housing(Placed, Elastic):
 
 
 def read_housing(table: Mapping[str, Any], places: Places) -> Housing | float | None:
-    """Support of all bearings by the [housing] of a file: a housing, or a spring along the axis
-    (N/m); None where its place is not known.
+    """Read the [housing] of a file: a housing, or a spring along the axis (N/m); None where its place
+    is not known.
     """
     table, scale = _unscaled(table)
     if "axial" not in table or {"stiffness", "matrix"} & set(table):
@@ -240,6 +235,6 @@ class _Scale(Model):
 
 
 def _unscaled(table: Mapping[str, Any]) -> tuple[dict[str, Any], float]:
-    """The table of a housing without the factor on it, and that factor."""
+    """Return the table of a housing without its factor, and the factor."""
     factor = _Scale(**{key: table[key] for key in table if key == "scale"})
     return {key: value for key, value in table.items() if key != "scale"}, factor.scale

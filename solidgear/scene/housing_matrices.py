@@ -1,7 +1,7 @@
-"""An elastic housing by mass and stiffness of its points, as other programs reduce it to them.
+"""Elastic housing by mass and stiffness of its points, as other programs reduce it to them.
 
-Coordinates are the six motions of every point, point by point, in the axes of the train, and behind
-them those of modes, which move no point (Craig and Bampton 1968).  All of it is SI.
+Coordinates are the six motions of every point, point by point, in the axes of the train, then those
+of modes, which move no point (Craig and Bampton 1968).  SI units.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ STILL = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class HousingMatrices:
-    """A free elastic body by the motions of its points and its modes."""
+    """A free elastic body by the motions of points and modes."""
 
-    source: str  #: file that they are from
+    source: str  #: file of the matrices
     #: mass, stiffness: (n, n) symmetric, the first positive definite, SI
     mass: np.ndarray
     stiffness: np.ndarray
-    positions: dict[str, np.ndarray]  #: of its points in turn, m
+    positions: dict[str, np.ndarray]  #: of the points in the order of coordinates, m
 
     @cached_property
     def _factor(self) -> np.ndarray:
@@ -45,7 +45,7 @@ class HousingMatrices:
         return SceneError(reason, where=self.source)
 
     def rigid(self, about: np.ndarray | None = None) -> np.ndarray:
-        """(n, 6) coordinates of rigid motions about a point, the origin by default."""
+        """Return the (n, 6) coordinates of rigid motions about a point, the origin by default."""
         about = np.zeros(3) if about is None else about
         moved = [shift(place - about) for place in self.positions.values()]
         return np.pad(np.vstack(moved), ((0, len(self.mass) - 6 * len(moved)), (0, 0)))
@@ -58,18 +58,18 @@ class HousingMatrices:
 
     @cached_property
     def rigid_mass(self) -> np.ndarray:
-        """(6, 6) about the centre of mass."""
+        """(6, 6) mass matrix about the centre of mass."""
         return self.rigid(self.centre).T @ self.mass @ self.rigid(self.centre)
 
     @cached_property
     def mean(self) -> np.ndarray:
-        """(6, n) motion of the centre of mass, with the momentum of all of it."""
+        """(6, n) motion of a rigid body with the same momentum, at the centre of mass."""
         return np.linalg.solve(self.rigid_mass, self.rigid(self.centre).T @ self.mass)
 
     @cached_property
     def elastic(self) -> tuple[np.ndarray, np.ndarray]:
-        """Elastic frequencies (n - 6,) of the free body, rad/s, and strain rows (n - 6, n) that its
-        rigid motions do not strain at all.
+        """Elastic frequencies (n - 6,) of the free body, rad/s, and strain rows (n - 6, n), exactly
+        zero for rigid motions.
         """
         lower = self._factor
         operator = sla.solve_triangular(lower, self.stiffness, lower=True)
@@ -94,18 +94,8 @@ class HousingMatrices:
 
 
 def read_matrices(path: str | os.PathLike) -> HousingMatrices:
-    """An elastic housing from a NumPy archive.
-
-    Parameters
-    ----------
-    path : str or path
-        An ``.npz`` with ``mass``, ``stiffness`` (n, n), ``points``, the names of p points, and
-        ``positions`` (p, 3).
-
-    Raises
-    ------
-    SceneError
-        For a file that cannot be read, and matrices that are none of a free body.
+    """Read an elastic housing from an ``.npz`` file with ``mass``, ``stiffness`` (n, n), ``points``,
+    the names of p points, and ``positions`` (p, 3); refuse matrices that are not of a free body.
     """
     file_path = os.fspath(path)
     try:
@@ -116,8 +106,8 @@ def read_matrices(path: str | os.PathLike) -> HousingMatrices:
                 raise SceneError(reason, where=file_path)
             mass, stiffness, points, positions = (store[name] for name in ARRAYS)
     except (OSError, ValueError, TypeError, AttributeError) as error:
-        said = getattr(error, "strerror", None) or "not an .npz file of NumPy"
-        raise SceneError(f"the matrices cannot be read: {said}", where=file_path) from None
+        cause = getattr(error, "strerror", None) or "not an .npz file of NumPy"
+        raise SceneError(f"the matrices cannot be read: {cause}", where=file_path) from None
     names = [str(name) for name in points.ravel()]
     n = len(mass) if mass.ndim == 2 else 0
     shapes = mass.shape == stiffness.shape == (n, n) and positions.shape == (len(names), 3)
@@ -141,5 +131,5 @@ def read_matrices(path: str | os.PathLike) -> HousingMatrices:
         (matrix + matrix.T) / 2 for matrix in (mass.astype(float), stiffness.astype(float))
     )
     housing = HousingMatrices(file_path, mass, stiffness, dict(zip(names, positions.astype(float))))
-    housing.elastic  # noqa: B018  refuses what is no free body
+    housing.elastic  # noqa: B018  refuses a body that is not free
     return housing

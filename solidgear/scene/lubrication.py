@@ -1,4 +1,4 @@
-"""Lubrication of the bearings of a shaft: what the modified life of ISO 281 asks of it."""
+"""Lubrication of the bearings of a shaft, for the modified life of ISO 281."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Lubrication(Model):
     speed: PositiveSpeed | None = None
 
     def contamination(self, pitch: float) -> tuple[float, float]:
-        """Factor e_C from its least to its largest, for a pitch diameter in m."""
+        """Return the least and the largest factor e_C, for a pitch diameter in m."""
         if isinstance(self.cleanliness, str):
             return CLEANLINESS[self.cleanliness][pitch >= 0.1]
         return self.cleanliness, self.cleanliness

@@ -1,4 +1,4 @@
-"""Materials by name, with where their constants come from.
+"""Materials by name, with the sources of their constants.
 
 A standard gives one modulus to a whole group: plain and low-alloy steels lie within 2 % of 210 GPa
 whatever their strength and heat treatment, and suppliers' sheets of one grade differ by as much.
@@ -46,7 +46,7 @@ MATERIALS = {
     "EN-GJS-700": MaterialConstants(176e9, 0.275, 7200.0, IRON_SOURCE),
     "aluminium": _ALUMINIUM,
 }
-#: what has no constants of its own
+#: materials without constants, and why
 NONE_OF_ITS_OWN = {
     "lamination": "a laminated stack has no E of its own: it is soft in bending and along the axis, "
     "by how it is pressed and welded; give the E that makes a measured first bending right",
@@ -54,7 +54,7 @@ NONE_OF_ITS_OWN = {
 
 
 def by_name(value: Any) -> Any:
-    """Constants of a material that is given by its name; anything else as it is.
+    """Return the constants of a material given by name; anything else as it is.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def by_name(value: Any) -> Any:
 
 
 def as_table(material: Any) -> Any:
-    """The table that a file might hold in place of the name of a material; anything else as it is.
+    """Return the table that stands for the name of a material in a file; anything else as it is.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def as_table(material: Any) -> Any:
     try:
         constants = by_name(material) if isinstance(material, str) else None
     except SceneError:
-        return material  # whoever reads the file tells
+        return material  # refused by the reader of the file
     if constants is None:
         return material
     modulus, density = f"{constants['E'] / 1e9:g} GPa", f"{constants['density']:g} kg/m^3"

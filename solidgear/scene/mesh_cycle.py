@@ -1,4 +1,4 @@
-"""The tables of what varies over a mesh cycle: stiffness, mesh point and line of action."""
+"""Tables over a mesh cycle: stiffness, mesh point and line of action."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from solidgear.errors import SceneError
 from solidgear.scene.typed import Model
 from solidgear.scene.units import MeshSpring, SignedAngle, three
 
-#: places of a mesh cycle at least, and how near its two ends are to be
+#: least number of places of a mesh cycle, and largest relative difference of its two ends
 LEAST_OF_CYCLE, CYCLE_CLOSES = 3, 1e-3
-#: a normal typed with four digits
+#: difference from unit length of a normal typed with four digits
 UNIT = 1e-4
 Vector = Annotated[
     tuple[float, float, float], three("length", 'such as ["-55 mm", "0 mm", "0 mm"]')
@@ -22,18 +22,18 @@ Vector = Annotated[
 
 
 class Cycle(Model):
-    """Common part of tables over one mesh cycle."""
+    """Base of tables over one mesh cycle."""
 
-    #: of the pinion, ascending over one tooth pitch, both ends told, rad; linear between
+    #: of the pinion, ascending over one tooth pitch with both ends, rad; linear between
     angle: tuple[SignedAngle, ...]
 
     @property
     def pitch(self) -> float:
-        """Angle that it covers, rad."""
+        """Angle that the table covers, rad."""
         return self.angle[-1] - self.angle[0]
 
     def check_values(self, key: str, plural: str, values: Sequence) -> None:
-        """Refuse angles that do not ascend, or other than one value at each."""
+        """Refuse angles that do not ascend, or a different number of values."""
         if len(self.angle) != len(values) or len(self.angle) < LEAST_OF_CYCLE:
             counts = f"{len(values)} {plural} for {len(self.angle)} angles"
             reason = f"there are {counts}; give as many, {LEAST_OF_CYCLE} at least"
@@ -43,7 +43,7 @@ class Cycle(Model):
 
 
 class StiffnessCycle(Cycle):
-    """Mesh stiffness over one mesh cycle; what it is on average is the stiffness of the mesh."""
+    """Mesh stiffness over one mesh cycle; its mean is the stiffness of the mesh."""
 
     stiffness: tuple[MeshSpring, ...]  #: N/m, at each angle
 
@@ -61,7 +61,7 @@ class StiffnessCycle(Cycle):
 
 
 class LineCycle(Cycle):
-    """Mesh point and line of action over one mesh cycle, in the pinion's frame from its lumped point."""
+    """Mesh point and line of action over a mesh cycle, in the pinion's frame from the lumped point."""
 
     point: tuple[Vector, ...]  #: mesh point at each angle, m
     #: unit, the direction of the force on the pinion

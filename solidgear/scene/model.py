@@ -18,6 +18,7 @@ from solidgear.display import Displayed
 from solidgear.errors import SceneError
 from solidgear.scene import rules
 from solidgear.scene.ask import Ask
+from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.blends import Blend, Corner
 from solidgear.scene.body_file import BodyFile
 from solidgear.scene.catalogue import BearingLoad
@@ -28,7 +29,6 @@ from solidgear.scene.lubrication import Lubrication
 from solidgear.scene.outline import Outline
 from solidgear.scene.parts import STEEL, Material, Segment
 from solidgear.scene.patches import off_patches
-from solidgear.scene.plain_data import plain_data
 from solidgear.scene.point_mass import PointMass
 from solidgear.scene.stations import Bearing, Port
 from solidgear.scene.typed import Model
@@ -399,4 +399,41 @@ class Scene(Displayed, Model):
 
     def as_dict(self) -> dict[str, Any]:
         """Everything resolved, in SI, as plain data that JSON can hold."""
-        return plain_data(self)
+        data = self.model_dump(mode="json")
+        for key in ("masses", "features", "blends", "further_ports", "uncertain"):
+            if not data[key]:
+                del data[key]
+        for row, corner in zip(data.get("blends", ()), self.corners):
+            lo, hi = corner.span
+            row |= {"edge": "root" if corner.root else "rim", "lo": lo, "hi": hi}
+            row |= {"corner": [corner.r, corner.y], "outline": [list(p) for p in corner.points()]}
+            row |= {"owner": self.segments[corner.owner].name}
+        for row, segment in zip(data["segments"], self.segments):
+            row["length"] = segment.length
+        for row, bearing in zip(data["bearings"], self.bearings):
+            row |= {
+                "lo": bearing.lo,
+                "hi": bearing.hi,
+                "stiffness": bearing.stiffness.tolist(),
+                "entries": stiffness_entries(row.pop("matrix")),
+            }
+            if bearing.scale == 1:
+                del row["scale"]
+            for key in ("catalogue", "support", "hold", "face", "housing"):
+                if row[key] is None:
+                    del row[key]
+            if bearing.housing is not None:
+                row["housing"] = bearing.housing.entries
+        if self.housing is not None:
+            data["housing"] = {"y": self.housing.y, "entries": self.housing.entries}
+        for key in ("load", "lubrication", "body", "housing"):
+            if data[key] is None:
+                del data[key]
+        for key in ("groups", "told", "mixed", "remarks"):
+            if not data.get("body", {}).get(key, True):
+                del data["body"][key]
+        for row, mass in zip(data.get("masses", ()), self.masses):
+            carrier = next(s for s in self.stations if s.name == mass.station)
+            row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}
+            row |= {"attachment": carrier.attachment, "matrix": mass.matrix.tolist()}
+        return data | {"length": self.length, "steps": list(self.steps)}

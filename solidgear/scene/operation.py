@@ -1,5 +1,5 @@
-"""Operating points of a train: its torque and speed, what else loads the shafts there, and problems of
-what drives it and of how it runs.
+"""Operating points of a train: torque, speed and other loads on the shafts, with problems of springs
+and of torques and speeds.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MOST_POINTS = 1000
 
 
 class OutsideForce(BearingLoad):
-    """A load on a shaft that comes neither from the teeth nor from a bearing, such as a belt."""
+    """A load on a shaft from neither teeth nor bearings, such as of a belt."""
 
     #: shaft and port, such as ``pinion.A``; components are along the axes of that shaft's scene
     at: str
@@ -36,11 +36,6 @@ class OutsideForce(BearingLoad):
 
 class OperatingPoint(Model):
     """A torque and a speed at which a train runs.
-
-    Raises
-    ------
-    SceneError
-        Of a share and hours, both.
 
     Examples
     --------
@@ -56,7 +51,7 @@ class OperatingPoint(Model):
     of: str = "pinion"  #: by default, in a train, the shaft that the engine turns with
     speed: Speed | None = None  #: rad/s, of the shaft `of`
     #: output_torque, output_speed: of the shaft that the load turns with, or of the engine's where
-    #: `of` is the load's, to be held against the teeth
+    #: `of` is the load's; checked against the teeth
     output_torque: Torque | None = None
     output_speed: Speed | None = None
     #: direction in which weight acts, in the axes of the first shaft's scene, such as ``-z``
@@ -87,7 +82,7 @@ class OperatingPoint(Model):
 
     @property
     def gravity(self) -> tuple[float, float, float]:
-        """Acceleration of weight in the axes of the first shaft's scene, m/s^2; zeros without weight."""
+        """(3,) acceleration of weight in the axes of the first shaft's scene, m/s^2; zeros without."""
         out = [0.0, 0.0, 0.0]
         if self.weight is not None:
             size = -GRAVITY if self.weight.startswith("-") else GRAVITY
@@ -95,20 +90,20 @@ class OperatingPoint(Model):
         return (out[0], out[1], out[2])
 
     def torque_of(self, side: str, turns: Mapping[str, float]) -> float:
-        """Torque of a shaft without losses, N m, by the turns of all shafts in the same time over the
-        share of the power that each carries.
+        """Return the torque of a shaft without losses, N m; `turns` of all shafts in the same time are
+        over the share of the power that each carries.
         """
         return self.torque if side == self.of else self.torque * turns[self.of] / turns[side]
 
     def speed_of(self, side: str, turns: Mapping[str, float]) -> float | None:
-        """Speed of a shaft, rad/s; None where the point has none."""
+        """Return the speed of a shaft, rad/s; None where the point has none."""
         if self.speed is None or side == self.of:
             return self.speed
         return self.speed * turns[side] / turns[self.of]
 
 
 def _as_points(value: Any) -> Any:
-    """One table is a list of one."""
+    """Return a single table as a list of one."""
     return (value,) if isinstance(value, (Mapping, OperatingPoint)) else value
 
 
@@ -118,7 +113,7 @@ Operation = Annotated[
 
 
 def spring_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of torsional springs: ports that are not there, places off their shafts."""
+    """Yield problems of torsional springs: unknown ports, places off their shafts."""
     for name, rotor in train.rotors.items():
         spring, scene = rotor.spring, train.shafts[rotor.shaft].scene
         ports = [s.name for s in scene.stations]
@@ -149,7 +144,7 @@ def _on_the_shaft(train: Train, rotor: str, side: str) -> Iterator[SceneError]:
 
 
 def running_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of operating points: torques and speeds that the teeth contradict, shafts that do not turn."""
+    """Yield problems of operating points: torques and speeds against the teeth, held shafts."""
     if not train.operation:
         return
     lacking = [
@@ -186,7 +181,7 @@ def running_problems(train: Train) -> Iterator[SceneError]:
 
 
 def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
-    """Problems of an operating point against the teeth, and of forces nowhere."""
+    """Yield problems of an operating point against the teeth, and of forces at unknown ports."""
     if point.of not in train.torque_turns:
         known = train.torque_turns
         reason = f"is no shaft that the torque passes; write one of {listed(known)}"
@@ -203,7 +198,7 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 
 def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
-    """Torque and speed of the other end that are not those of the teeth."""
+    """Yield problems of a torque and speed at the other end that contradict the teeth."""
     first, last = train.reference, train.output
     side = first if point.of == last else last
     torque, speed = point.torque_of(side, train.torque_turns), point.speed_of(side, train.turns)
@@ -228,7 +223,7 @@ def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
 
 
 def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
-    """Operating points of one name, and a duty table that is not whole."""
+    """Yield problems of operating points of one name, and of an incomplete duty table."""
     names = [point.name for point in points]
     for k, name in enumerate(names):
         if name and name in names[:k]:
@@ -252,7 +247,7 @@ def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
 
 
 def _speeds(train: Train, side: str, scene: Scene) -> Iterator[SceneError]:
-    """Speeds that bearings of a shaft name and that it does not have."""
+    """Yield problems of speeds of bearings that are not those of their shaft."""
     for bearing in scene.bearings:
         bearing_speed = bearing.catalogue.speed if bearing.catalogue is not None else 0.0
         for k, point in enumerate(train.operation):

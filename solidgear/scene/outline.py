@@ -24,7 +24,7 @@ SURFACES: tuple[Surface, Surface] = ("outer", "bore")
 
 
 class Frustum(NamedTuple):
-    """The shape of a segment in plain floats, m."""
+    """Shape of a segment in plain floats, m."""
 
     y0: float
     y1: float
@@ -35,21 +35,19 @@ class Frustum(NamedTuple):
 
     @classmethod
     def of_segment(cls, segment: Segment) -> Frustum:
-        """The shape of a segment."""
+        """Return the shape of a segment."""
         return cls(*(float(getattr(segment, name)) for name in cls._fields))
 
 
 class Torus(NamedTuple):
-    """Arc of the meridian of a part: from y0 to y1, its middle (y, r) and its radius, m, and whether it
-    lies between its middle and the axis.
-    """
+    """Arc of the meridian of a part from y0 to y1 about a middle (y, r), m."""
 
     y0: float
     y1: float
     y: float
     r: float
     radius: float
-    hollow: bool
+    hollow: bool  #: whether the arc lies between its middle and the axis
 
 
 Shape: TypeAlias = "Segment | Frustum"
@@ -57,14 +55,14 @@ S = TypeVar("S", bound=Shape)
 
 
 def radii_of(shape: Shape, surface: Surface) -> tuple[float, float]:
-    """Radii of a surface at the two ends of a segment, m."""
+    """Return the radii of a surface at both ends of a segment, m."""
     if surface == "outer":
         return shape.outer0, shape.outer1
     return shape.inner0, shape.inner1
 
 
 class Piece(NamedTuple):
-    """A line of the outline, or the arc or line of a fillet or chamfer, in the sense of y; m."""
+    """A line of the outline, or the arc or line of a fillet or chamfer, along y; m."""
 
     surface: Surface
     segment: int
@@ -77,7 +75,7 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True)
 class Edge:
-    """The outline on one surface where a segment follows another."""
+    """Outline of one surface at the joint of two segments."""
 
     joint: int  #: segment that begins there
     surface: Surface
@@ -87,7 +85,7 @@ class Edge:
     after: float
     #: angles to the axis on both sides, rad, positive where the wall grows thicker
     slopes: tuple[float, float]
-    root: Corner | None  #: the fillet or chamfer that fills its re-entrant corner
+    root: Corner | None  #: fillet or chamfer that fills the re-entrant corner
 
     @property
     def r(self) -> float:
@@ -101,9 +99,7 @@ class Edge:
 
     @property
     def bend(self) -> float:
-        """Angle by which a surface without a step turns, rad, positive where it opens into the
-        material.
-        """
+        """Angle by which a surface without a step turns, rad, positive into the material."""
         return self.slopes[1] - self.slopes[0]
 
     @property
@@ -117,7 +113,7 @@ class Edge:
 
     @property
     def angle(self) -> float:
-        """Largest material angle that is left, rad, pi at least: a chamfer leaves two corners."""
+        """Largest remaining material angle, rad, pi at least: a chamfer leaves two corners."""
         if self.root is None:
             return self.sharp_angle
         if self.root.centre:
@@ -128,11 +124,6 @@ class Edge:
 
 class Outline(Generic[S]):
     """Outline of segments end to end with fillets and chamfers.
-
-    Parameters
-    ----------
-    corners : sequence of Corner
-        Edges with fillets and chamfers.
 
     Examples
     --------
@@ -149,17 +140,17 @@ class Outline(Generic[S]):
         self._at = {(c.joint, c.surface, c.root, c.side): c for c in self.corners}
 
     def root(self, joint: int, surface: Surface) -> Corner | None:
-        """The fillet or chamfer in the step where a segment begins."""
+        """Return the fillet or chamfer in the step where a segment begins."""
         corners = (self._at.get((joint, surface, True, side)) for side in (1, -1))
         return next((corner for corner in corners if corner), None)
 
     def rim(self, segment: int, surface: Surface, side: int) -> Corner | None:
-        """The one at the rim of a segment, where it begins (side 1) or ends (-1)."""
+        """Return the fillet or chamfer at the rim of a segment, at its start (side 1) or end (-1)."""
         return self._at.get((segment + (side < 0), surface, False, side))
 
     def shared_face(self, joint: int, segment: int) -> tuple[float, float]:
-        """Radii in the bore and outside up to which the end of a segment at a joint is covered by the
-        other one, or by what fills the corner there, m.
+        """Return the radii in the bore and outside between which the end of a segment at a joint is
+        covered by its neighbour, or by a filled corner, m.
         """
         low, high = self.segments[joint - 1], self.segments[joint]
         radii = {
@@ -209,7 +200,7 @@ class Outline(Generic[S]):
                     yield Piece(surface, k, y1, last.y, r1, last.on_face[0], last)
 
     def _beside(self, segment: int, surface: Surface, side: int) -> Corner | None:
-        """The fillet or chamfer that lies on a segment at its start (side 1) or end (-1)."""
+        """Return the fillet or chamfer that lies on a segment at its start (side 1) or end (-1)."""
         joint = segment + (side < 0)
         corners = (self._at.get((joint, surface, root, side)) for root in (True, False))
         return next((corner for corner in corners if corner), None)
@@ -220,7 +211,7 @@ class Outline(Generic[S]):
         return tuple(self._edges())
 
     def edges_at(self, joint: int) -> tuple[Edge, ...]:
-        """Those where a segment begins."""
+        """Return the edges where a segment begins."""
         return self.edges[2 * joint - 2 : 2 * joint]
 
     def _edges(self) -> Iterator[Edge]:
@@ -233,11 +224,11 @@ class Outline(Generic[S]):
                     for shape, (a, b) in zip((low, high), ends)
                 ]
                 yield Edge(
-                    k,
-                    surface,
-                    low.y1,
-                    ends[0][1],
-                    ends[1][0],
-                    (slopes[0], slopes[1]),
-                    self.root(k, surface),
+                    joint=k,
+                    surface=surface,
+                    y=low.y1,
+                    before=ends[0][1],
+                    after=ends[1][0],
+                    slopes=(slopes[0], slopes[1]),
+                    root=self.root(k, surface),
                 )

@@ -1,4 +1,4 @@
-"""Parts of a shaft, each frozen and validated: material and segment."""
+"""Parts of a shaft, frozen and validated: material and segment."""
 
 from __future__ import annotations
 
@@ -22,13 +22,7 @@ from solidgear.scene.units import (
 
 
 class Strength(Model):
-    """Strength of a material, of which ratings of fatigue are made; nothing else needs it.
-
-    Raises
-    ------
-    SceneError
-        A yield point above the ultimate strength, or a value that is not positive.
-    """
+    """Strength of a material, for ratings of fatigue only."""
 
     yield_point: Stress  #: R_e or R_p0.2, Pa
     ultimate: Stress  #: tensile strength R_m, Pa
@@ -90,14 +84,12 @@ class Material(Model):
         """A validated copy with some fields replaced; other constants lose the name."""
         material = super().with_changes(**changes)
         same = all(getattr(material, key) == getattr(self, key) for key in _CONSTANTS)
-        return (
-            material
-            if same or "name" in changes or not material.name
-            else material.with_changes(name="")
-        )
+        if same or "name" in changes or not material.name:
+            return material
+        return material.with_changes(name="")
 
     def following(self, usual: Material, replacement: Material) -> Material:
-        """The material of a segment, of which what is like the usual one becomes like another."""
+        """Return the material of a segment with constants that equal the usual ones replaced."""
         if self == usual:
             return replacement
         keys = [key for key in _CONSTANTS if getattr(self, key) == getattr(usual, key)]

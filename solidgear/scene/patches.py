@@ -10,12 +10,12 @@ from solidgear.scene.typed import Model
 from solidgear.scene.units import three
 
 Triple = tuple[float, float, float]
-#: in place of the middle of a patch, in the axes of the file
+#: point in place of the middle of a patch, in the axes of the file
 Point = Annotated[tuple[float, float, float] | None, three("length", "along x, y and z")]
 
 #: faces of a block, in its own axes
 FACES = ("-x", "+x", "-y", "+y", "-z", "+z")
-#: tables whose entries lie on a patch, and those that a body without an axis has no place for
+#: tables whose entries lie on a patch, and those that a body without an axis cannot have
 ON_PATCHES = ("port", "bearing")
 ELSEWHERE = ("housing", "load", "lubrication", "uncertain")
 
@@ -29,13 +29,13 @@ class Patch(Model):
 
 
 def point_of(station: Any) -> Triple:
-    """The point (m) that a station is lumped into: that of its patch, or one on the axis."""
+    """Return the point (m) that a station is lumped into: that of its patch, or one on the axis."""
     patch = getattr(station, "patch", None)
     return (0.0, station.y, 0.0) if patch is None else patch.point
 
 
 def off_patches(scene: Any) -> dict[str, Any]:
-    """Changes that take what is attached to a scene off the patches of its body."""
+    """Return changes of a scene that take its stations off the patches of its body."""
     if scene.body is None or scene.body.edges is None:
         return {}
     port = scene.port.with_changes(patch=None, y=scene.length / 2, lo=0.0, hi=scene.length)
@@ -43,7 +43,7 @@ def off_patches(scene: Any) -> dict[str, Any]:
 
 
 def block_patches(edges: Triple) -> tuple[Patch, ...]:
-    """The six faces of a block (m) that begins at y = 0."""
+    """Return the six faces of a block (edges in m) that begins at y = 0."""
     low, high = (-edges[0] / 2, 0.0, -edges[2] / 2), (edges[0] / 2, edges[1], edges[2] / 2)
     middle = (0.0, edges[1] / 2, 0.0)
     out = []
@@ -56,7 +56,7 @@ def block_patches(edges: Triple) -> tuple[Patch, ...]:
 
 
 def _tables(value: Any) -> Iterator[tuple[int, Mapping[str, Any]]]:
-    """Tables of a list, or the one that stands for a list, with their places; what is none is refused
+    """Yield tables of a list, or the one in place of a list, with their places; others are refused
     elsewhere.
     """
     listed = [value] if isinstance(value, Mapping) else value
@@ -66,7 +66,7 @@ def _tables(value: Any) -> Iterator[tuple[int, Mapping[str, Any]]]:
 
 
 def refuse_elsewhere(raw: Mapping[str, Any], body_kind: str) -> None:
-    """Refuse what a body without an axis cannot have, and stations that name no patch."""
+    """Refuse tables that a body without an axis cannot have, and stations that name no patch."""
     problems = [
         SceneError(f"a {body_kind} has no place for this: leave it out", path=(key,))
         for key in ELSEWHERE
@@ -91,7 +91,7 @@ def refuse_elsewhere(raw: Mapping[str, Any], body_kind: str) -> None:
 def fields_on_patch(
     words: Any, table: Mapping[str, Any], places: Any, *sizes: str
 ) -> dict[str, Any]:
-    """Fields of a station on a patch; along y it is as long as the patch is large."""
+    """Return the fields of a station on a patch; along y it is as long as the patch is large."""
     reason = "a patch has its place and size itself; leave one of both out"
     words.refuse(reason, "position", "from_", "at", "attach_to", "span", "seat", table=None)
     words.refuse(reason, "face", "seat_width", table=table)
@@ -104,7 +104,7 @@ def fields_on_patch(
 
 
 def patch_problems(station: Any) -> Iterator[SceneError]:
-    """Ways of holding a station that faces cannot be held in."""
+    """Yield problems of stations on patches: an attachment or data that faces cannot have."""
     if station.patch is None:
         return
     if station.attachment == "section":

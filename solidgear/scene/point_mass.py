@@ -1,4 +1,4 @@
-"""A rigid mass on a shaft: a disc, a coupling half, a gear blank, a mass without extent."""
+"""Rigid mass on a shaft: a disc, a coupling half, a gear blank, a mass without extent."""
 
 from __future__ import annotations
 
@@ -127,9 +127,7 @@ class PointMass(Placed):
 
 
 def check_inertia(inertia: tuple[float, float, float]) -> None:
-    """Refuse moments of inertia (kg m^2, about three axes at right angles) that no distribution of
-    mass has.
-    """
+    """Refuse moments of inertia (kg m^2, about three orthogonal axes) that no body has."""
     if min(inertia) < 0:
         raise SceneError("a moment of inertia must not be negative", path=("inertia",))
     if 2 * max(inertia) > (1 + 1e-9) * sum(inertia):

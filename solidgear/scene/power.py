@@ -1,6 +1,6 @@
-"""Power of a train: what share of it comes in and goes out where, and passes each mesh and shaft.
+"""Power of a train: shares of engines, loads, meshes and shafts.
 
-A mesh or a planetary stage that alone holds two parts of the train together passes what one of them
+A mesh or a planetary stage that alone joins two parts of the train passes the power that one part
 takes.  Meshes of a loop divide it by their stiffness, and have no share here.
 """
 
@@ -17,12 +17,12 @@ from solidgear.scene.units import TYPED
 if TYPE_CHECKING:
     from solidgear.scene.train import Train
 
-#: of the power; less is rounding
+#: share of the power below which it is rounding
 NONE = 1e-12
 
 
 def shares_of(train: Train) -> dict[str, float]:
-    """Share of the power that every engine brings, and of every load what it takes, below zero."""
+    """Return the share of the power that every engine brings, and every load takes, below zero."""
     out: dict[str, float] = {}
     for sign, names in ((1.0, train.engines), (-1.0, train.loads)):
         shares = [train.rotors[name].share or 1.0 for name in names]
@@ -31,8 +31,8 @@ def shares_of(train: Train) -> dict[str, float]:
 
 
 def flows_of(train: Train) -> dict[str, float | None]:
-    """Share of the power that every mesh or stage passes from its first shaft to its second, by the
-    tree of them; None where a loop of meshes divides it by stiffness.
+    """Return the share of the power that every mesh or stage passes from its first shaft to its
+    second; None where a loop of meshes divides it by stiffness.
     """
     brought = dict.fromkeys(train.shafts, 0.0)
     for name, share in shares_of(train).items():
@@ -47,8 +47,8 @@ def flows_of(train: Train) -> dict[str, float | None]:
 
 
 def carried_of(train: Train) -> dict[str, float]:
-    """Share of the power that passes every shaft; none of one that it does not pass, and of one in a
-    loop that of its own engines and loads.
+    """Return the share of the power that passes every shaft, without shafts that it does not pass; in
+    a loop that of the shaft's engines and loads.
     """
     out = {}
     for side in train.shafts:
@@ -66,7 +66,7 @@ def carried_of(train: Train) -> dict[str, float]:
 
 
 def share_problems(train: Train) -> Iterator[SceneError]:
-    """Problems of how a torque divides among engines or loads."""
+    """Yield problems of the shares of engines or loads."""
     for kind, names in (("engine", train.engines), ("load", train.loads)):
         if not names:
             continue

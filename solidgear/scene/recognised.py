@@ -1,4 +1,4 @@
-"""A part from a file and the body of revolution inside it, as far as a scene asks for them."""
+"""A part from a file and the body of revolution inside it, as far as a scene needs them."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from solidgear.scene.units import Length, PositiveLength
 if TYPE_CHECKING:
     from solidgear.scene.places import Places
 
-#: least share of the cylinder of a seat that must be there, and the share below which it is said
-#: what there is: chords of eight to a turn lack 2.6 %
+#: least share of the cylinder of a seat, and the share below which a remark gives it: chords of
+#: eight to a turn lack 2.6 %
 LEAST_SEAT, WHOLE_SEAT = 0.5, 0.97
-#: relative difference of the mass of a part from what it is checked against
+#: relative difference of the mass of a part from mass_check
 MASS_CHECK = 1e-2
 #: relative difference of diameters that are one
 SAME_DIAMETER = 1e-3
@@ -41,8 +41,8 @@ class Seat(Model):
 
 
 def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, float]]) -> Material:
-    """One material for several side by side, by their places and shares of the volume: stretched
-    together they are as stiff and as heavy.
+    """Return one material for several side by side, given by place and share of the volume, which is
+    as stiff as they are stretched together, and as heavy.
 
     Examples
     --------
@@ -77,22 +77,21 @@ class Recognised(NamedTuple):
     shares: tuple[tuple[tuple[int, float], ...], ...] = ()
 
     def segments(self, material: Material) -> list[Segment]:
-        """Its frusta, named s1, s2 and so on, in a scene of some material."""
+        """Return the frusta, named s1, s2 and so on, in a scene of some material."""
         names = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
         materials = self.body.materials(material)
+        shares = self.shares or [((0, 1.0),)] * len(self.walls)
         return [
             Segment(
                 name=f"s{k}",
                 material=mean_material(materials, share),
                 **dict(zip(names, wall)),
             )
-            for k, (wall, share) in enumerate(
-                zip(self.walls, self.shares or [((0, 1.0),)] * len(self.walls)), 1
-            )
+            for k, (wall, share) in enumerate(zip(self.walls, shares), 1)
         ]
 
     def lay_out(self, usual: Material, places: Places) -> list[Segment]:
-        """Its frusta, and where they lie told to the places of a file."""
+        """Return the frusta, and enter their datums in the places of a file."""
         segments = self.segments(usual)
         places.datums |= {"start": 0.0, "end": segments[-1].y1, "origin": self.origin}
         for s in segments:
@@ -103,7 +102,7 @@ class Recognised(NamedTuple):
         return segments
 
     def usual_material(self) -> Material:
-        """A material for a scene that has none, where all groups have one of their own."""
+        """Return a material for a scene without one, where all groups have one."""
         groups = [g for g in self.body.groups if g.material is None]
         if groups:
             raise SceneError(
@@ -114,7 +113,7 @@ class Recognised(NamedTuple):
         return next(g.material for g in self.body.groups if g.material is not None)
 
     def check_mass(self, expected: float | None, usual: Material) -> None:
-        """Refuse a part that does not have the mass (kg) that its file says."""
+        """Refuse a part that does not have the expected mass, kg."""
         mass = self.body.mass(usual)
         if expected is not None and abs(mass / expected - 1) > MASS_CHECK:
             raise SceneError(
@@ -124,7 +123,7 @@ class Recognised(NamedTuple):
             )
 
     def span(self, seat: Seat) -> tuple[float, float]:
-        """Ends of a seat, m from the lower end, on a cylinder that is there to half at least."""
+        """Return the ends of a seat, m from the lower end; refuse a cylinder that is not half there."""
         lo, hi = seat.from_ + self.origin, seat.to + self.origin
         near = [c for c in self.cylinders if abs(c[0] / seat.diameter - 1) <= SAME_DIAMETER]
         if not near:
@@ -150,7 +149,7 @@ class Recognised(NamedTuple):
 
 
 def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]) -> BodyFile:
-    """A part, and what is to be said of seats that are not whole."""
+    """Return a part with remarks on seats that are not whole."""
     if part.body.edges is not None:
         return part.body
     remarks = []
@@ -168,12 +167,12 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
     return part.body.model_copy(update={"remarks": (*part.body.remarks, *remarks)})
 
 
-#: reads the part that a table of a file in some folder names
+#: reads the part that a table of a file in a folder names
 Reader = Callable[[BodyTable, Path], Recognised]
 
 
 def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
-    """A reader that reads no parts."""
+    """Refuse a part from a file, where no reader is given."""
     raise SceneError(
         "a part from a file is read by solidgear.load alone; a train or a study of bearings takes "
         "segments",

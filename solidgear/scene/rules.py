@@ -1,4 +1,4 @@
-"""Rules for segments of one shaft, and for things on it: every problem in a sentence of its own.
+"""Rules for segments of one shaft and for things on it, one sentence for each problem.
 
 Numbers in m. Paths of problems are those of a `Scene`.
 """
@@ -7,29 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import isclose
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from solidgear.errors import SceneError, listed, nearest, show
 from solidgear.quantity import AT, STIFFNESS, Quantity
-from solidgear.scene.blend_rules import blend_problems
 from solidgear.scene.features import feature_problems
-from solidgear.scene.outline import TOUCH, Outline
+from solidgear.scene.outline import TOUCH, Outline, radii_of
 from solidgear.scene.units import TYPED
 
 if TYPE_CHECKING:
-    from solidgear.scene import Bearing, Blend, Feature, Material, PointMass, Port, Segment
+    from solidgear.scene import Bearing, Blend, Corner, Feature, Material, PointMass, Port, Segment
     from solidgear.scene.catalogue import Catalogue
 
 #: least diameter and least length of a part over the length of the shaft, least wall over the
-#: radius; what is thinner would ask for meshes without end, or drown in rounding, and comes from a
-#: slip in the units
+#: radius; thinner ones would need endless meshes or drown in rounding, and come from wrong units
 SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
 
 #: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of
 #: frequencies rise above 1e-4 and searches do not end
 MOST_UNLIKE = 1e5
 
-#: elastic modes that can be asked for; of the last of them no mesh here has a digit
+#: elastic modes of one question; no mesh here has a digit of the last of them
 MOST_MODES = 500
 
 #: every segment takes at least a line of cells, and every bearing six ports
@@ -37,14 +35,21 @@ MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS, MOST_MASSES = 100, 50, 20, 50
 #: lumped points; each is condensed to and judged
 MOST_PORTS = 12
 
+#: fillets and chamfers of one shaft
+MOST_BLENDS = 40
+#: least size over the radius of the edge; smaller ones would need endless meshes
+SMALLEST_BLEND = 2e-3
+#: share of a plane face, and of the cylinder between two edges, that fillets and chamfers may take
+MOST_OF_FACE, MOST_OF_LENGTH = 0.95, 0.95
+
 ONE_HOUSING = (
     "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of both out"
 )
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
-    """Problems of segments as one shaft; proportions are judged only of segments that lie end
-    to end and have a sensible size.
+    """Return problems of segments as one shaft; proportions are judged only where segments lie end to
+    end and have a sensible size.
     """
     if not segments:
         return [SceneError("a scene needs at least one segment", path=("segments",))]
@@ -54,12 +59,10 @@ def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
 
 
 def too_many(plural: str, count: int, most: int) -> str:
-    """The reason to refuse a list longer than that of any shaft."""
-    hint = (
-        "; let pieces that are one be one segment, and a few cones stand for a curve"
-        if plural == "segments"
-        else ""
-    )
+    """Return the reason to refuse a list longer than that of any shaft."""
+    hint = ""
+    if plural == "segments":
+        hint = "; let pieces that are one be one segment, and a few cones stand for a curve"
     return f"{count} {plural} are more than the {most} a shaft may have{hint}"
 
 
@@ -161,8 +164,8 @@ def problems_between(
     blends: Sequence[Blend],
     complete: bool = True,
 ) -> Iterator[SceneError]:
-    """Problems between things on a sound shaft, the main port first; names are judged where the
-    ports and bearings are the whole of them.
+    """Yield problems between things on a sound shaft, the main port first; names are judged only
+    where ports and bearings are complete.
     """
     yield from station_problems(segments, ports, bearings, masses)
     if complete:
@@ -175,7 +178,9 @@ def problems_between(
 
 
 def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
-    """Preloaded rows that all hold the shaft the same way: nothing presses them together."""
+    """Yield a problem of preloaded rows that all hold the shaft the same way: nothing presses them
+    together.
+    """
     rows = [(k, b, b.catalogue) for k, b in enumerate(bearings) if b.catalogue is not None]
     rows = [row for row in rows if row[2].one_sided]
     pressed = [b for _, b, data in rows if data.preload is not None]
@@ -198,7 +203,7 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
 
 
 def _two_preloads(rows: Sequence[tuple[int, Bearing, Catalogue]]) -> Iterator[SceneError]:
-    """A pair whose bearings are told forces that differ, which no shaft at rest has."""
+    """Yield a problem of a pair with two preloads that differ, which no shaft at rest has."""
     forces = [data.preload.force or 0.0 for *_, data in rows if data.preload is not None]
     if all(forces) and not isclose(forces[0], forces[1], rel_tol=TYPED):
         forces_text = " and ".join(
@@ -217,8 +222,8 @@ def station_problems(
     bearings: Sequence[Bearing],
     masses: Sequence[PointMass] = (),
 ) -> Iterator[SceneError]:
-    """Ports (the main one first) and seats lie on the shaft, on one smooth surface each, and seats
-    do not overlap.
+    """Yield problems of ports (the main one first) and seats that leave the shaft or its smooth
+    surfaces, overlap or share a name.
     """
     length, jumps = segments[-1].y1, Outline(segments).steps
     for kind, stations, most in (
@@ -267,12 +272,12 @@ def station_problems(
 
 
 def _port_path(index: int) -> tuple[str | int, ...]:
-    """Path of a lumped point in a scene; the main one is the first."""
+    """Return the path of a lumped point in a scene; the main one is the first."""
     return ("further_ports", index - 1) if index else ("port",)
 
 
 def no_such_point(name: str, names: Iterable[str]) -> str:
-    """The reason to refuse the name of a lumped point."""
+    """Return the reason to refuse the name of a lumped point."""
     names = list(names)
     hint = nearest(name, names)
     return f"there is no lumped point {show(name, 40)}{hint}; the scene has {listed(names)}"
@@ -281,7 +286,7 @@ def no_such_point(name: str, names: Iterable[str]) -> str:
 def question_problems(
     ports: Sequence[Port], quantities: Sequence[Quantity]
 ) -> Iterator[SceneError]:
-    """Quantities, such as ``C_zz`` or ``C_zz@gear``, are asked of lumped points that there are."""
+    """Yield problems of quantities, such as ``C_zz@gear``, at unknown lumped points."""
     names = [port.name for port in ports]
     for k, quantity in enumerate(quantities):
         points = quantity.points_among(names)
@@ -292,9 +297,7 @@ def question_problems(
 
 
 def no_term(quantity: Quantity, points: Sequence[str]) -> str:
-    """The reason to refuse a quantity between the points that it is asked for; empty where there is
-    none.
-    """
+    """Return the reason to refuse a quantity at these points; empty where there is none."""
     if len(points) > 2:
         return f"a term is between two points; write for example {quantity.at(*points[:2])}"
     if len(points) == 2 and quantity.kind == STIFFNESS:
@@ -309,7 +312,7 @@ def no_term(quantity: Quantity, points: Sequence[str]) -> str:
 def mass_problems(
     ports: Sequence[Port], bearings: Sequence[Bearing], masses: Sequence[PointMass]
 ) -> Iterator[SceneError]:
-    """Masses sit on a station that there is, and not too many of them."""
+    """Yield problems of masses on unknown stations, of their names, or of too many."""
     if len(masses) > MOST_MASSES:
         yield SceneError(too_many("masses", len(masses), MOST_MASSES), path=("masses",))
         return
@@ -334,9 +337,7 @@ def _misplaced(
     length: float,
     jumps: Sequence[float],
 ) -> str:
-    """Reason why a station cannot be where it is, or nothing: the first reason, of which others may
-    be a consequence.
-    """
+    """Return the first reason why a station cannot be where it is; empty where there is none."""
     if station.hi <= station.lo:
         return f"the span must end beyond its start at {station.lo:.6g} m"
     reach = f"the {kind} reaches from {station.lo:.6g} to {station.hi:.6g} m"
@@ -353,10 +354,118 @@ def _misplaced(
                 f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
             )
     for _, neighbour, neighbour_kind in neighbours:
-        # a port may share the surface of a seat or of another port, unless both hold it rigid: that
+        # a port may share the surface of a seat or of another port, unless both hold it rigid, which
         # would weld the two points together
         seats = neighbour_kind == kind == "seat"
         exclusive = seats or neighbour.attachment == station.attachment == "rigid"
         if exclusive and min(station.hi, neighbour.hi) - max(station.lo, neighbour.lo) > TOUCH:
             return f'{reach} and overlaps that of "{neighbour.name}" ({neighbour.lo:.6g} to {neighbour.hi:.6g} m)'
     return ""
+
+
+def blend_problems(
+    segments: Sequence[Segment],
+    blends: Sequence[Blend],
+    stations: Sequence[Any] = (),
+    features: Sequence[Any] = (),
+) -> Iterator[SceneError]:
+    """Yield problems of fillets and chamfers with the shaft, its stations and its features."""
+    if len(blends) > MOST_BLENDS:
+        reason = (
+            f"{len(blends)} fillets and chamfers are more than the {MOST_BLENDS} a shaft may have"
+        )
+        yield SceneError(reason, path=("blends",))
+        return
+    names = {f.name for f in features}
+    earlier: list[tuple[Blend, Corner]] = []
+    for i, blend in enumerate(blends):
+        if blend.name in names:
+            yield SceneError(
+                "another feature has this name; each needs its own", path=("blends", i, "name")
+            )
+        names.add(blend.name)
+        try:
+            corner = blend.corner(segments)
+        except SceneError as error:
+            yield error.located(None, path=("blends", i, *error.path))
+            continue
+        key, reason = _misfit(blend, corner, segments, earlier, stations, features)
+        if reason:
+            yield SceneError(reason, path=("blends", i, key))
+        earlier.append((blend, corner))
+
+
+def _misfit(blend, corner, segments, earlier, stations, features) -> tuple[str, str]:
+    """Return field and reason of the first problem of a fillet or chamfer, or two empty texts."""
+    owner, kind, key = segments[corner.owner], blend.what, blend.size_key
+    for neighbour, edge in earlier:
+        if (edge.joint, edge.r, edge.surface) == (corner.joint, corner.r, corner.surface):
+            return "y", f'this edge has "{neighbour.name}" already'
+    if min(corner.axial, corner.radial) < SMALLEST_BLEND * corner.r:
+        return key, (
+            f"a {kind} under {SMALLEST_BLEND:g} of the radius, {corner.r:.6g} m, is no {kind}: "
+            "leave it out, or look at the units"
+        )
+    face = _face_height(corner, segments)
+    if corner.radial > face + TOUCH:
+        return key, f"a {kind} of {corner.radial:.6g} m does not fit the face of {face:.6g} m"
+    same_face = [edge for _, edge in earlier if _same_face(edge, corner, segments)]
+    if corner.radial + sum(edge.radial for edge in same_face) > MOST_OF_FACE * face:
+        hint = f' beside "{same_face[0].name}"' if same_face else ""
+        return key, (
+            f"a {kind} of {corner.radial:.6g} m{hint} leaves less than a twentieth of the face "
+            f"of {face:.6g} m"
+        )
+    if corner.axial > owner.length / 2 + TOUCH:
+        return key, (
+            f'a {kind} reaches {corner.axial:.6g} m along "{owner.name}", beyond half its length of '
+            f"{owner.length:.6g} m"
+        )
+    for neighbour, edge in earlier:
+        if (edge.owner, edge.surface) == (corner.owner, corner.surface) and (
+            edge.axial + corner.axial > MOST_OF_LENGTH * owner.length
+        ):
+            return key, (
+                f'with "{neighbour.name}" at its other end nothing is left of the cylinder '
+                f'"{owner.name}", {owner.length:.6g} m long'
+            )
+    lo, hi = corner.span
+    reach = f"the {kind} reaches from {lo:.6g} to {hi:.6g} m"
+    for s in stations:
+        if corner.surface == "outer" and min(s.hi, hi) - max(s.lo, lo) > TOUCH:
+            return key, (
+                f'{reach}, into the seat of "{s.name}" ({s.lo:.6g} to {s.hi:.6g} m), which must '
+                "stay a cylinder"
+            )
+        ends_inside = [y for y in (s.lo, s.hi) if lo + TOUCH < y < hi - TOUCH]
+        if ends_inside:
+            return key, (
+                f'{reach}, and the seat of "{s.name}" ends inside of that, at '
+                f"{ends_inside[0]:.6g} m; let it end elsewhere"
+            )
+        # the face itself is plane at the end of a shaft
+        at_end = abs(s.y - corner.y) <= TOUCH and corner.y in (0.0, segments[-1].y1)
+        if lo - TOUCH <= s.y <= hi + TOUCH and not at_end:
+            return key, (
+                f'{reach}, and "{s.name}" is at {s.y:.6g} m; put the one or the other elsewhere, '
+                "since no section there is plane"
+            )
+    for f in features:
+        first, last = f.span(segments)
+        if first < hi - TOUCH and lo + TOUCH < last:
+            return key, f'{reach}, into the {f.what} "{f.name}"'
+    return "", ""
+
+
+def _face_height(corner: Corner, segments: Sequence[Segment]) -> float:
+    """Return the height of the plane face beside an edge, m."""
+    segment = segments[corner.owner]
+    k = corner.joint
+    if k in (0, len(segments)):
+        return segment.outer0 - segment.inner0 if k == 0 else segment.outer1 - segment.inner1
+    lower, upper = (radii_of(s, corner.surface) for s in segments[k - 1 : k + 1])
+    return abs(lower[1] - upper[0])
+
+
+def _same_face(a: Corner, b: Corner, segments: Sequence[Segment]) -> bool:
+    return a.joint == b.joint and (a.joint in (0, len(segments)) or a.surface == b.surface)

@@ -1,4 +1,4 @@
-"""The side of a scene that builders and meshes see."""
+"""Interface of a scene for builders and meshers, and its features."""
 
 from __future__ import annotations
 
@@ -11,10 +11,7 @@ if TYPE_CHECKING:
 
 
 class Shaft(Protocol):
-    """Segments end to end, and what is attached to them: a `Scene`, or something like it.
-
-    Builders and meshers ask for no more than this.
-    """
+    """Segments end to end with their stations: a `Scene`, or a class with the same properties."""
 
     @property
     def segments(self) -> tuple[Segment, ...]:
@@ -34,8 +31,8 @@ class Shaft(Protocol):
 
 
 def resolved(scene: Any) -> tuple[Any, ...]:
-    """Features and parts of a scene beyond its segments, so that a model of revolution does not
-    hold it: features, but for teeth that are smeared into a cone, or a part from a file.
+    """Return the features of a scene that models of revolution cannot hold, and its part from a file;
+    teeth that are smeared into a cone do not count.
 
     Examples
     --------
@@ -50,14 +47,16 @@ def resolved(scene: Any) -> tuple[Any, ...]:
 
 
 def without_axis(scene: Any) -> bool:
-    """True for a rectangular block or another body that is no shaft; its segments only tell places."""
+    """Return True for a rectangular block or another body that is no shaft, with segments for places
+    only.
+    """
     body = getattr(scene, "body", None)
     return body is not None and body.edges is not None
 
 
 def turning_speed(scene: Any) -> float | None:
-    """Speed of a shaft, rad/s: that of its fastest bearing, else of its lubrication; None where neither
-    says one.
+    """Return the speed of a shaft, rad/s: of its fastest bearing, else of its lubrication; None where
+    neither has one.
 
     Examples
     --------
@@ -72,5 +71,5 @@ def turning_speed(scene: Any) -> float | None:
 
 
 def named(features: Iterable[Any]) -> str:
-    """Features in a sentence, such as ``keyway "key"``."""
+    """Return features in a sentence, such as ``keyway "key"``."""
     return ", ".join(f'{f.what} "{f.name}"' for f in features)

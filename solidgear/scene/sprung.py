@@ -1,4 +1,4 @@
-"""Springs of a scene by other tables of its file: no place along the shaft hangs on them."""
+"""Springs of a scene from changed tables of its file; no place along the shaft depends on them."""
 
 from __future__ import annotations
 
@@ -19,13 +19,8 @@ _SPRINGS = ("stiffness", "matrix", "axial_series", "housing", "scale")
 
 
 def resprung(scene: Scene, tables: Tables, touched: Iterable[Keys]) -> Scene:
-    """A scene with the springs of bearings and housing that its file would have with other tables;
-    `touched` are the entries in which they differ.
-
-    Raises
-    ------
-    SceneError
-        As of the file with these tables.
+    """Return a scene with the springs of bearings and housing of other tables, which differ from those
+    of its file in the entries `touched`; refuse them as a file.
     """
     bearings = list(scene.bearings)
     changes: dict[str, Any] = {}
@@ -42,7 +37,7 @@ def resprung(scene: Scene, tables: Tables, touched: Iterable[Keys]) -> Scene:
 
 
 def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
-    """A bearing with the springs of a table."""
+    """Return a bearing with the springs of a table."""
     refuse_two_stiffnesses(table)
     try:
         return bearing.with_changes(**{key: table[key] for key in _SPRINGS if key in table})
@@ -55,7 +50,7 @@ def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
 
 
 def _housing(scene: Scene, table: Mapping[str, Any]) -> dict[str, Any]:
-    """Fields of a scene with the housing of a table, where it is."""
+    """Return the fields of a scene for the housing of a table, at the place of the old one."""
     housing = scene.housing
     places = Places("average")
     places.datums["start"] = 0.0

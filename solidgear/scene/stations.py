@@ -1,4 +1,4 @@
-"""Things attached to a shaft, each frozen and validated: bearing and port."""
+"""Stations of a shaft, each frozen and validated: bearing and port."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Bearing(Placed):
     """
 
     class Words(Along):
-        """Of a file: along the shaft, a cylinder of a part, or faces of a body."""
+        """Words for the seat: along the shaft, on a cylinder of a part, or on faces of a body."""
 
         seat: Seat | None = None
         patch: str | None = None
@@ -157,7 +157,7 @@ class Bearing(Placed):
 
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
-        """The middle of an end face is a section; a seat would be the rim beside it."""
+        """Return the usual attachment, a section for the middle of an end face."""
         return "section" if "face" in table else super().usually_attached(table, places)
 
     @model_validator(mode="after")
@@ -334,7 +334,7 @@ class Port(Placed):
     """
 
     class Words(Along):
-        """Of a file: where the point is, and what carries it."""
+        """Words for the place of the point, and for the surface that carries it."""
 
         at: str | None = None
         attach_to: str | None = None
@@ -376,7 +376,7 @@ class Port(Placed):
 
     @staticmethod
     def _y(words: Any, places: Places) -> float | None:
-        """Its place, m."""
+        """Return the place, m."""
         if words.at is not None:
             words.refuse("give either at, or position with from, not both", "position", "from_")
             return places.datum(words.at, "at")
@@ -386,7 +386,7 @@ class Port(Placed):
 
     @staticmethod
     def _span(words: Any, places: Places) -> tuple[float, float] | None:
-        """Ends of the surface that carries it, m."""
+        """Return the ends of the surface that carries the point, m."""
         if words.seat is not None:
             for key in ("attach_to", "span"):
                 words.refuse(f"give either seat or {key}, not both", key)

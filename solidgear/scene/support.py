@@ -1,4 +1,4 @@
-"""Support of a seat by its bearing, along y or altogether: held ends, and a ring that slides."""
+"""Support of a seat by its bearing: held ends, and rings that slide along y."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 Hold = Literal["clamped", "pinned"]
 Support = Literal["locating", "floating"]
 
-#: what a station that is held rather than sprung has in place of a spring, N/m and N m/rad: E r
-#: and E r^3 of a steel shaft are 1e-11 of it at a radius of 0.1 m and 1e-9 at 1 m. With 1e24 in both
-#: statics are as good, but modes drown in rounding: measured 1e-3 to 0.5 of a frequency.
+#: stiffness of a held station, N/m and N m/rad: E r and E r^3 of a steel shaft are 1e-11 of it at a
+#: radius of 0.1 m and 1e-9 at 1 m. With 1e24 in both statics are as good, but modes drown in
+#: rounding: measured 1e-3 to 0.5 of a frequency.
 HELD, HELD_TURN = 1e22, 1e20
 #: components that each way of holding stops
 HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0, 1, 2)}
 
 
 def held_matrix(hold: str) -> np.ndarray:
-    """(6, 6) stiffness that stands for a way of holding, N/m and N m/rad.
+    """Return the (6, 6) stiffness that stands for a way of holding, N/m and N m/rad.
 
     Examples
     --------
@@ -38,8 +38,8 @@ def held_matrix(hold: str) -> np.ndarray:
 
 
 def sliding(stiffness: np.ndarray) -> np.ndarray:
-    """(6, 6) stiffness of a bearing one of whose rings slides along y in its seat: couplings with y
-    give with it, and nothing is left along it.
+    """Return the (6, 6) stiffness of a bearing with a ring that slides along y in its seat: nothing is
+    held along y, and couplings with y are condensed out.
     """
     matrix = np.array(stiffness)
     if matrix[1, 1]:
@@ -49,7 +49,7 @@ def sliding(stiffness: np.ndarray) -> np.ndarray:
 
 
 def support_problems(bearing: Bearing) -> Iterator[SceneError]:
-    """Contradictions in the support of a bearing."""
+    """Yield contradictions in the support of a bearing."""
     data = bearing.catalogue
     if bearing.support is None:
         return
@@ -89,7 +89,7 @@ def support_problems(bearing: Bearing) -> Iterator[SceneError]:
 
 
 def few_springs(springs: Any) -> Any:
-    """Springs in series, or a refusal of more than there may be."""
+    """Return springs in series; refuse too many."""
     if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
         raise SceneError(
             f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; "

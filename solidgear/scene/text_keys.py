@@ -1,4 +1,4 @@
-"""Keys of scene and train files whose values are words: no number is read out of them."""
+"""Keys of scene and train files whose values are words, never numbers."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from solidgear.scene.paths import Keys
 from solidgear.scene.train_file import LongFile, ShortFile
 from solidgear.scene.typed import Holds, Model
 
-#: what a file is read into
+#: models that files are read into
 FILES = (SceneFile, ScenePartFile, ShortFile, LongFile)
 #: names of files and of materials, whatever they are read into
 NAMES = ("scene", "material")
 
 
 def is_text(keys: Keys) -> bool:
-    """True for an entry whose value is a word by the format of files.
+    """Return True for an entry whose value is a word by the format of files.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def _is_text(names: tuple[str, ...]) -> bool:
     fields: list[FieldInfo] = []
     for name in names:
         fields = [field for kind in kinds if (field := kind.table_keys().get(name)) is not None]
-        # what no table has as a key is the name of one of several
+        # a name that is no key of a table names one of several
         kinds = [kind for field in fields for kind in _tables(field)] or kinds
         if name == "feature":
             kinds = [*FEATURES.values(), *BLENDS.values()]
@@ -49,7 +49,7 @@ def _is_text(names: tuple[str, ...]) -> bool:
 
 
 def _tables(field: FieldInfo) -> Iterator[type[Model]]:
-    """Models that a field holds."""
+    """Yield the models that a field holds."""
     yield from (mark.kind for mark in field.metadata if isinstance(mark, Holds))
     annotations = [field.annotation]
     while annotations:
@@ -60,7 +60,7 @@ def _tables(field: FieldInfo) -> Iterator[type[Model]]:
 
 
 def _of_words(kind: Any) -> bool:
-    """True for a type that has words alone, or nothing."""
+    """Return True for a type of words alone, or of words and None."""
     if get_origin(kind) is Literal:
         return all(isinstance(word, str) for word in get_args(kind))
     parts = [part for part in get_args(kind) if isinstance(part, type) or get_args(part)]

@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 #: modules that a tooth reaches beyond its reference circle and within it (ISO 53)
 ADDENDUM, DEDENDUM = 1.0, 1.25
 #: modules of overlap that two digits of the profile shifts leave open, and that the usual thinning
-#: of both wheels takes up (DIN 3967, cd25): less than the first is not told, more than the other refused
+#: of both wheels takes up (DIN 3967, cd25): no caution below the first, refused above the second
 ROUNDED, THINNED = 5e-3, 0.05
 #: modules of backlash above which no drawing asks for it: ISO/TR 10064-2 recommends 0.04 to 0.13
 LOOSE = 0.25
-#: modules of undercut that are let pass: that of a wheel of 14 teeth without profile shift
+#: modules of undercut without a caution: that of a wheel of 14 teeth without profile shift
 PASSED = 0.185
 
 
 def involute(angle: float) -> float:
-    """Involute function of an angle, rad."""
+    """Return the involute function of an angle, rad."""
     return tan(angle) - angle
 
 
@@ -72,13 +72,13 @@ class ToothFit:
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Of the reference circles, m."""
+        """Radii of the reference circles, m."""
         first, second = (self.module * z / (2 * cos(self.helix_angle)) for z in self.teeth)
         return first, second
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        """Of the base circles, m."""
+        """Radii of the base circles, m."""
         first, second = (radius * cos(self.transverse) for radius in self.radii)
         return first, second
 
@@ -115,12 +115,14 @@ class ToothFit:
     @property
     def tight(self) -> float:
         """Centre distance without backlash of two wheels with outer teeth, m."""
-        known = self.module, self.helix_angle, self.pressure_angle, self.shift
-        return working_cylinders(self.teeth, *known).without_backlash
+        cylinders = working_cylinders(
+            self.teeth, self.module, self.helix_angle, self.pressure_angle, self.shift
+        )
+        return cylinders.without_backlash
 
     @property
     def clearances(self) -> tuple[float, float]:
-        """Between the tip of each wheel and the root of the other, m."""
+        """Clearances between the tip of each wheel and the root of the other, m."""
         (tip, other_tip), (root, other_root) = self.tips, self.roots
         a = self.centre_distance
         return a - tip - other_root, a - other_tip - root
@@ -140,18 +142,20 @@ class ToothFit:
 
     @property
     def overlap_ratio(self) -> float:
-        """Of the face width, by the helix."""
+        """Overlap ratio of the face width, by the helix."""
         return self.face_width * sin(abs(self.helix_angle)) / (pi * self.module)
 
     def undercut(self, k: int) -> float:
-        """Profile shift that a wheel lacks to have no undercut; below zero where it has none."""
+        """Return the profile shift that wheel k lacks to have no undercut; below zero without any."""
         if self.teeth[k] < 0:
             return -1.0
         straight = self.teeth[k] * sin(self.transverse) ** 2 / (2 * cos(self.helix_angle))
         return ADDENDUM - self.shift[k] - straight
 
     def tip_thickness(self, k: int) -> float:
-        """Transverse thickness of a tooth at its tip, m; below zero where flanks meet before."""
+        """Return the transverse thickness of teeth of wheel k at the tip, m; below zero where flanks
+        meet before.
+        """
         tip, base, teeth = self.tips[k], self.base_radii[k], self.teeth[k]
         if abs(tip) <= abs(base):
             return self.module
@@ -160,7 +164,7 @@ class ToothFit:
 
 
 def fit_of(pair: Pair) -> ToothFit | None:
-    """Teeth of a pair of cylindrical gears; None where the file does not tell them.
+    """Return the teeth of a pair of cylindrical gears; None where the file does not give them.
 
     Raises
     ------
@@ -173,14 +177,22 @@ def fit_of(pair: Pair) -> ToothFit | None:
         return None
     helix = pinion.helix_angle or gear.helix_angle or 0.0
     teeth, shift = (pinion.teeth, gear.teeth), (pinion.profile_shift, gear.profile_shift)
-    known = (teeth, module, helix, mesh.pressure_angle, shift)
-    wheels = working_cylinders(*known, mesh.centre_distance)
+    pressure = mesh.pressure_angle
+    wheels = working_cylinders(teeth, module, helix, pressure, shift, mesh.centre_distance)
     faces = [wheel.face_width for wheel in (pinion, gear) if wheel.face_width]
-    return ToothFit(*known, sum(wheels.radii), min(faces, default=0.0))
+    return ToothFit(
+        teeth=teeth,
+        module=module,
+        helix_angle=helix,
+        pressure_angle=pressure,
+        shift=shift,
+        centre_distance=sum(wheels.radii),
+        face_width=min(faces, default=0.0),
+    )
 
 
 def fit_problems(pair: Pair) -> Iterator[SceneError]:
-    """Problems of teeth that cannot be where the centre distance puts them, or have no root."""
+    """Yield problems of teeth that do not fit the centre distance, or have no root."""
     try:
         fit = fit_of(pair)
     except SceneError as error:
@@ -202,7 +214,7 @@ def fit_problems(pair: Pair) -> Iterator[SceneError]:
 
 
 def _distance(pair: Pair, fit: ToothFit) -> Iterator[SceneError]:
-    """Problems of the centre distance."""
+    """Yield problems of the centre distance."""
     if pair.mesh.centre_distance is None:
         return
     path, teeth_label = ("mesh", "centre_distance"), f"{fit.teeth[0]} and {fit.teeth[1]} teeth of "
@@ -224,7 +236,7 @@ def _distance(pair: Pair, fit: ToothFit) -> Iterator[SceneError]:
 
 
 def fit_cautions(fit: ToothFit, sides: tuple[str, str]) -> Iterator[str]:
-    """Sentences on two wheels whose tips reach too far or not far enough, by what carries them."""
+    """Yield cautions on wheels whose tips reach too far or not far enough; `sides` name the shafts."""
     for clearance, side, mate in zip(fit.clearances, sides, sides[::-1]):
         if clearance < 0:
             yield (
@@ -240,7 +252,7 @@ def fit_cautions(fit: ToothFit, sides: tuple[str, str]) -> Iterator[str]:
 
 
 def wheel_cautions(fit: ToothFit, k: int, side: str) -> Iterator[str]:
-    """Sentences on the teeth of the first or second wheel, by what carries it."""
+    """Yield cautions on the teeth of wheel k on the shaft `side`."""
     if fit.undercut(k) > PASSED:
         yield (
             f"the {fit.teeth[k]} teeth of the {side} are undercut by their rack: without "
@@ -254,7 +266,7 @@ def wheel_cautions(fit: ToothFit, k: int, side: str) -> Iterator[str]:
 
 
 def backlash_cautions(fit: ToothFit, file_backlash: float | None) -> Iterator[str]:
-    """Sentences on a backlash that is large, or is not that which a file gives, m."""
+    """Yield cautions on a backlash that is large, or contradicts that of the file, m."""
     gap, loose = fit.backlash, LOOSE * fit.module
     place = f"teeth without allowances leave {_um(gap)} along the line of action at"
     place += f" {_mm(abs(fit.centre_distance))}"
@@ -284,7 +296,7 @@ def backlash_cautions(fit: ToothFit, file_backlash: float | None) -> Iterator[st
 
 
 def fit_line(fit: ToothFit) -> str:
-    """The backlash and the contact ratio in a sentence."""
+    """Return the backlash and the contact ratio in a sentence."""
     ratio = f"{fit.contact_ratio:.3f}"
     if fit.overlap_ratio:
         ratio += f" and {fit.overlap_ratio:.3f} by their helix"

@@ -33,7 +33,6 @@ from solidgear.scene.operation import (
 from solidgear.scene.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.scene.power import carried_of, flows_of, share_problems
 from solidgear.scene.stations import Bearing
-from solidgear.scene.statuses import statuses_of
 from solidgear.scene.train_housing import TrainHousing, housing_problems
 from solidgear.scene.train_tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.scene.typed import Model
@@ -383,7 +382,32 @@ class Train(Model):
 
     def statuses(self) -> dict[str, str]:
         """Status of every value of the file that has one, by its key."""
-        return statuses_of(self)
+        out: dict[str, Any] = {}
+        for pair in self.pairs:
+            mesh, name = pair.mesh, pair.name
+            line = "line_of_action" if mesh.line_of_action else "contact_cells"
+            line = "pressure_angle" if not (mesh.line_of_action or mesh.contact_cells) else line
+            out[f"{name}.stiffness"] = mesh.status
+            out[f"{name}.{line}"] = mesh.line_of_action_status
+            if mesh.transmission_error is not None:
+                out[f"{name}.transmission_error"] = mesh.transmission_error_status
+        for name, rotor in self.rotors.items():
+            out[f"{name}.inertia"] = rotor.status
+            out[f"{name}.spring.stiffness"] = rotor.spring.status
+        for name, table in self.planetary.items():
+            out |= {f"{name}.mesh": table.mesh.status, f"{name}.planet": table.planet.status}
+            if table.ring is not None:
+                out[f"{name}.ring"] = table.ring.status
+        out["losses"] = self.losses.status
+        if self.housing is not None:
+            out["housing"] = self.housing.status
+            out |= {f"mount {name}": mount.status for name, mount in self.housing.mounted.items()}
+        for side, shaft in self.shafts.items():
+            for end, (_, head) in self.heads(side).items():
+                out[end] = head.status
+            for bearing in shaft.scene.bearings:
+                out[f"{side} bearing {bearing.name}"] = bearing.status
+        return {key: str(status) for key, status in out.items()}
 
     def heads(self, side: str) -> dict[str, tuple[str, HeadInertia]]:
         """Rigid heads of a shaft with the port of each, by ``side.head``, or of several gears

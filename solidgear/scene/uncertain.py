@@ -1,8 +1,8 @@
-"""Ranges that a scene states of its own entries: the table ``[uncertain]`` of its file.
+"""Ranges of the entries of a scene: the table ``[uncertain]`` of a file.
 
-A path of the file stands for an entry, a text for its range: ``"material.E" = "206 GPa ± 3 %"``,
-``"bearing.A.stiffness.kxx" = "3e8 N/m : 6e8 N/m"``, ``"load" = "0.2 : 1.2"``. What is kept is by how
-much an entry is multiplied, so that it goes with a scene that is changed.
+A path of the file names an entry, a text gives the range: ``"material.E" = "206 GPa ± 3 %"``,
+``"bearing.A.stiffness.kxx" = "3e8 N/m : 6e8 N/m"``, ``"load" = "0.2 : 1.2"``. Ranges are kept as
+factors, so that they stay with a scene that is changed.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from solidgear.scene.units import quantity
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, Scene, Segment
 
-#: what the word "assumed" of a bearing means where its file states no range: a factor two each way
+#: range of a bearing with the status "assumed" where the file states none: a factor two each way
 ASSUMED = "0.5 : 2"
-#: entries that are multiplied as a whole, and are no numbers with a unit
+#: dimension of entries that are multiplied as a whole, and are no numbers with a unit
 FACTOR = "dimensionless"
 PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
 _KNOWN = (
@@ -33,17 +33,17 @@ _KNOWN = (
 
 
 class Uncertain(Model):
-    """An entry with its range."""
+    """An entry and its range."""
 
     path: str
     said: str  #: the range as the file states it
-    #: low, high: times what the scene says; 1 lies between
+    #: low, high: factors on the value of the scene; 1 lies between
     low: float
     high: float
 
     @property
     def deviation(self) -> float:
-        """Standard deviation of its logarithm: what ± says is one, and anywhere between two ends is
+        """Standard deviation of the logarithm: ± is taken as one, between two ends all values are
         equally likely.
         """
         spread = math.log(self.high / self.low)
@@ -53,8 +53,8 @@ class Uncertain(Model):
 def with_ranges(
     scene: Scene, table: Mapping[str, Any], bearings: Sequence[Mapping[str, Any]] = ()
 ) -> Scene:
-    """A scene with ranges of its entries: a table of texts by paths, nested or not, and the tables
-    of bearings of its file, of which one that says of itself that it is assumed has a range.
+    """Return a scene with ranges: those of a table of texts by path, nested or not, and of bearings
+    whose tables have the status assumed.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def with_ranges(
         if bearing.get("status") == "assumed" and ("stiffness" in bearing or "matrix" in bearing)
     }
     file_texts = dict(_flat(table))
-    for path in file_texts:  # an entry of a bearing, or all of it: what is said says enough
+    for path in file_texts:  # the file states the range of the bearing or of an entry of it
         head, part, _ = path.partition(".stiffness")
         texts.pop(head + part, None)
     problems = Problems()
@@ -82,8 +82,8 @@ def with_ranges(
 
 
 def with_scaled_entry(scene: Scene, path: str, factor: float) -> Scene:
-    """The scene with the entry of a path multiplied; factors of all loads and of preloads are
-    nothing of a scene (:class:`solidgear.bearings.solved.Choice`).
+    """Return the scene with the entry of a path multiplied; factors of all loads and of preloads are
+    not part of a scene (:class:`solidgear.bearings.solved.Choice`).
     """
     kind, _, name = path.partition(".")
     if kind == "material":
@@ -108,7 +108,7 @@ def with_scaled_entry(scene: Scene, path: str, factor: float) -> Scene:
 
 
 def _of_segments(scene: Scene, path: str, factor: float = 1.0) -> Iterator[Segment]:
-    """All segments, those of a path ``segment.NAME.material.E`` with their constant multiplied."""
+    """Yield all segments, those of a path ``segment.NAME.material.E`` with the constant multiplied."""
     name, _, constant = path.removeprefix("segment.").rpartition(".material.")
     for segment in scene.segments:
         material = segment.material
@@ -119,7 +119,7 @@ def _of_segments(scene: Scene, path: str, factor: float = 1.0) -> Iterator[Segme
 
 
 def _is_of(segment: Segment, name: str) -> bool:
-    """True for a segment of a shape of a file, which may have several."""
+    """Return True for a segment of the named shape of a file, which may have several."""
     return segment.name == name or segment.name.startswith(f"{name}.")
 
 
@@ -143,7 +143,7 @@ def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any
 
 
 def _bearing(scene: Scene, path: str) -> tuple[Bearing | None, str]:
-    """The bearing of a path, and what follows its name."""
+    """Return the bearing of a path, and the remainder of the path."""
     for bearing in scene.bearings:
         prefix = f"bearing.{bearing.name}."
         if path.startswith(prefix):
@@ -166,7 +166,7 @@ def _read(scene: Scene, path: str, text: Any) -> Uncertain:
 
 
 def _entry(scene: Scene, path: str) -> tuple[float, str]:
-    """Value of an entry, SI, and its dimension; 1 of what is multiplied as a whole."""
+    """Return the value of an entry, SI, and its dimension; 1 for entries multiplied as a whole."""
     value, dimension = None, FACTOR
     if path in ("material.E", "material.density"):
         name = path.removeprefix("material.")
@@ -202,7 +202,7 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
 
 
 def range_ends(text: str, value: float, dimension: str) -> tuple[float, float]:
-    """Ends of a range about a value, SI."""
+    """Return the ends of a range about a value, SI."""
 
     def number(word: str) -> float:
         word = word.strip()

@@ -1,6 +1,6 @@
-"""Units at the border: a quantity as a user writes it in, a float in SI out.
+"""Conversion of quantities as users write them to floats in SI, and the types of fields.
 
-The only module that touches pint, once a text needs it: the import costs more than solving a beam.
+The only module that imports pint, once a text needs it: the import costs more than solving a beam.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ _STRESS, _DENSITY = _dimension(mass=1, length=-1, time=-2), _dimension(mass=1, l
 _PER_LENGTH, _FORCE = _dimension(mass=1, time=-2), _dimension(mass=1, length=1, time=-2)
 _VISCOSITY = _dimension(length=2, time=-1)
 _MOMENT, _INERTIA = _dimension(mass=1, length=2, time=-2), _dimension(mass=1, length=2)
-#: units that nearly every scene is written in: (SI units in one, power of the radian, dimension).
-#: What pint says of each (a test compares), without the half second that pint takes to start
+#: units of nearly every scene: (SI units in one, power of the radian, dimension). The numbers are
+#: those of pint (a test compares), without the half second that pint takes to start
 COMMON: dict[str, tuple[float, float, Dimension]] = {
     unit: (factor, radians, dimension)
     for dimension, radians, units in (
@@ -82,16 +82,16 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
     for unit, factor in units.items()
 }
 
-#: what else stands on a nameplate for revolutions a minute
+#: revolutions a minute in other words of nameplates
 TURNS = dict.fromkeys(("1/min", "min^-1", "min-1", "rev/min", "r/min", "U/min"), "rpm")
 
-#: no quantity is larger than this in SI, and no spring softer: their squares neither overflow nor vanish
+#: largest quantity and softest spring in SI, whose squares neither overflow nor vanish
 LARGEST, SOFTEST = 1e24, 1e-30
 
-#: numbers that are typed with four digits may differ by this
+#: relative difference of numbers that are typed with four digits
 TYPED = 1e-3
 
-#: letters of a quantity
+#: most letters of a quantity
 LONGEST = 200
 
 _TEXT = re.compile(
@@ -104,20 +104,8 @@ _UNIT = re.compile(r"[^\W\d_][^\W\d]*|%|\d|[\s*/^().·-]", re.U)
 
 
 def quantity(value: Any, dimension: str) -> float:
-    """Read a quantity in SI.
-
-    Parameters
-    ----------
-    value : int, float or str
-        A plain number is SI already; a text is a number and a unit, such as ``"90 mm"`` or ``"8.6e9
-        N/m"``.
-    dimension : str
-        One of `DIMENSIONS`, which has the SI unit of each.
-
-    Returns
-    -------
-    float
-        The value in the SI unit of `dimension`.
+    """Read a quantity in the SI unit of a dimension of `DIMENSIONS`, from a plain number in SI or a text
+    with a unit, such as ``"90 mm"``.
 
     Raises
     ------
@@ -158,7 +146,7 @@ def quantity(value: Any, dimension: str) -> float:
     return number
 
 
-#: a place of a segment or of the shaft, which goes into another key
+#: a place of a segment or of the shaft, which belongs to another key
 _PLACE = re.compile(r"(?:[^.\d][^.]*\.)?(?:start|middle|end|mid_face)")
 
 
@@ -210,8 +198,8 @@ def _read_text(text: str, dimension: str) -> float:
 
 @functools.lru_cache(maxsize=256)
 def si_factor(unit: str) -> tuple[float, float, Dimension] | None:
-    """(SI units in one `unit`, power of the radian in it, its dimensionality), or None when pint
-    does not know it.
+    """Return the SI units in one `unit`, the power of the radian in it, and its dimensions; None for
+    a unit that pint does not know.
     """
     # m2 for m^2, as people write inertias, and Nm for N*m (to pint the count of a yarn)
     unit = re.sub(r"(?<=m)2\b", "^2", unit)
@@ -283,7 +271,7 @@ def _loss(value: float) -> float:
 
 
 def three(dimension: str, example: str) -> BeforeValidator:
-    """Reads three quantities of one dimension."""
+    """Return a validator that reads three quantities of one dimension."""
 
     def read(value: Any) -> tuple[float, ...]:
         if not isinstance(value, (list, tuple)) or len(value) != 3:

@@ -1,10 +1,10 @@
-"""Units of a universal file, as its dataset 164 says them."""
+"""Units of a universal file, by its dataset 164."""
 
 from __future__ import annotations
 
 from solidgear.errors import SceneError
 
-#: code -> m and N of its units; 9 gives factors of its own
+#: code -> m and N of its units; code 9 comes with factors
 UNITS = {
     1: (1.0, 1.0),
     2: (0.3048, 4.4482216152605),
@@ -19,8 +19,8 @@ UNITS = {
 
 
 def units_of(code: int, length: float, force: float) -> tuple[float, float]:
-    """Units of length and force, m and N, by the code of a dataset 164 and what one metre and one
-    newton are in them.
+    """Return the units of length and force, m and N, by the code of a dataset 164 and its factors: one
+    metre and one newton in these units.
 
     Examples
     --------

@@ -1,6 +1,4 @@
-"""Features of a shaft that are not of revolution: one file a kind, each with its data and its
-rules.
-"""
+"""Features of a shaft that are not of revolution: one file for each kind, with data and rules."""
 
 from __future__ import annotations
 
@@ -17,20 +15,19 @@ from solidgear.scene.features.keyway import Keyway
 from solidgear.scene.features.toothed import Spline, Teeth
 from solidgear.scene.parts import Segment
 
-#: a shaft carries no more of them
+#: features of one shaft
 MOST_FEATURES = 20
-#: any of them
 Feature: TypeAlias = Keyway | Flat | CrossHole | Teeth | Spline | BoltCircle
-#: by the kind that a file calls them
+#: by the kind in a file
 FEATURES: dict[str, type[OnSegment]] = {
-    one.model_fields["kind"].default: one for one in get_args(Feature)
+    feature.model_fields["kind"].default: feature for feature in get_args(Feature)
 }
 
 
 def feature_problems(
     segments: Sequence[Segment], features: Sequence[Feature]
 ) -> Iterator[SceneError]:
-    """Features that do not fit their shaft, or have a name twice."""
+    """Yield problems of features that do not fit their shaft or each other, or share a name."""
     if len(features) > MOST_FEATURES:
         reason = f"{len(features)} features are more than the {MOST_FEATURES} a shaft may have"
         yield SceneError(reason, path=("features",))

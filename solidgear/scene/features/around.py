@@ -13,15 +13,15 @@ from solidgear.scene.features.bolt_circle import BoltCircle
 from solidgear.scene.features.toothed import Spline, Teeth
 from solidgear.scene.parts import Segment
 
-#: of a pitch: gaps further apart than this do not lie behind each other, rad
+#: angle, rad, up to which gaps of two sets of teeth lie behind each other
 SAME_ANGLE = 1e-9
 
 
 def meeting_problems(
     segments: Sequence[Segment], features: Sequence[Any]
 ) -> Iterator[tuple[int, SceneError]]:
-    """Teeth and bolt circles of one segment that cannot both be there, each of which fits by
-    itself: numbers of features, and problems with paths of their own fields.
+    """Yield problems of teeth and bolt circles that cannot share a segment, each with the number of
+    the feature whose fields it names.
     """
     segment_named = {s.name: s for s in segments}
     for (_, a), (j, b) in combinations(enumerate(features), 2):
@@ -50,7 +50,7 @@ def meeting_problems(
 
 
 def _touch(a: BoltCircle, b: BoltCircle, segment: Segment) -> bool:
-    """True where holes of two circles run into each other."""
+    """Return True where holes of two circles run into each other."""
     (lo, hi), (first, last) = a.reach(segment), b.reach(segment)
     if min(hi, last) <= max(lo, first):
         return False
@@ -63,7 +63,7 @@ def _touch(a: BoltCircle, b: BoltCircle, segment: Segment) -> bool:
 
 
 def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, segment: Segment) -> str:
-    """Reason why holes do not fit a segment whose teeth are resolved, or nothing."""
+    """Return the reason why holes do not fit a segment with resolved teeth; empty without one."""
     if teeth.spiral_angle:
         return (
             f'"{segment.name}" has the spiral {teeth.what} "{teeth.name}", along which its mesh is '
@@ -81,8 +81,8 @@ def _in_teeth(teeth: Teeth | Spline, bolts: BoltCircle, segment: Segment) -> str
 
 
 def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
-    """Reason why features do not repeat themselves together around the axis, or nothing; in as many
-    sectors as they have in common unless told otherwise.
+    """Return the reason why features have no common sector around the axis, in `count` sectors or as
+    many as possible; empty without one.
 
     Examples
     --------
@@ -116,14 +116,14 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
 
 
 def middle(teeth: Teeth | Spline, count: int) -> float:
-    """Angle (rad) of the middle of a sector whose borders run between teeth."""
+    """Return the angle (rad) of the middle of a sector whose borders run between teeth."""
     # with an even number of teeth in a sector its middle lies between two of them
     return teeth.angle + (math.pi / teeth.count if teeth.count // count % 2 == 0 else 0.0)
 
 
 def mirror_angle(features: Sequence[Any], count: int) -> float | None:
-    """Angle (rad) of a mirror plane of all features in which the middle of one of so many sectors
-    can lie, or None: of spiral teeth, or holes that lie unevenly beside teeth or other holes.
+    """Return the angle (rad) of a mirror plane of all features through the middle of one of `count`
+    sectors; None for spiral teeth and for holes that lie unevenly to teeth or other holes.
 
     Borders of sectors run between teeth, so that teeth decide; bolt circles alone have the plane
     through a hole, or the one between two.
@@ -151,7 +151,7 @@ def mirror_angle(features: Sequence[Any], count: int) -> float | None:
 
 
 def _even(holes: BoltCircle, plane: float) -> bool:
-    """True where a plane through the axis runs through a hole or between two."""
+    """Return True where a plane through the axis runs through a hole or between two."""
     half = math.pi / holes.count
     offset = (plane - holes.angle + half / 2) % half - half / 2
     return abs(offset) < SAME_ANGLE

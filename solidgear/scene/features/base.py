@@ -14,7 +14,7 @@ from solidgear.scene.places import NoWords, Placed
 from solidgear.scene.typed import Model
 from solidgear.scene.units import quantity
 
-#: least size of a feature over the radius of the shaft; smaller ones ask for meshes without end
+#: least size of a feature over the radius of the shaft; smaller ones would need endless meshes
 SMALLEST = 1e-2
 
 #: a sector of less than a third of a turn is what cyclic symmetry needs
@@ -24,7 +24,7 @@ Count = Annotated[int, Field(strict=True, ge=FEWEST, le=MOST_TEETH)]
 
 
 def _turn(value: Any) -> float:
-    """An angle within one turn, rad; a plain number beyond it was meant in degrees."""
+    """Return an angle within one turn, rad; refuse a plain number beyond it, meant in degrees."""
     angle = quantity(value, "angle")
     if not isinstance(value, str) and abs(angle) > 2 * math.pi * (1 + 1e-9):
         raise SceneError(
@@ -38,7 +38,7 @@ Turn = Annotated[float, BeforeValidator(_turn)]
 
 
 class OnSegment(Placed):
-    """A feature of one segment, that looks to an angle: 0 is +z, a quarter turn is +x."""
+    """A feature of one segment at an angle around the axis: 0 is +z, a quarter turn is +x."""
 
     Words: ClassVar[type[Model]] = NoWords
     sources: ClassVar = {}
@@ -58,7 +58,7 @@ class OnSegment(Placed):
     angle: Turn = 0.0
 
     def problems(self, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        """Reasons why it does not fit the shaft; paths are those of its own fields."""
+        """Yield reasons why the feature does not fit the shaft, with paths of its fields."""
         segment = next((s for s in segments if s.name == self.segment), None)
         if segment is None:
             names = [s.name for s in segments]
@@ -74,20 +74,20 @@ class OnSegment(Placed):
 
     @property
     def what(self) -> str:
-        """Its kind in words."""
+        """Kind in words."""
         return self.kind.replace("_", " ")
 
     def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
-        """Its ends along a shaft that it fits, m."""
+        """Return the ends along a shaft that the feature fits, m."""
         segment = next(s for s in segments if s.name == self.segment)
         return segment.y0, segment.y1
 
     @property
     def smeared(self) -> bool:
-        """True where the segment of revolution stands for it."""
+        """True where the segment of revolution replaces the feature."""
         return False
 
     @property
     def round(self) -> bool:
-        """True where it leaves the shaft one of revolution."""
+        """True where the shaft stays a body of revolution."""
         return False

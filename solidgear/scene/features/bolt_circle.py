@@ -61,7 +61,7 @@ class BoltCircle(OnSegment):
             yield from self._open(segment, segments)
 
     def _open(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
-        """The face that holes are drilled from is bare there."""
+        """Yield a problem where the face that holes are drilled from is covered."""
         index = segments.index(segment) + (-1 if self.side == "start" else 1)
         if not 0 <= index < len(segments):
             return
@@ -80,7 +80,7 @@ class BoltCircle(OnSegment):
             )
 
     def reach(self, segment: Segment) -> tuple[float, float]:
-        """Ends of the holes along the shaft, m, in their own segment."""
+        """Return the ends of the holes along the shaft, m, in their segment."""
         if self.depth is None:
             return segment.y0, segment.y1
         if self.side == "start":

@@ -15,7 +15,8 @@ from solidgear.scene.features.cut import Cut, Frame
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import Length, PositiveLength, SignedAngle
 
-#: beyond it the rim of the mouth is a wedge of less than 30 degrees, which no mesh shows at any price
+#: inclination beyond which the rim of the mouth is a wedge of less than 30 degrees, which no mesh
+#: resolves
 STEEPEST = math.radians(60)
 #: places across a hole at which its ends are looked for; the largest of them is off by their square
 PLACES = 2001
@@ -69,7 +70,7 @@ class CrossHole(Cut):
     offset: Length = 0.0
 
     def reach(self, radius: float) -> tuple[float, float]:
-        # its wall, line by line, where that leaves the shaft
+        # line by line of the wall, where it leaves the shaft
         half = self.diameter / 2
         side = np.clip(self.offset + half * np.linspace(-1, 1, PLACES), -radius, radius)
         along = np.sqrt(half**2 - np.clip(side - self.offset, -half, half) ** 2)

@@ -1,4 +1,4 @@
-"""Base of every cut into a cylinder: a place along the shaft, and a wall that it must leave."""
+"""Base of every cut into a cylinder: a place along the shaft, and the wall that must remain."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from solidgear.scene.units import Position, PositiveLength
 
 
 class Frame(NamedTuple):
-    """Frame in which formulas of element size see a cut that looks to some angle."""
+    """Frame of a cut at some angle, for formulas of element size."""
 
-    #: side, up: formulas of the place beside its middle plane, and of the height towards it, m
+    #: side, up: formulas of the distance from the middle plane, with sign, and of the height, m
     side: str
     up: str
     num: Callable[[float], str]  #: a number in a formula
@@ -28,7 +28,7 @@ class Frame(NamedTuple):
         return f"Sqrt({self.side}^2)"
 
     def outside(self, lo: float, hi: float) -> str:
-        """Formula of the distance along the shaft from a stretch of it."""
+        """Return the formula of the distance along the shaft from a stretch of it."""
         return f"Max(0,Max({self.num(lo)}-y,y-{self.num(hi)}))"
 
 
@@ -45,8 +45,10 @@ class Cut(OnSegment):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         # along the segment, unless another datum is given
         y = words.y(places, f"{table.get('segment')}.start")
-        strange = words.from_ is None and bool(places.datums)  # which is told of the segment
-        return {"y": words.position or 0.0 if y is None and strange else y}
+        unknown_segment = words.from_ is None and bool(places.datums)  # refused as such
+        if y is None and unknown_segment:
+            y = words.position or 0.0
+        return {"y": y}
 
     def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         if segment.outer0 != segment.outer1:
@@ -75,7 +77,7 @@ class Cut(OnSegment):
         raise NotImplementedError
 
     def reach(self, radius: float) -> tuple[float, float]:
-        """Ends along a shaft of some radius, m."""
+        """Return the ends along a shaft of some radius, m."""
         raise NotImplementedError
 
     def span(self, segments: Sequence[Segment]) -> tuple[float, float]:
@@ -83,20 +85,20 @@ class Cut(OnSegment):
         return self.reach(segment.outer0)
 
     def mirrored(self, across: bool) -> bool:
-        """True where it is symmetric about the plane of the axis that it looks along or, `across`,
-        about the one at right angles to that.
+        """Return True where the cut is symmetric about the plane through the axis at its angle or,
+        `across`, about the plane at right angles to that.
         """
         return not across
 
     def tool(self, occ: Any, radius: float, top: float) -> int:
-        """The solid of OCC that cuts it out of a segment of a radius, as if it looked to +z; it
-        reaches out of the shaft by `top` (m).
+        """Draw the solid of OCC that is cut out of a segment of a radius, at the angle 0, and return
+        its tag; it reaches out of the shaft by `top` (m).
         """
         raise NotImplementedError
 
     def volume(self, outer: float, inner: float) -> float | None:
-        """Volume that it takes from its segment of these radii, m^3, where a closed form is known:
-        None for a cut down to a bore.
+        """Return the volume cut from a segment of these radii, m^3; None for a cut down to a bore,
+        without a closed form.
 
         Examples
         --------
@@ -111,29 +113,29 @@ class Cut(OnSegment):
         raise NotImplementedError
 
     def edges(self, radius: float) -> tuple[float, float]:
-        """Largest element edges that show what is straight in it and what is curved, m."""
+        """Return the largest element edges that resolve straight and curved parts of the cut, m."""
         raise NotImplementedError
 
     def distance(self, radius: float, frame: Frame) -> str:
-        """Formula of the distance from it, m."""
+        """Return the formula of the distance from the cut, m."""
         raise NotImplementedError
 
     def from_edges(self, radius: float, frame: Frame) -> tuple[str, float] | None:
-        """Formula of the distance from its re-entrant edges and its least size beside them, m; None
-        where it has no such edges.
+        """Return the formula of the distance from re-entrant edges, and the least size beside them, m;
+        None without such edges.
         """
         return None
 
     def lines(self, radius: float) -> tuple[float, float]:
-        """Length of the lines that elements grow from at it, and radius of the wall around them,
-        m.
+        """Return the length of the lines that elements grow from, and the radius of the wall around
+        them, m.
         """
         lo, hi = self.reach(radius)
         return 2 * (hi - lo), 0.0
 
 
 class Long(Cut):
-    """A cut that begins at its place and runs along the shaft, down to a plane floor."""
+    """A cut that begins at a place and runs along the shaft, down to a plane floor."""
 
     if TYPE_CHECKING:
         depth: float  # a field of every subclass, in its own order
@@ -144,16 +146,16 @@ class Long(Cut):
         return self.y, self.y + self.length
 
     def floor(self, radius: float) -> float:
-        """Height of its floor over the axis, m."""
+        """Return the height of the floor over the axis, m."""
         return radius - self.depth
 
     def half_width(self, radius: float) -> float:
-        """Half the width of its floor, m."""
+        """Return half the width of the floor, m."""
         raise NotImplementedError
 
     @property
     def rounded(self) -> bool:
-        """True where its ends are half circles."""
+        """True where the ends are half circles."""
         return False
 
     def distance(self, radius: float, frame: Frame) -> str:
@@ -167,11 +169,11 @@ class Long(Cut):
         return f"Sqrt({away}^2+({frame.up}-{frame.num(floor)})^2)", least
 
     def beside_edges(self, radius: float, frame: Frame) -> str:
-        """Formula of the distance from its re-entrant edges as seen from above, m."""
+        """Return the formula of the distance from re-entrant edges as seen from above, m."""
         raise NotImplementedError
 
     def _deep(self, segment: Segment) -> Iterator[SceneError]:
-        """It leaves some wall over the bore, and over the axis of a solid shaft."""
+        """Yield a problem of a depth that leaves no wall, or is too small to matter."""
         wall = segment.outer0 - segment.inner0
         if self.depth >= wall - TOUCH:
             extent = "the wall" if segment.inner0 else "the radius"

@@ -114,16 +114,18 @@ class Keyway(Long):
     def beside_edges(self, radius: float, frame: Frame) -> str:
         (lo, hi), half, num = self.reach(radius), self.width / 2, frame.num
         if self.rounded:
-            beyond = frame.outside(lo + half, hi - half)
-            return f"(Sqrt({frame.across}^2+{beyond}^2)-{num(half)})"
-        aside, beyond = f"({frame.across}-{num(half)})", f"Max({num(lo)}-y,y-{num(hi)})"
-        outside = f"Sqrt(Max(0,{aside})^2+Max(0,{beyond})^2)"
-        return f"({outside}+Min(0,Max({aside},{beyond})))"
+            along = frame.outside(lo + half, hi - half)
+            return f"(Sqrt({frame.across}^2+{along}^2)-{num(half)})"
+        aside, along = f"({frame.across}-{num(half)})", f"Max({num(lo)}-y,y-{num(hi)})"
+        outside = f"Sqrt(Max(0,{aside})^2+Max(0,{along})^2)"
+        return f"({outside}+Min(0,Max({aside},{along})))"
 
 
 def _half_circle(
     occ: Any, first: int, last: int, y: tuple[float, float], floor: float
 ) -> list[int]:
-    """The end of a slot from point to point around a middle, by way of its tip, drawn at y."""
+    """Draw the end of a slot between two points by way of its tip, with middle and tip at `y`, and
+    return the tags of both arcs.
+    """
     middle, tip = (occ.addPoint(0, place, floor) for place in y)
     return [occ.addCircleArc(first, middle, tip), occ.addCircleArc(tip, middle, last)]

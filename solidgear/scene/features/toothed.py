@@ -14,8 +14,8 @@ from solidgear.scene.features.base import SMALLEST, Count, OnSegment
 from solidgear.scene.parts import Segment
 from solidgear.scene.units import SignedAngle, quantity
 
-#: least land between two teeth, and least top of a tooth, in pitches; smaller ones ask for meshes
-#: without end
+#: least land between two teeth, and least top of a tooth, in pitches; smaller ones would need
+#: endless meshes
 LEAST_LAND = 0.02
 #: rad; a chord of a tip, or of the land between two teeth, spans no more. A circle of such chords
 #: lacks 0.4 % of its area; of 14 usual teeth every tip is one chord
@@ -36,9 +36,9 @@ Height = Annotated[float, _ratio(0.0, 3.0, "modules")]
 
 
 def arc(half: float) -> np.ndarray:
-    """Angles of the corners of an arc of 2 `half` in chords, from its middle.
+    """Return the angles of the corners of an arc of 2 `half` in chords, from its middle.
 
-    Their number is odd: a plane through the middle of the arc meets the middle of a chord.
+    The number of chords is odd: a plane through the middle of the arc meets the middle of a chord.
 
     Examples
     --------
@@ -54,7 +54,7 @@ class _Toothed(OnSegment):
 
     sort: ClassVar[str] = "cyclic"
     toothed: ClassVar[bool] = True
-    #: a cone has them as well as a cylinder
+    #: whether a cone may have them, and not only a cylinder
     on_cones: ClassVar[bool] = True
 
     count: Count
@@ -95,7 +95,7 @@ class _Toothed(OnSegment):
 
     @property
     def smeared(self) -> bool:
-        """True where the pitch cone stands for the teeth."""
+        """True where the pitch cone replaces the teeth."""
         return self.model == "pitch_cone"
 
     @property
@@ -131,7 +131,9 @@ class _Toothed(OnSegment):
         return self.root * math.cos(arc(self.land_half)[-1] / (len(arc(self.land_half)) - 1))
 
     def _half(self, radius: float) -> float:
-        """Half angle where the straight flank crosses a circle; radius over that of the pitch."""
+        """Return the half angle where the straight flank crosses a circle; `radius` is over that of the
+        pitch circle.
+        """
         half, t = 2 * math.pi * self.half_thickness / self.count, math.tan(self.flank_angle)
         b = math.cos(half) - t * math.sin(half)
         inside = max(b * b - (1 + t * t) * (1 - radius**2), 0.0)
