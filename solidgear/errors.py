@@ -34,12 +34,12 @@ class SolidgearError(Exception):
 
 
 class SceneError(SolidgearError, ValueError):
-    """A scene that cannot be used as written: its first problem, and all others with it.
+    """A scene that cannot be used as written: the first problem, and all others with it.
 
     Parameters
     ----------
     reason : str
-        What is wrong and what would be right.
+        The problem, and how to correct it.
     path : tuple of str and int
         Keys and zero-based indices from the root of the scene to the faulty entry.
     value : str
@@ -126,7 +126,7 @@ class SceneError(SolidgearError, ValueError):
     def located(
         self, data: Any, *, where: str = "", prefix: tuple = (), path: tuple | None = None
     ) -> SceneError:
-        """The same error with fields named, and values quoted, from what the user wrote.
+        """The same error with fields named, and values quoted, from the user's data.
 
         Parameters
         ----------
@@ -267,9 +267,7 @@ def did_you_mean(word: str | None) -> str:
 
 
 def near(word: Any, candidates: Iterable[str]) -> str:
-    """Return the candidate nearest to `word`: in other capitals, of the same parts, or spelt alike;
-    an empty text without one.
-    """
+    """Return the candidate nearest to `word`: other capitals, the same parts, spelt alike; or ''."""
     text, names = str(word)[:60], list(candidates)
     same_letters = [candidate for candidate in names if candidate.casefold() == text.casefold()]
     same_parts = [

@@ -25,7 +25,7 @@ def way_out(scene: Any) -> str:
     """Words to write into a scene that no model holds so that some do, and what is lost by them;
     `NO_MODEL` alone where smearing its teeth does not help.
     """
-    from solidgear.scene.shaft import named
+    from solidgear.scene.shaft import feature_labels
 
     features = getattr(scene, "features", ())
     cut = [f for f in features if f.sort == CYCLIC and not f.smeared and f.toothed]
@@ -37,7 +37,8 @@ def way_out(scene: Any) -> str:
     if not fit:
         return NO_MODEL
     return (
-        f'{NO_MODEL}; write model = "pitch_cone" for {named(cut)}, which leaves out the shape of the '
+        f'{NO_MODEL}; write model = "pitch_cone" for {feature_labels(cut)}, '
+        "which leaves out the shape of the "
         f"teeth and keeps their pitch surface, and use {' or '.join(fit)}"
     )
 

@@ -126,7 +126,7 @@ class Model:
     def unfit(self, scene: Any) -> str:
         """Reason why it does not model a scene, or nothing."""
         from solidgear.scene.features import FEATURES
-        from solidgear.scene.shaft import named
+        from solidgear.scene.shaft import feature_labels
 
         features, every = features_of(scene), getattr(scene, "features", ())
         if self.for_features and not any(f.sort in self.holds for f in every):
@@ -145,7 +145,10 @@ class Model:
             (body,) = (f for f in features if f.sort == BODIES)
             return f"the {self.title} is of a shaft, and a {body.what} has no axis"
         strange = [f for f in features if f.sort not in self.holds]
-        unfit = f"the {self.title} is {self._nature} and the scene has {named(strange or features)}"
+        unfit = (
+            f"the {self.title} is {self._nature} and the scene has "
+            f"{feature_labels(strange or features)}"
+        )
         if not self.holds:
             return f"{unfit}: it would answer for the plain part"
         return unfit if strange else f"{unfit}, which no mesh holds together"

@@ -63,8 +63,8 @@ Arrangement = Annotated[Words, BeforeValidator(_read_words)]
 
 
 def read_pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:
-    """Read the pairs that words of a file make of the tables of its bearings; return None where
-    catalogue data are wrong by themselves, so that words cannot be judged.
+    """Read the pairs of bearings that words of a file name; return None where catalogue data are wrong
+    by themselves, so that words cannot be judged.
     """
     if words and any(_problem_keys(table) - {("holds",)} for table in tables):
         return None

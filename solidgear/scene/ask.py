@@ -33,7 +33,7 @@ Asked = Annotated[Quantity, BeforeValidator(_read_quantity)]
 
 
 class Ask(Model):
-    """The questions: how many modes, up to what frequency, to what tolerance, judged by what.
+    """Questions: number of modes, frequency range, tolerance, and quantities that judge models.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Ask(Model):
     tolerance : float
         Relative, between 0 and 1.
     quantities : tuple of Quantity
-        What models are judged by, from `QUANTITIES`, those of a further lumped point as
+        Those that judge models, from `QUANTITIES`, at a further lumped point as
         ``C_zz@name``; empty is the usual set, compliances at every point with first bending and
         first axial mode.
 

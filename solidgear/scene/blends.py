@@ -107,7 +107,7 @@ class Corner:
 
 
 class _At(Model):
-    """Words for the place of an edge: its datum."""
+    """Words for the place of an edge: a datum."""
 
     at: str
 
@@ -146,9 +146,7 @@ class _Blend(Placed):
         raise NotImplementedError
 
     def corner(self, segments: Sequence[Segment]) -> Corner:
-        """Return the edge on a shaft; refuse, under a field, an edge that is missing or cannot be
-        rounded.
-        """
+        """Return the edge on a shaft; refuse a missing edge, and one that cannot be rounded."""
         outer = self.surface == "outer"
         i, low, high = self._place(segments)
         before = radii_of(low, self.surface)[1] if low else None
@@ -224,7 +222,7 @@ class Fillet(_Blend):
     """A quarter of a circle at an edge.
 
     `y` is the place of the edge, m: a step, or an end face. The edge 'root' adds material in the
-    corner of a step, 'rim' rounds off its edge; by default the root, and the rim at an end face.
+    corner of a step, 'rim' rounds off the edge; by default the root, and the rim at an end face.
 
     Examples
     --------

@@ -97,9 +97,7 @@ def _inside(piece: Piece, density: float) -> tuple[float, ...]:
 
 
 def integrals_along(h: float, a: float, b: float) -> tuple[float, float, float, float]:
-    """Compute the integrals of r^2, r^2 s, r^2 s^2 and r^4 over a length h from radius a to b, s from
-    the start.
-    """
+    """Compute the integrals of r^2, r^2 s, r^2 s^2, r^4 over a length h from radius a (s = 0) to b."""
     return (
         h * (a * a + a * b + b * b) / 3.0,
         h**2 * (a * a + 2.0 * a * b + 3.0 * b * b) / 12.0,

@@ -190,7 +190,8 @@ def boundary(designation: str) -> Boundary:
         match = re.fullmatch(pattern, plain)
         if not match:
             continue
-        bore = _bore(match["code"])
+        code = int(match["code"])
+        bore = _BORES[code] if code < 4 else 5 * code
         sizes = table[match["series"]]
         if bore not in sizes:
             raise _unknown(designation)
@@ -228,11 +229,6 @@ def usual_angle(designation: str) -> float | None:
     angles = (degrees for series, degrees in _ANGLES.items() if re.match(series, plain))
     degrees = next(angles, None)
     return None if degrees is None else math.radians(degrees)
-
-
-def _bore(code: str) -> int:
-    number = int(code)
-    return _BORES[number] if number < 4 else 5 * number
 
 
 def _designations() -> list[str]:

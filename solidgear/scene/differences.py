@@ -2,7 +2,7 @@
 
 Tables of lists are paired by name, and by number where they have none.  Files that an entry names,
 such as the scene of a shaft, are compared too.  Entries with the same meaning do not differ: a
-quantity in other units, or a key that repeats its default.
+quantity in other units, or a key that repeats the default.
 """
 
 from __future__ import annotations

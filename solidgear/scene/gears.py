@@ -120,7 +120,7 @@ class Shaft(Model):
         return self
 
     def member(self, port: str = "") -> Member:
-        """Return a gear, the first by default, with its lumped point as main point of the scene."""
+        """Return a gear, the first by default, on the scene with that lumped point as main point."""
         port = port or next(iter(self.gears))
         main = self.scene.port.name == port
         return Member(
@@ -184,9 +184,7 @@ class Pair:
         return replace(self, **rolling_fields(self.pinion, self.gear, self.mesh))
 
     def with_file_paths(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
-        """Yield problems, whose paths begin with ``pinion``, ``gear`` or ``mesh``, with paths of the
-        file.
-        """
+        """Yield problems of ``pinion``, ``gear`` or ``mesh`` with the paths of the file."""
         for problem in problems:
             first, *further = problem.path
             yield problem.located(None, path=(*self.paths[first], *further))

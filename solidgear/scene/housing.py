@@ -104,9 +104,7 @@ class Elastic(Model):
         return self.with_changes(matrix=np.array(self.matrix) * factor)
 
     def beneath_one(self, stiffness: np.ndarray, name: str = "the housing") -> np.ndarray:
-        """Return the (6, 6) stiffness of a bearing in this support, both at one point; errors call the
-        support `name`.
-        """
+        """Return the (6, 6) stiffness of a bearing in the support `name`, both at one point."""
         return in_series(stiffness, np.eye(6)[:, self.gives], self.own, name)
 
 
@@ -181,13 +179,7 @@ class Housing(Placed, Elastic):
         return {"y": words.y(places)}
 
     def moves(self, y: float) -> np.ndarray:
-        """(6, k) motion of its bore at a place along the shaft, for unit motions in which it gives.
-
-        Parameters
-        ----------
-        y : float
-            m.
-        """
+        """Return the (6, k) motion of the bore at a place y (m) for unit motions in which it gives."""
         return shift((0.0, y - self.y, 0.0))[:, self.gives]
 
     def beneath(self, stiffness: np.ndarray, places: Sequence[float]) -> np.ndarray:
@@ -215,9 +207,7 @@ class Housing(Placed, Elastic):
 
 
 def read_housing(table: Mapping[str, Any], places: Places) -> Housing | float | None:
-    """Read the [housing] of a file: a housing, or a spring along the axis (N/m); None where its place
-    is not known.
-    """
+    """Read a [housing]: a housing, or a spring along the axis, N/m; None where the place is unknown."""
     table, scale = _unscaled(table)
     if "axial" not in table or {"stiffness", "matrix"} & set(table):
         housing = Housing.read(table, places)
@@ -235,6 +225,6 @@ class _Scale(Model):
 
 
 def _unscaled(table: Mapping[str, Any]) -> tuple[dict[str, Any], float]:
-    """Return the table of a housing without its factor, and the factor."""
+    """Return the table of a housing without the factor, and the factor."""
     factor = _Scale(**{key: table[key] for key in table if key == "scale"})
     return {key: value for key, value in table.items() if key != "scale"}, factor.scale

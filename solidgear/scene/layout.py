@@ -205,12 +205,12 @@ def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str
 
 
 def outward(
-    train: Train, first: str, without: Joint | None = None
+    train: Train, first: str, excluded: Joint | None = None
 ) -> Iterator[tuple[str, Joint | None]]:
     """Yield the shafts that meshes and stages lead to from the first, each with the joint that leads to
-    it (None for the first); the joint `without` is not passed.
+    it (None for the first); the joint `excluded` is not passed.
     """
-    for side, joint in _outward(train, first, train.joints.index(without) if without else -1):
+    for side, joint in _outward(train, first, train.joints.index(excluded) if excluded else -1):
         yield side, None if joint < 0 else train.joints[joint]
 
 
@@ -232,7 +232,7 @@ def _loops(train: Train) -> Iterator[SceneError]:
     turns = turns_of(train)
     for stage in train.stages:
         sun, carrier = stage.shafts
-        if carrier in {side for side, _ in outward(train, sun, without=stage)}:
+        if carrier in {side for side, _ in outward(train, sun, excluded=stage)}:
             reason = f"closes a loop: other teeth join the {sun} and the {carrier} as well; open it"
             yield SceneError(reason, path=("planetary", stage.called))
     for k, pair in enumerate(train.pairs):

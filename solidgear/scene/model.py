@@ -1,9 +1,8 @@
-"""The scene: what is modelled, and what is asked of it.
+"""The scene of one shaft, and the questions about it.
 
 A shaft of cylinders and cones along y, bearings with 6x6 stiffness, lumped points (ports), and the
-questions. Frozen and validated, SI inside, no numerics beyond geometry bookkeeping. Degrees
-of freedom are everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft and is 0 at
-its first end face.
+questions. Frozen and validated, SI inside, no numerics beyond geometry. Degrees of freedom are
+everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft from its first end face.
 """
 
 from __future__ import annotations
@@ -50,11 +49,11 @@ class Scene(Displayed, Model):
     bearings : tuple of Bearing
     masses : tuple of PointMass
     features : tuple of Keyway, Flat or CrossHole
-        What is cut out of the shaft and is not of revolution.
+        Cuts out of the shaft that are not of revolution.
     body : BodyFile or None
         The part from a file of which the segments are the round part.
     blends : tuple of Fillet or Chamfer
-        At its edges; it stays of revolution.
+        At the edges of the shaft, which stays of revolution.
     housing_axial : float or None
         Spring along y between the common bearing housing and ground, N/m.
     housing : Housing or None
@@ -193,15 +192,15 @@ class Scene(Displayed, Model):
 
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
-        """Everything attached to the shaft, the port first, then bearings, masses on seats of
-        their own and further ports: each has name, y, lo, hi (m), attachment.
+        """Stations on the shaft: the port, then bearings, masses on seats of their own and further
+        ports; each has name, y, lo, hi (m), attachment.
         """
         seated = (m for m in self.masses if m.on is None)
         return (self.port, *self.bearings, *seated, *self.further_ports)
 
     @property
     def plain(self) -> Scene:
-        """The same scene as its segments alone: a body of revolution."""
+        """The same scene with segments alone: a body of revolution."""
         if not self.features and self.body is None:
             return self
         return self.with_changes(features=(), body=None, **off_patches(self))
@@ -347,7 +346,7 @@ class Scene(Displayed, Model):
         return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
 
     def with_port(self, **changes: Any) -> Scene:
-        """The same scene with fields of its port replaced.
+        """The same scene with fields of the port replaced.
 
         Parameters
         ----------
@@ -366,7 +365,7 @@ class Scene(Displayed, Model):
         return self.with_changes(port=self.port.with_changes(**changes))
 
     def with_main_port(self, name: str) -> Scene:
-        """The same scene judged and condensed at another of its lumped points.
+        """The same scene judged and condensed at another lumped point.
 
         Parameters
         ----------
@@ -398,7 +397,7 @@ class Scene(Displayed, Model):
         return self.with_changes(port=first, further_ports=tuple(ports.values()))
 
     def as_dict(self) -> dict[str, Any]:
-        """Everything resolved, in SI, as plain data that JSON can hold."""
+        """Return everything resolved, in SI, as plain data that JSON can hold."""
         data = self.model_dump(mode="json")
         for key in ("masses", "features", "blends", "further_ports", "uncertain"):
             if not data[key]:

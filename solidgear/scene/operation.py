@@ -183,9 +183,9 @@ def running_problems(train: Train) -> Iterator[SceneError]:
 def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Yield problems of an operating point against the teeth, and of forces at unknown ports."""
     if point.of not in train.torque_turns:
-        known = train.torque_turns
-        reason = f"is no shaft that the torque passes; write one of {listed(known)}"
-        yield SceneError(reason + nearest(point.of, known), path=("of",))
+        sides = train.torque_turns
+        reason = f"is no shaft that the torque passes; write one of {listed(sides)}"
+        yield SceneError(reason + nearest(point.of, sides), path=("of",))
         return
     yield from _against_teeth(train, point)
     ports = {side: [s.name for s in shaft.scene.stations] for side, shaft in train.shafts.items()}

@@ -1,4 +1,4 @@
-"""Outline of a shaft: the lines and arcs of its meridian (r, y), outside and in the bore.
+"""Outline of a shaft: lines and arcs of the meridian (r, y), outside and in the bore.
 
 Every line and arc belongs to a segment and a surface.  A fillet or chamfer is a piece like others:
 it lies beside the step or rim that it rounds, on the segment whose cylinder it runs into.
@@ -188,7 +188,7 @@ class Outline(Generic[S]):
             for k, shape in enumerate(self.segments):
                 r0, r1 = radii_of(shape, surface)
                 y0, y1 = shape.y0, shape.y1
-                first, last = (self._beside(k, surface, side) for side in (1, -1))
+                first, last = (self._corner_on(k, surface, side) for side in (1, -1))
                 if first:
                     (face, y0), (r0, end) = first.on_face, first.on_cylinder
                     yield Piece(surface, k, y0, end, face, r0, first)
@@ -199,7 +199,7 @@ class Outline(Generic[S]):
                 if last:
                     yield Piece(surface, k, y1, last.y, r1, last.on_face[0], last)
 
-    def _beside(self, segment: int, surface: Surface, side: int) -> Corner | None:
+    def _corner_on(self, segment: int, surface: Surface, side: int) -> Corner | None:
         """Return the fillet or chamfer that lies on a segment at its start (side 1) or end (-1)."""
         joint = segment + (side < 0)
         corners = (self._at.get((joint, surface, root, side)) for root in (True, False))

@@ -83,8 +83,8 @@ class Material(Model):
     def with_changes(self, **changes: Any) -> Material:
         """A validated copy with some fields replaced; other constants lose the name."""
         material = super().with_changes(**changes)
-        same = all(getattr(material, key) == getattr(self, key) for key in _CONSTANTS)
-        if same or "name" in changes or not material.name:
+        unchanged = all(getattr(material, key) == getattr(self, key) for key in _CONSTANTS)
+        if unchanged or "name" in changes or not material.name:
             return material
         return material.with_changes(name="")
 

@@ -1,4 +1,4 @@
-"""Patches of a body without an axis: faces of its surface that a file names."""
+"""Patches of a body without an axis: faces that a file names."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Patch(Model):
 
 
 def point_of(station: Any) -> Triple:
-    """Return the point (m) that a station is lumped into: that of its patch, or one on the axis."""
+    """Return the point (m) that a station is lumped into: that of a patch, or one on the axis."""
     patch = getattr(station, "patch", None)
     return (0.0, station.y, 0.0) if patch is None else patch.point
 
 
 def off_patches(scene: Any) -> dict[str, Any]:
-    """Return changes of a scene that take its stations off the patches of its body."""
+    """Return changes of a scene that take all stations off the patches of the body."""
     if scene.body is None or scene.body.edges is None:
         return {}
     port = scene.port.with_changes(patch=None, y=scene.length / 2, lo=0.0, hi=scene.length)

@@ -1,10 +1,10 @@
 """Paths of entries of a scene or train file: ``bearing.A.seat_width``, ``mesh.stiffness``.
 
-A path names keys of tables with dots between. A table of a list is given by its name or its number,
+A path names keys of tables with dots between. A table of a list is given by name or by number,
 counted from one; the only table of a list may be left out. An entry of a list of numbers is given by
-its number. A material given by name is a table of its constants, and an entry of a stiffness may go
-without the table or matrix that it stands in. A key that the file does not hold may be one of the
-format: the reader of the changed tables refuses others.
+number. A material given by name is a table of constants, and an entry of a stiffness may go without
+the table or matrix that holds it. A key that the file does not hold may be one of the format: the
+reader of the changed tables refuses others.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ def keys_of(path: str, tables: Tables) -> Keys:
             keys += _stiffness_keys(tuple(keys), table or {}, remainder)
             return tuple(keys)
         elif isinstance(table, Mapping) or table is None:
-            word = _first(remainder, table or {}) or _word(remainder)
+            matches = [key for key in table or {} if _begins(remainder, key)]
+            word = max(matches, key=len, default="") or _word(remainder)
             remainder = _after(remainder, word)
             keys.append(word)
         else:
@@ -153,11 +154,6 @@ def _names_itself(table: Mapping[str, Any], remainder: str) -> bool:
     """Return True where a path names a single table as if it were one of a list."""
     word = _word(remainder)
     return word not in table and word in (_name(table), "1") and remainder != word
-
-
-def _first(remainder: str, table: Mapping[str, Any]) -> str:
-    """Return the longest key of a table that a path begins with; empty for none."""
-    return max((key for key in table if _begins(remainder, key)), key=len, default="")
 
 
 def _begins(remainder: str, name: str) -> bool:

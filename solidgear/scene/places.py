@@ -50,7 +50,7 @@ class Places:
         self.part = part  #: once it is read
 
     def add(self, name: str, y: float | None = None) -> None:
-        """Add a datum, with its place where that is known."""
+        """Add a datum, with the place where that is known."""
         if self.names is not None:
             self.names.append(name)
         if y is not None:
@@ -61,9 +61,7 @@ class Places:
         self.datums, self.surface = {}, {}
 
     def datum(self, name: str, key: str) -> float | None:
-        """Return the place of a datum, m, or None where it is not known; refuse an unknown datum
-        under the key.
-        """
+        """Return the place of a datum, m; None where it is in doubt, refused if unknown."""
         if self.names is not None and name not in self.names:
             raise SceneError(
                 f"unknown datum{nearest(name, self.names)}; known here: {listed(self.names)}",
@@ -124,15 +122,13 @@ class NoWords(Model):
 
 
 class Along(Model):
-    """Words for a place along the shaft, by its distance from a datum."""
+    """Words for a place along the shaft, by the distance from a datum."""
 
     position: Length | None = None
     from_: str | None = Field(None, alias="from")
 
     def y(self, places: Places, datum: str = "start") -> float | None:
-        """Return the place, m, counted from `datum` unless the words name another; None where it is
-        not known.
-        """
+        """Return the place, m, from `datum` or the datum of the words; None where it is in doubt."""
         if self.from_ is not None:
             start = places.datum(self.from_, "from")
         else:

@@ -155,7 +155,7 @@ class PlanetMesh:
 
 @dataclass(frozen=True)
 class Stage:
-    """A planetary stage between two shafts, that of its sun and that of its carrier."""
+    """A planetary stage between two shafts, that of the sun and that of the carrier."""
 
     called: str
     shafts: tuple[str, str]
@@ -165,19 +165,17 @@ class Stage:
 
     @property
     def name(self) -> str:
-        """Name of its meshes together."""
+        """Name of all meshes of the stage together."""
         return f"mesh {self.called}"
 
     @property
     def ring_point(self) -> str:
-        """Point of an elastic housing that holds its ring."""
+        """Point of an elastic housing that holds the ring."""
         return f"{self.called}.ring"
 
     @cached_property
     def teeth(self) -> PlanetaryTeeth:
-        """Transverse teeth; refuses teeth that do not mesh or assemble, planets that overlap, and
-        another ratio.
-        """
+        """Transverse teeth; refuses teeth that do not fit, overlapping planets, another ratio."""
         assert self.sun.module is not None
         table, helix = self.table, self.sun.helix_angle or 0.0
         return PlanetaryTeeth(

@@ -31,7 +31,7 @@ class PlanetaryTeeth:
     pressure_angle : float
         Transverse, rad.
     ratio : float, optional
-        Of the speeds of sun and carrier where it is told elsewhere, to be held against the teeth.
+        Of the speeds of sun and carrier where a source gives it, to be checked against the teeth.
     helix : float
         Helix angle at the pitch circles, rad; positive of a right-handed sun.
 

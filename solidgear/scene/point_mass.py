@@ -27,22 +27,22 @@ class PointMass(Placed):
     Attributes
     ----------
     name : str
-        Of one without, its scene makes one.
+        Made by the scene where it is not given.
     mass : float
         kg.
     inertia : tuple of float
-        Moments of inertia about axes x, y, z through its own centre of mass, kg m^2; y is the polar
+        Moments of inertia about axes x, y, z through the centre of mass, kg m^2; y is the polar
         one. Zero for a mass without extent.
     offset : tuple of float
         From the station to the centre of mass, along x, y, z, m.
     on : str or None
         Name of the lumped point or the bearing that it moves with; None for a seat of its own.
     y : float
-        Middle of its own seat, m.
+        Middle of the seat of its own, m.
     seat_width : float or None
         m.
     attachment : {'average', 'rigid', 'section'}
-        How its own seat follows it.
+        How the seat follows the mass.
 
     Raises
     ------
@@ -106,19 +106,19 @@ class PointMass(Placed):
 
     @property
     def lo(self) -> float:
-        """End of its own seat towards y = 0, m."""
+        """End of the seat towards y = 0, m."""
         assert self.seat_width is not None  # asked of own seats only
         return round(self.y - self.seat_width / 2, POSITION_DECIMALS)
 
     @property
     def hi(self) -> float:
-        """End of its own seat away from y = 0, m."""
+        """End of the seat away from y = 0, m."""
         assert self.seat_width is not None  # asked of own seats only
         return round(self.y + self.seat_width / 2, POSITION_DECIMALS)
 
     @property
     def matrix(self) -> np.ndarray:
-        """(6, 6) mass matrix about the point of its station, order x y z thx thy thz: kg, kg m and
+        """(6, 6) mass matrix about the point of the station, order x y z thx thy thz: kg, kg m and
         kg m^2.
         """
         at_centre = np.diag([*[self.mass] * 3, *self.inertia])

@@ -31,7 +31,7 @@ def shares_of(train: Train) -> dict[str, float]:
 
 
 def flows_of(train: Train) -> dict[str, float | None]:
-    """Return the share of the power that every mesh or stage passes from its first shaft to its
+    """Return the share of the power that every mesh or stage passes from the first shaft to the
     second; None where a loop of meshes divides it by stiffness.
     """
     brought = dict.fromkeys(train.shafts, 0.0)
@@ -40,7 +40,7 @@ def flows_of(train: Train) -> dict[str, float | None]:
     out: dict[str, float | None] = {}
     for joint in train.joints:
         first, second = joint.shafts
-        behind = {side for side, _ in outward(train, first, without=joint)}
+        behind = {side for side, _ in outward(train, first, excluded=joint)}
         flow = fsum(brought[side] for side in behind)
         out[joint.name] = None if second in behind else flow * (abs(flow) > NONE)
     return out

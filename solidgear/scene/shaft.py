@@ -1,4 +1,4 @@
-"""Interface of a scene for builders and meshers, and its features."""
+"""Interface of a scene for builders and meshers, and features of a scene."""
 
 from __future__ import annotations
 
@@ -47,9 +47,7 @@ def resolved(scene: Any) -> tuple[Any, ...]:
 
 
 def without_axis(scene: Any) -> bool:
-    """Return True for a rectangular block or another body that is no shaft, with segments for places
-    only.
-    """
+    """Return True for a block or another body that is no shaft, whose segments only give places."""
     body = getattr(scene, "body", None)
     return body is not None and body.edges is not None
 
@@ -70,6 +68,6 @@ def turning_speed(scene: Any) -> float | None:
     return fastest or (oil.speed if oil is not None else None) or None
 
 
-def named(features: Iterable[Any]) -> str:
+def feature_labels(features: Iterable[Any]) -> str:
     """Return features in a sentence, such as ``keyway "key"``."""
     return ", ".join(f'{f.what} "{f.name}"' for f in features)

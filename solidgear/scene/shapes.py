@@ -177,9 +177,7 @@ class Laid(NamedTuple):
 
 
 def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
-    """Lay shapes end to end from y = 0 and enter their datums in `places`; problems have paths of the
-    file.
-    """
+    """Lay shapes end to end from y = 0 and enter their datums; problems have paths of the file."""
     laid, problems, y = Laid([], []), [], 0.0
     places.datums["start"] = 0.0
     for index, shape in enumerate(shapes):

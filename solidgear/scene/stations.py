@@ -57,22 +57,22 @@ class Bearing(Placed):
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
         as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
-        What the stiffness comes from, where it was not given.
+        Data that the stiffness comes from, where it was not given.
     axial_series : tuple of float
-        Springs in series with its axial stiffness, N/m.
+        Springs in series with the axial stiffness, N/m.
     housing : Elastic or None
-        What its outer ring stands in, in series with all of it.
+        Support of the outer ring, in series with all of the bearing.
     scale : float
         Factor on the stiffness of all that; loads under which it settles are found without it.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : str
-        Where its numbers come from: published, identified, assumed, measured, or of catalogue data
+        Source of the numbers: published, identified, assumed, measured, or of catalogue data
         calculated (inner geometry given) or estimated.
     note : str
         Free text.
     support : {'locating', 'floating'} or None
-        A floating one slides in its seat and carries nothing along y; without a word cylindrical
+        A floating bearing slides in its seat and carries nothing along y; without a word cylindrical
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: nothing moves, or nothing moves but turns.
@@ -204,26 +204,26 @@ class Bearing(Placed):
 
     @property
     def floats(self) -> bool:
-        """True where it carries nothing along y, by its mounting or its kind."""
+        """True where the bearing carries nothing along y, by mounting or kind."""
         by_kind = self.catalogue is not None and self.catalogue.floats
         return self.support == "floating" or by_kind
 
     @property
     def unsettled(self) -> Bearing:
-        """The same bearing without the stiffness that catalogue data have under the load of its
-        shaft; as it is where that load has no part in it.
+        """The same bearing without the stiffness that catalogue data have under the load of the shaft;
+        unchanged where the stiffness does not depend on that load.
         """
         data = self.catalogue
         waits = data is not None and data.load is None and data.displacement is None
         return self.with_changes(matrix=None) if waits else self
 
     def held_towards(self, way: str) -> Bearing:
-        """The same bearing of catalogue data, turned to hold the shaft towards '+y' or '-y'."""
+        """Return the bearing turned to hold the shaft towards '+y' or '-y', with catalogue data."""
         data = self.catalogue
         return self.with_changes(catalogue=data and data.with_changes(holds=way))
 
     def attached(self, attachment: str) -> Bearing:
-        """The same bearing with its seat attached in another way; one on a face as it is."""
+        """Return the bearing with another attachment of its seat; one on a face unchanged."""
         return self if self.face else self.with_changes(attachment=attachment)
 
     @property
@@ -263,7 +263,7 @@ class Bearing(Placed):
 
     @property
     def spring(self) -> float | None:
-        """Its springs in series as one, N/m."""
+        """Springs in series as one, N/m."""
         return 1 / sum(1 / k for k in self.axial_series) if self.axial_series else None
 
     def _solved_matrix(self) -> tuple[tuple[float, ...], ...]:
@@ -275,8 +275,7 @@ class Bearing(Placed):
         return self.matrix
 
     def scaled(self, factor: float) -> Bearing:
-        """The same bearing with every stiffness, series springs and its housing included,
-        multiplied.
+        """The same bearing with every stiffness, series springs and housing included, multiplied.
 
         Parameters
         ----------
@@ -314,7 +313,7 @@ class Port(Placed):
     ----------
     name : str
     y : float
-        Its place, m; it need not lie within the span. `position`, as in a file, is the same.
+        Place, m; it need not lie within the span. `position`, as in a file, is the same.
     lo, hi : float
         Span of the surface that carries it, m.
     attachment : {'average', 'rigid', 'section'}

@@ -60,7 +60,7 @@ def is_train(path: str | os.PathLike) -> bool:
 
 
 def name_of(file_path: str) -> str:
-    """Return the name of the scene in a file: the stem of its path."""
+    """Return the name of the scene in a file: the stem of the path."""
     return "scene" if file_path == STANDARD_INPUT else Path(file_path).stem
 
 
@@ -71,7 +71,7 @@ def place_of(file_path: str) -> str:
 
 @lru_cache(maxsize=1)
 def _standard_input(stream: TextIO) -> bytes:
-    """Read standard input once: a file is read again to locate its problems."""
+    """Read standard input once: files are read again to locate problems."""
     return stream.buffer.read(LARGEST + 1)
 
 

@@ -153,9 +153,7 @@ class ToothFit:
         return ADDENDUM - self.shift[k] - straight
 
     def tip_thickness(self, k: int) -> float:
-        """Return the transverse thickness of teeth of wheel k at the tip, m; below zero where flanks
-        meet before.
-        """
+        """Return the transverse tooth thickness of wheel k at the tip, m; below zero if pointed."""
         tip, base, teeth = self.tips[k], self.base_radii[k], self.teeth[k]
         if abs(tip) <= abs(base):
             return self.module

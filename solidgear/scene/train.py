@@ -61,7 +61,7 @@ class Train(Model):
         Stages by name.
     losses : Losses
     housing : TrainHousing or None
-        Under the bearings of its shafts, which without one stand on ground.
+        Under the bearings of the shafts, which without one stand on ground.
     operation : tuple of OperatingPoint
         Torques and speeds at which it runs; bearings of catalogue data settle at the first.
     ask : TrainAsk
@@ -166,18 +166,18 @@ class Train(Model):
 
     @property
     def point(self) -> OperatingPoint | None:
-        """Operating point at which its bearings have settled: the first; None without any."""
+        """Operating point at which bearings have settled: the first; None without any."""
         return self.operation[0] if self.operation else None
 
     def told(self, point: OperatingPoint) -> OperatingPoint:
-        """An operating point whose torque is, unless said otherwise, that of the engine's shaft."""
+        """Return an operating point, with the torque on the engine's shaft unless it names another."""
         if "of" in point.model_fields_set or point.of == self.reference:
             return point
         return point.with_changes(of=self.reference)
 
     @property
     def reference(self) -> str:
-        """Shaft that the first engine turns with, to which speeds are told; else the first."""
+        """Shaft that the first engine turns with, which speeds refer to; else the first."""
         return self.engine.shaft if self.engines else next(iter(self.shafts))
 
     @property
@@ -187,14 +187,14 @@ class Train(Model):
 
     @property
     def housed(self) -> tuple[str, ...]:
-        """Shafts whose bearings stand in its housing."""
+        """Shafts whose bearings stand in the housing."""
         if self.housing is None:
             return ()
         return tuple(s for s in self.housing.carries or self.shafts if s in self.shafts)
 
     @cached_property
     def turns(self) -> dict[str, float]:
-        """Turns of every shaft in one turn of the engine's, by the teeth."""
+        """Turns of every shaft in one turn of the engine's shaft, by the teeth."""
         return turns_of(self)
 
     @cached_property
@@ -204,7 +204,10 @@ class Train(Model):
         out = []
         for k, mesh in enumerate(self.meshes):
             ends = ends_of(self, k)
-            paths = {role: self.gear_path(*end) for role, end in zip(("pinion", "gear"), ends)}
+            paths = {
+                role: self.gear_path(side, port)
+                for role, (side, port) in zip(("pinion", "gear"), ends)
+            }
             paths["mesh"] = ("mesh",) if short else ("mesh", k)
             sides, ports = (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
             alone = len(self.meshes) == 1 and not self.planetary
@@ -222,7 +225,7 @@ class Train(Model):
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """All that turns one shaft with another: pairs, then planetary stages."""
+        """Joints by which one shaft turns another: pairs, then planetary stages."""
         return (*self.pairs, *self.stages)
 
     @cached_property
@@ -237,36 +240,37 @@ class Train(Model):
 
     @property
     def short(self) -> bool:
-        """True where a file may call it by [pinion], [gear] and [mesh] alone."""
+        """True where a file may describe the train by [pinion], [gear] and [mesh] alone."""
         turned = {name: rotor.shaft for name, rotor in self.rotors.items()}
         usual = turned.items() <= SHORT.items() and tuple(self.shafts) == SIDES
         return usual and len(self.meshes) == 1
 
     def gear_path(self, side: str, port: str) -> tuple:
-        """Keys of a file under which a gear stands."""
+        """Return the keys of a gear in a file."""
         inside = ("gears", port) if len(self.shafts[side].gears) > 1 else ()
         return (side,) if self.short else ("shaft", side, *inside)
 
     def shaft_path(self, side: str) -> tuple:
-        """Keys of a file under which a shaft stands."""
+        """Return the keys of a shaft in a file."""
         return (side,) if self.short else ("shaft", side)
 
     def rotor_path(self, name: str) -> tuple:
-        """Keys of a file under which an engine, a load or another rotor stands."""
+        """Return the keys of an engine, a load or another rotor in a file."""
         kind = "engine" if name in self.engines else "load" if name in self.loads else "rotor"
         return (kind,) if name == kind else (kind, name)
 
     def per_turn(self, pair: Pair | PlanetMesh) -> PerTurn:
-        """Teeth of a mesh that pass in one turn of the engine's shaft; of planets, those of the ring."""
-        teeth, side = (
-            (pair.stage.teeth.ring, pair.stage.shafts[1])
-            if isinstance(pair, PlanetMesh)
-            else (pair.pinion.teeth, pair.shafts[0])
-        )
+        """Return the teeth of a mesh that pass in one turn of the engine's shaft; of planets, those of
+        the ring.
+        """
+        if isinstance(pair, PlanetMesh):
+            teeth, side = pair.stage.teeth.ring, pair.stage.shafts[1]
+        else:
+            teeth, side = pair.pinion.teeth, pair.shafts[0]
         return PerTurn(teeth * self.turns[side], self.reference)
 
     def named_mesh(self, word: str | None) -> Pair | PlanetMesh:
-        """A mesh by its name, with or without the word mesh before it; the first by default."""
+        """Return a mesh by name, with or without the word mesh before it; the first by default."""
         for pair in (*self.drivers, *self.teeth):
             if word in (None, pair.name, pair.label.strip()):
                 return pair
@@ -275,15 +279,15 @@ class Train(Model):
 
     @cached_property
     def flows(self) -> dict[str, float | None]:
-        """Share of the power that every mesh or stage passes from its first shaft to its second, by the
-        tree of them; None where a loop of meshes divides it by stiffness.
+        """Share of the power that every mesh or stage passes from the first shaft to the second, by
+        name; None where a loop of meshes divides it by stiffness.
         """
         return flows_of(self)
 
     @cached_property
     def carried(self) -> dict[str, float]:
-        """Share of the power by shaft that it passes; of one in a loop of meshes that of its own
-        engines and loads.
+        """Share of the power by shaft that it passes; in a loop of meshes that of the shaft's engines
+        and loads.
         """
         return carried_of(self)
 
@@ -293,7 +297,7 @@ class Train(Model):
         return {side: self.turns[side] / share for side, share in self.carried.items()}
 
     def only(self) -> Pair:
-        """The one pair of gears of a train that has no other; refuses a train of several."""
+        """Return the only pair of gears; refuse a train of several meshes."""
         if len(self.teeth) > 1:
             raise SolidgearError(
                 f"{self.name} has {len(self.teeth)} meshes, and what is asked is there for a "
@@ -308,12 +312,12 @@ class Train(Model):
 
     @property
     def pinion(self) -> Member:
-        """The shaft of that name and its gear."""
+        """The shaft named pinion, with the first gear on it."""
         return self.member("pinion")
 
     @property
     def gear(self) -> Member:
-        """The shaft of that name and its gear."""
+        """The shaft named gear, with the first gear on it."""
         return self.member("gear")
 
     @property
@@ -323,36 +327,36 @@ class Train(Model):
 
     @property
     def load(self) -> Rotor:
-        """The first rotor through which it goes out."""
+        """The first rotor through which torque goes out."""
         return self.rotors[self.loads[0]]
 
     @property
     def ratio(self) -> float:
-        """Turns of the engine's shaft in one turn of the load's."""
+        """Turns of the engine's shaft in one turn of the load's shaft."""
         return self.turns[self.reference] / self.turns[self.output]
 
     def named_shaft(self, side: str) -> Shaft:
-        """A shaft by its name."""
+        """Return a shaft by name."""
         if side not in self.shafts:
             names = listed(self.shafts)
             raise SolidgearError(f"{self.name} has no shaft {side!r}; it has {names}")
         return self.shafts[side]
 
     def member(self, side: str) -> Member:
-        """A shaft by its name, and the first of its gears."""
+        """Return a shaft by name, with the first gear on it."""
         return self.named_shaft(side).member()
 
     def rotors_of(self, side: str) -> dict[str, Rotor]:
-        """Rotors that turn with a shaft."""
+        """Return the rotors that turn with a shaft, by name."""
         return {name: rotor for name, rotor in self.rotors.items() if rotor.shaft == side}
 
     def spring_port(self, name: str) -> str:
-        """Port of a shaft that the torsional spring of a rotor acts on."""
+        """Return the port of a shaft that the torsional spring of a rotor acts on."""
         return self.rotors[name].spring.at or f"{name} spring"
 
     def shaft(self, side: str) -> Scene:
-        """Scene of a shaft, with the place of every torsional spring as a free station if that is
-        none of its ports; tied as the others are, where all of them are tied alike.
+        """Return the scene of a shaft, with a free station at the place of every torsional spring that
+        is on no port; attached as all others where these share one attachment.
         """
         side_shaft = self.shafts[side]
         scene = side_shaft.member().scene if len(side_shaft.gears) == 1 else side_shaft.scene
@@ -375,13 +379,11 @@ class Train(Model):
         return scene.with_changes(bearings=(*scene.bearings, *stations))
 
     def unpublished(self) -> dict[str, str]:
-        """Every value of the file that no source gives, by its key: ``identified`` or
-        ``assumed``.
-        """
+        """Return the status, ``identified`` or ``assumed``, of every value without a source, by key."""
         return {k: s for k, s in self.statuses().items() if s in ("identified", "assumed")}
 
     def statuses(self) -> dict[str, str]:
-        """Status of every value of the file that has one, by its key."""
+        """Return the status of every value of the file that has one, by key."""
         out: dict[str, Any] = {}
         for pair in self.pairs:
             mesh, name = pair.mesh, pair.name
@@ -410,7 +412,7 @@ class Train(Model):
         return {key: str(status) for key, status in out.items()}
 
     def heads(self, side: str) -> dict[str, tuple[str, HeadInertia]]:
-        """Rigid heads of a shaft with the port of each, by ``side.head``, or of several gears
+        """Return rigid heads of a shaft with their ports, by ``side.head``, or with several gears
         ``side.port.head``.
         """
         gears = self.shafts[side].gears

@@ -42,7 +42,7 @@ def _as_written(side: str, path: Path, alone: bool) -> Scene:
 
 
 def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
-    """Read a train file, whose scenes lie relative to it. `shaft` reads the scene of a side from its
+    """Read a train file, whose scenes lie relative to it. `shaft` reads the scene of a side from a
     file, given whether the shaft stands alone: with an [operation] bearings settle with the train.
     """
     file_path = os.fspath(path)
@@ -164,7 +164,7 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
     """Return an error with paths of the file: as :func:`with_table_paths`, and those of a single
-    engine or load without its name.
+    engine or load without a name.
     """
     alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
     problems = []
@@ -243,7 +243,7 @@ def _with_scene(
 
 
 def _check_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
-    """Refuse a rotor without its spring, which is most often left out, and say what it is for."""
+    """Refuse a rotor without a spring, which is most often left out, and explain the spring."""
     path = (rotor, name) if name else (rotor,)
     table = raw[rotor][name] if name else raw.get(rotor)
     if not isinstance(table, Mapping):

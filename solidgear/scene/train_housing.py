@@ -184,17 +184,21 @@ def housing_problems(train: Train) -> Iterator[SceneError]:
             yield SceneError(reason, path=(kind, HOUSING))
     for k, side in enumerate(train.housing.carries or ()):
         if side not in train.shafts:
-            known = [*train.shafts]
-            reason = f"names no shaft {side!r}{nearest(side, known)}; known here: {listed(known)}"
+            choices = [*train.shafts]
+            reason = (
+                f"names no shaft {side!r}{nearest(side, choices)}; known here: {listed(choices)}"
+            )
             yield SceneError(reason, path=(HOUSING, "carries", k))
     if (matrices := train.housing.matrices) is not None:
         scenes = {side: train.shafts[side].scene for side in train.housed}
         needed = {f"{side}.{b.name}": "bearing" for side in scenes for b in scenes[side].bearings}
         needed |= {s.ring_point: "ring" for s in train.stages if {*s.shafts} & {*train.housed}}
         for name, kind_of_point in needed.items():
-            if name not in (known := [*matrices.positions]):
-                reason = f"has no point {name!r}{nearest(name, known)}, where that {kind_of_point} stands"
-                yield SceneError(f"{reason}; there are {listed(known)}", path=(HOUSING, "matrices"))
+            if name not in (choices := [*matrices.positions]):
+                reason = f"has no point {name!r}{nearest(name, choices)}, where that {kind_of_point} stands"
+                yield SceneError(
+                    f"{reason}; there are {listed(choices)}", path=(HOUSING, "matrices")
+                )
     for side in train.housed:
         scene = train.shafts[side].scene
         if scene.housing is not None or scene.housing_axial is not None:

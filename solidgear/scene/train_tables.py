@@ -194,14 +194,12 @@ class Mesh(Model):
         if (self.point is None) != (self.line_of_action is None):
             missing = "point" if self.point is None else "line_of_action"
             raise SceneError("line_of_action and point go together; give both", path=(missing,))
-        if self.stiffness is None and not self._from_errors():
+        errors = (self.loaded_error, self.unloaded_error)
+        computed = None not in errors and errors[0] != errors[1] and bool(self.contact_cells)
+        if self.stiffness is None and not computed:
             reason = "this key is missing; give it, or contact_cells with loaded_error and"
             raise SceneError(f"{reason} unloaded_error, which must differ", path=("stiffness",))
         return self
-
-    def _from_errors(self) -> bool:
-        given = self.loaded_error is not None and self.unloaded_error is not None
-        return given and bool(self.contact_cells) and self.loaded_error != self.unloaded_error
 
 
 class Losses(Model):

@@ -184,9 +184,7 @@ class Problems(list[SceneError]):
     """Problems that are raised together."""
 
     def read(self, reader: Callable[[], _Read], path: tuple = ()) -> _Read | None:
-        """Return the result of a reader; where it refuses, append its problems under a path and return
-        None.
-        """
+        """Return the result of a reader; on a refusal append the problems under `path`."""
         try:
             return reader()
         except SceneError as error:

@@ -1,4 +1,4 @@
-"""Units of a universal file, by its dataset 164."""
+"""Units of a universal file, by dataset 164."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ UNITS = {
 
 
 def units_of(code: int, length: float, force: float) -> tuple[float, float]:
-    """Return the units of length and force, m and N, by the code of a dataset 164 and its factors: one
-    metre and one newton in these units.
+    """Return the units of length and force, m and N, by the code of a dataset 164 and the factors in
+    it, one metre and one newton in these units.
 
     Examples
     --------

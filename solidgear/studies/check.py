@@ -18,7 +18,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine.threads import pinned
 from solidgear.scene.closed_form import mass_properties, whole_mass
 from solidgear.scene.outline import Outline
-from solidgear.scene.shaft import named, resolved, without_axis
+from solidgear.scene.shaft import feature_labels, resolved, without_axis
 from solidgear.studies.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.studies.guards.notice import Notices, beams, everything
 from solidgear.studies.guards.smearing import smearing
@@ -232,10 +232,10 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         yield Notice(
             "avoid",
             tuple(unfit),
-            f"{named(features)} has no axis, and models of shafts do not hold it",
+            f"{feature_labels(features)} has no axis, and models of shafts do not hold it",
         )
         return
-    names = named(features)
+    names = feature_labels(features)
     # fillets of a part from a file are neither, and are not recognised
     known = ", as far as cylinders and cones tell" if scene.body is not None else ""
     yield Notice(

@@ -26,7 +26,7 @@ from solidgear.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahe
 from solidgear.models.solid.rectangular import block_body
 from solidgear.scene.attached import attached_stations
 from solidgear.scene.closed_form import volume_of
-from solidgear.scene.shaft import named, resolved, without_axis
+from solidgear.scene.shaft import feature_labels, resolved, without_axis
 
 
 def solid(
@@ -84,7 +84,8 @@ def solid(
     if features:
         if element != "tet10":
             raise SolidgearError(
-                f"solid: element = {element} cannot hold {named(features)} of the scene; use tet10"
+                f"solid: element = {element} cannot hold {feature_labels(features)} of the scene; "
+                "use tet10"
             )
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement

@@ -14,13 +14,7 @@ from solidgear.scene.units import PositiveLength
 
 
 class BoltCircle(OnSegment):
-    """Holes along the axis, evenly spaced on a circle.
-
-    Attributes
-    ----------
-    angle : float
-        Where the first hole lies, rad: 0 is +z.
-    """
+    """Holes along the axis, evenly spaced on a circle; the angle is that of the first hole."""
 
     sort: ClassVar[str] = "cyclic"
 

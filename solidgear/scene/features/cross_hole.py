@@ -32,19 +32,7 @@ def _not_steep(value: float) -> float:
 
 
 class CrossHole(Cut):
-    """A hole drilled across the shaft, all the way through.
-
-    Attributes
-    ----------
-    y : float
-        Along the shaft, where it passes the axis, m.
-    angle : float
-        As for :class:`Keyway`.
-
-    Raises
-    ------
-    SceneError
-        A size that is not positive, or an inclination beyond 60 degrees.
+    """A hole drilled across the shaft, all the way through; y (m) is where it passes the axis.
 
     Examples
     --------
@@ -74,8 +62,8 @@ class CrossHole(Cut):
         half = self.diameter / 2
         side = np.clip(self.offset + half * np.linspace(-1, 1, PLACES), -radius, radius)
         along = np.sqrt(half**2 - np.clip(side - self.offset, -half, half) ** 2)
-        up = np.sqrt(radius**2 - side**2) * math.tan(abs(self.inclination))
-        away = float((up + along / math.cos(self.inclination)).max())
+        lean = np.sqrt(radius**2 - side**2) * math.tan(abs(self.inclination))
+        away = float((lean + along / math.cos(self.inclination)).max())
         return self.y - away, self.y + away
 
     def mirrored(self, across: bool) -> bool:
@@ -120,8 +108,8 @@ class CrossHole(Cut):
             top = SMALLEST * radius
         half, lean = self.diameter / 2, self.inclination
         far = (radius + top) / math.cos(lean) + half * math.tan(abs(lean))
-        up, along = far * math.cos(lean), far * math.sin(lean)
-        return occ.addCylinder(self.offset, self.y - along, -up, 0, 2 * along, 2 * up, half)
+        height, along = far * math.cos(lean), far * math.sin(lean)
+        return occ.addCylinder(self.offset, self.y - along, -height, 0, 2 * along, 2 * height, half)
 
     def volume(self, outer: float, inner: float) -> float:
         from scipy.integrate import quad

@@ -127,9 +127,7 @@ class Cut(OnSegment):
         return None
 
     def lines(self, radius: float) -> tuple[float, float]:
-        """Return the length of the lines that elements grow from, and the radius of the wall around
-        them, m.
-        """
+        """Return the length of lines that elements grow from, and the radius of their wall, m."""
         lo, hi = self.reach(radius)
         return 2 * (hi - lo), 0.0
 

@@ -13,15 +13,7 @@ from solidgear.scene.units import PositiveLength
 
 
 class Flat(Long):
-    """A flat cut across a cylinder.
-
-    Attributes
-    ----------
-    y, length : float
-        Start and length along the shaft, m.
-    angle : float
-        As for :class:`Keyway`.
-    """
+    """A flat cut across a cylinder, with place, length and angle as of :class:`Keyway`."""
 
     kind: Literal["flat"] = "flat"
     depth: PositiveLength  #: below the crown of the cylinder, m

@@ -17,16 +17,8 @@ from solidgear.scene.units import PositiveLength
 class Keyway(Long):
     """A slot with a flat floor along a cylinder.
 
-    Attributes
-    ----------
-    segment : str
-        Of the shaft, a cylinder.
-    y : float
-        Its start along the shaft, m.
-    length : float
-        With its round ends, m.
-    angle : float
-        Where it lies around the shaft, rad: 0 is +z, a quarter turn is +x.
+    It begins at y (m) with a length that includes round ends, at an angle around the shaft, rad: 0 is
+    +z, a quarter turn is +x.
 
     Examples
     --------

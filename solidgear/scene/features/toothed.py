@@ -50,20 +50,29 @@ def arc(half: float) -> np.ndarray:
 
 
 class _Toothed(OnSegment):
-    """Trapezoid teeth, the same in every section but for its size."""
+    """Trapezoid teeth, the same in every section but for the size.
+
+    The angle is that of the middle of a tooth at the start of the segment, rad: 0 is +z.
+    """
 
     sort: ClassVar[str] = "cyclic"
     toothed: ClassVar[bool] = True
     #: whether a cone may have them, and not only a cylinder
     on_cones: ClassVar[bool] = True
 
-    count: Count
+    count: Count  #: 3 to 400
+    #: addendum, dedendum: modules
     addendum: Height = 1.0
     dedendum: Height = 1.2
+    #: of a tooth at the pitch radius, in pitches
     half_thickness: Annotated[float, _ratio(0.1, 0.4, "of the pitch")] = 0.25
+    #: between a flank and the middle of the tooth, rad
     flank_angle: Annotated[SignedAngle, Field(ge=0.0, le=0.7)] = math.radians(15)
+    #: between a tooth and a meridian, the same everywhere, rad
     spiral_angle: Annotated[SignedAngle, Field(ge=0.0, le=1.05)] = 0.0
+    #: a tooth with a right hand turns about +y as it goes along +y
     hand: Literal["left", "right"] = "right"
+    #: smeared, so that the segment of revolution replaces them, or resolved
     model: Literal["pitch_cone", "sector"] = "pitch_cone"
 
     @model_validator(mode="after")
@@ -125,15 +134,11 @@ class _Toothed(OnSegment):
 
     @property
     def land(self) -> float:
-        """Least radius of the land between two teeth, where a chord is nearest to the axis, over the
-        pitch radius.
-        """
+        """Least radius of the land between teeth, in the middle of a chord, over the pitch radius."""
         return self.root * math.cos(arc(self.land_half)[-1] / (len(arc(self.land_half)) - 1))
 
     def _half(self, radius: float) -> float:
-        """Return the half angle where the straight flank crosses a circle; `radius` is over that of the
-        pitch circle.
-        """
+        """Return the half angle where the flank crosses a circle of `radius` over the pitch radius."""
         half, t = 2 * math.pi * self.half_thickness / self.count, math.tan(self.flank_angle)
         b = math.cos(half) - t * math.sin(half)
         inside = max(b * b - (1 + t * t) * (1 - radius**2), 0.0)
@@ -175,30 +180,6 @@ class Teeth(_Toothed):
     most `LONGEST_CHORD` with their ends on their circles: 14 usual teeth lack 0.1 % of the area and
     0.25 % of the polar moment that arcs would have, and no teeth more than 0.4 and 0.8 %.
 
-    Attributes
-    ----------
-    count : int
-        3 to 400.
-    addendum, dedendum : float
-        Modules.
-    half_thickness : float
-        Of a tooth at its pitch radius, in pitches.
-    flank_angle : float
-        Between a flank and the middle of its tooth, rad.
-    spiral_angle : float
-        Between a tooth and a meridian, the same everywhere, rad.
-    hand : {'right', 'left'}
-        A tooth with a right hand turns about +y as it goes along +y.
-    angle : float
-        Where the middle of a tooth lies at the start of the segment, rad: 0 is +z.
-    model : {'pitch_cone', 'sector'}
-        Smeared, so that the segment of revolution stands for them, or resolved.
-
-    Raises
-    ------
-    SceneError
-        Teeth without height, that touch at the root, or that end in an edge.
-
     Examples
     --------
     >>> from solidgear.scene import Teeth
@@ -211,7 +192,7 @@ class Teeth(_Toothed):
 
 
 class Spline(_Toothed):
-    """Teeth on a cylinder, fields as those of :class:`Teeth`."""
+    """Teeth on a cylinder, with the fields of :class:`Teeth`."""
 
     on_cones: ClassVar[bool] = False
 

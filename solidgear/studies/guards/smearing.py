@@ -15,7 +15,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.meshing.teeth import lacking
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.outline import Outline
-from solidgear.scene.shaft import named
+from solidgear.scene.shaft import feature_labels
 from solidgear.studies.guards.notice import Notice, Notices, everything
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def smearing(scene: Scene) -> Notices:
     stiffness, frequency = expected(scene)
     mass, polar = _lacking(scene)
     cost = (
-        f"{named(_smeared(scene))}: smeared into the segment of revolution, which lacks "
+        f"{feature_labels(_smeared(scene))}: smeared into the segment of revolution, which lacks "
         f"{mass:+.3g} kg and {polar:+.3g} kg m^2 of them; stiffness is off by up to {100 * stiffness:.2g} %, "
         f"frequencies by up to {100 * frequency:.2g} % (as measured on an overhung pinion)"
     )
