@@ -253,7 +253,7 @@ def test_stiffness_between_two_held_points_lies_between_that_of_both_bodies(two_
 @pytest.mark.parametrize("one", ["step"], indirect=True)
 def test_frequencies_of_a_body_that_nothing_holds_lie_within_bounds(one):
     free = [searched(body, as_supports(()), 8, MODES, spare=True) for body in (one.body, one.fine)]
-    bounds = harmonic_bounds(one.scene, one.body, statics=False, found=free[0], wanted=MODES)
+    bounds = harmonic_bounds(one.scene, one.body, statics=False, modes=free[0], wanted=MODES)
     for name in MODES:
         value, exact = (found.named(name) for found in free)
         error = value.frequency_hz**2 - exact.frequency_hz**2
@@ -269,7 +269,7 @@ def test_waves_that_no_port_moves_with_have_bounds_too():
     found, truth = (sg.modes(one, scene, 8, ovalising=True) for one in (body, fine))
     oval = next(m for m in found.modes if m.waves == 2)
     exact = next(m for m in truth.modes if m.waves == 2)
-    bounds = harmonic_bounds(scene, body, statics=False, found=found, wanted=[oval.name])
+    bounds = harmonic_bounds(scene, body, statics=False, modes=found, wanted=[oval.name])
     error = oval.frequency_hz**2 - exact.frequency_hz**2
     bound = oval.frequency_hz**2 - bounds.frequency(oval) ** 2
     assert 0 < error <= LOCAL * bound <= LOCAL * WIDEST * error

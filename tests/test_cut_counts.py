@@ -7,7 +7,7 @@ from test_features import FLAT, KEY, mesh_of, shaft
 import solidgear as sg
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.cuts import edge_size, feature_size
-from solidgear.meshing.featured import without
+from solidgear.meshing.featured import submesh
 from solidgear.models.corrected_mesh import meshed_cuts, sizes
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.plan import tetrahedra_plan
@@ -38,7 +38,7 @@ def unknowns(scene, refinement):
 
 def of_whole(made):
     """Unknowns of a cut part from the mesh of it or of its half."""
-    nodes = without(made.mesh, ~made.cut).doflocs
+    nodes = submesh(made.mesh, ~made.cut).doflocs
     if made.plane is None:
         return 3 * nodes.shape[1]
     return 3 * (2 * nodes.shape[1] - int((np.abs(nodes[made.plane]) < 1e-9).sum()))

@@ -39,10 +39,10 @@ def test_a_sound_deck(ending, tmp_path):
     assert found.points.T == pytest.approx(POINTS, abs=1e-7)
     assert (found.cells.T == CELLS).all()
     assert not found.remarks
-    halves = [g for g in found.groups if g.tells]
+    halves = [g for g in found.groups if g.of_material]
     assert [len(g.elements) for g in halves] == [HALF, len(CELLS) - HALF]
     # another program's numbers may be any
-    assert found.named(0).startswith("line ") and found.named(0).endswith("element 1")
+    assert found.label(0).startswith("line ") and found.label(0).endswith("element 1")
 
 
 @pytest.mark.parametrize("ending", DECKS)
@@ -245,7 +245,7 @@ def test_sound_parts_have_no_pits():
     """
     from skfem import MeshTet1
 
-    from solidgear.meshing.featured import without
+    from solidgear.meshing.featured import submesh
     from solidgear.meshing.mesh_file import lost_elements
     from solidgear.meshing.tetrahedra import tetrahedra
     from solidgear.models.solid.featured import meshed
@@ -258,7 +258,7 @@ def test_sound_parts_have_no_pits():
     plan = tetrahedra_plan(keyed, [], size=None, graded_size=None, refinement=0.4, around=12)
     made = meshed(keyed, plan, 0.4, True)
     plan = tetrahedra_plan(hollow, [], size=None, graded_size=None, refinement=0.4, around=12)
-    for mesh in (without(made.mesh, ~made.cut), tetrahedra(hollow.outline, **plan).mesh):
+    for mesh in (submesh(made.mesh, ~made.cut), tetrahedra(hollow.outline, **plan).mesh):
         assert lost_elements(mesh).shape[1] == 0
         outside = mesh.f2t[0, mesh.boundary_facets()]
         seen = [

@@ -4,8 +4,8 @@ from math import pi
 
 import pytest
 
-from solidgear.meshing import enclosed
 from solidgear.meshing.gmsh_session import Session, import_gmsh
+from solidgear.meshing.step import volumes_of
 
 
 def drawn(gmsh, splines: bool) -> list[int]:
@@ -32,6 +32,6 @@ def test_splines_enclose_what_cylinders_do(splines):
     """
     gmsh = import_gmsh()
     with Session(gmsh):
-        volumes = enclosed.volumes_of(gmsh, drawn(gmsh, splines))
+        volumes = volumes_of(gmsh, drawn(gmsh, splines))
     exact = [pi * (0.03**2 - 0.02**2) * 0.05, 4 / 3 * pi * 0.02**3]
     assert volumes == pytest.approx(exact, rel=2e-5 if splines else 1e-12)

@@ -13,7 +13,7 @@ from skfem import MeshTet1, MeshTet2
 import solidgear as sg
 from solidgear.judge.record import ModelRecord, ModeRecord
 from solidgear.meshing.cuts import mirror_plane
-from solidgear.meshing.featured import FeaturedMesh, without
+from solidgear.meshing.featured import FeaturedMesh, submesh
 from solidgear.meshing.quality import MeshError, check_mesh
 from solidgear.models.solid.featured import featured_body, meshed
 from solidgear.models.solid.halves import half_blocks
@@ -255,7 +255,7 @@ def test_seats_do_not_take_floors_of_keyways_for_their_own():
     scene = shaft(key)
     wanted, made = mesh_of(scene)
 
-    solid = _isoparametric(without(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
+    solid = _isoparametric(submesh(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
     seats = Seats(solid, scene.segments, clipped=False)
     facets = seats(scene.bearings[0], "average")
     area = 2 * sum(a.sum() for _, _, a, _ in solid.over_facets(facets))
@@ -277,7 +277,7 @@ def test_seats_keep_straightened_faces_beside_a_flat(cut):
     scene = sg.Scene.from_parts([head, stub], port=port, bearings=bearings, features=(flat,))
     _, made = mesh_of(scene, 0.35, around=12)
     keep = ~made.cut | (not cut)
-    solid = _isoparametric(without(made.mesh, keep), "tet10", made.segment[keep])
+    solid = _isoparametric(submesh(made.mesh, keep), "tet10", made.segment[keep])
     facets = Seats(solid, scene.segments, clipped=False)(port, "average")
     area = sum(a.sum() for _, _, a, _ in solid.over_facets(facets)) * (1 + (made.plane is not None))
     r = 0.06755 / 2
@@ -360,7 +360,7 @@ def test_ends_of_a_keyway_are_round_on_coarse_meshes_too():
     rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.095)
     scene = sg.Scene.from_parts([rod], features=(key,))
     _, made = mesh_of(scene, 0.25, around=12, seats=False)
-    cut = 2 * check_mesh(without(made.mesh, made.cut)).volume
+    cut = 2 * check_mesh(submesh(made.mesh, made.cut)).volume
     assert cut == pytest.approx(key.volume(0.0475, 0.0), rel=4e-3)
 
 
@@ -373,7 +373,7 @@ def test_a_wide_hole_is_meshed_at_every_refinement(refinement):
     hole = CrossHole(name="h", segment="rod", y=0.1, diameter=0.02)
     scene = sg.Scene.from_parts([rod], features=(hole,))
     _, made = mesh_of(scene, refinement, around=12, seats=False)
-    cut = 2 * check_mesh(without(made.mesh, made.cut)).volume
+    cut = 2 * check_mesh(submesh(made.mesh, made.cut)).volume
     assert cut == pytest.approx(made.removed, rel=3e-3)
 
 
@@ -384,11 +384,11 @@ def test_a_cut_of_another_volume_is_refused(monkeypatch):
     def loses_some(mesh, keep):
         keep = keep.copy()
         keep[np.flatnonzero(keep)[::10]] = False
-        return without(mesh, keep)
+        return submesh(mesh, keep)
 
     scene = shaft(KEY)
     mesh_of(scene, 0.4, around=12, seats=False)
-    monkeypatch.setattr(featured, "without", loses_some)
+    monkeypatch.setattr(featured, "submesh", loses_some)
     with pytest.raises(
         MeshError, match=r'elements of "key" miss [\d.]+ % of .* more than 1%: raise'
     ):
@@ -408,7 +408,7 @@ def test_elements_keep_their_middle_nodes_in_large_meshes():
     nodes = mesh.doflocs.copy()
     nodes[:, middles] += 0.01 * np.arange(middles.size)
     mesh = replace(mesh, doflocs=nodes)
-    part = without(mesh, np.array([False, True]))
+    part = submesh(mesh, np.array([False, True]))
     ends = part.p[:, part.edges]
     own = part.doflocs[:, part.dofs.edge_dofs[0]]
     for k in range(part.edges.shape[1]):

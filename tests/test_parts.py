@@ -464,7 +464,7 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     """Floors and walls of a keyway that crosses a seat are none of it: its area is that of the
     cylinder less the opening.
     """
-    from solidgear.meshing.featured import without
+    from solidgear.meshing.featured import submesh
     from solidgear.models.solid.featured import meshed
     from solidgear.models.solid.mesh import _isoparametric
     from solidgear.models.solid.plan import tetrahedra_plan
@@ -479,7 +479,7 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     wanted = [(port, "average")]
     plan = tetrahedra_plan(scene, wanted, size=None, graded_size=None, refinement=0.5, around=16)
     made = meshed(scene, plan, 0.5, half=False)
-    mesh = _isoparametric(without(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
+    mesh = _isoparametric(submesh(made.mesh, ~made.cut), "tet10", made.segment[~made.cut])
     facets = Seats(mesh, [rod], True)(port, "average")
     area = sum(a.sum() for _, _, a, _ in mesh.over_facets(facets))
     opening = 2 * math.asin(0.009 / 0.03) * 0.03 * 0.06

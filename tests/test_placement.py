@@ -71,7 +71,7 @@ def test_the_frame_of_points_is_found_where_there_is_one_alone(stepped, points, 
     assert (found.unit, found.axis) == frame[:2]
     # a hundredth of the 1.25 mm within which a point is one of the surface
     assert found.origin == pytest.approx(frame[2], abs=2e-5) and away < 2e-5
-    placed = found.placing.of(points.T).T
+    placed = found.placing.to_scene(points.T).T
     assert placed[:, 1] == pytest.approx(ALONG, abs=2e-5)
 
 
@@ -79,7 +79,7 @@ def test_what_is_stated_is_taken_and_the_rest_is_looked_for(stepped):
     shifted = 1e3 * LINE @ SIDEWAYS.T + [50.0, 0.0, 100.0]
     whole = PointsTable(unit="mm", axis="x", origin=["50 mm", "0 mm", "100 mm"])
     found, _ = Places(shifted, None, stepped, revolved=True).frame(whole)
-    assert found.placing.of(shifted.T).T == pytest.approx(LINE, abs=1e-12)
+    assert found.placing.to_scene(shifted.T).T == pytest.approx(LINE, abs=1e-12)
     part = PointsTable(axis="x")
     found, _ = Places(1e3 * LINE @ SIDEWAYS.T, None, stepped, revolved=True).frame(part)
     assert found.unit == 1e-3

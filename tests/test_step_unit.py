@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from solidgear.meshing.part import length_unit
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.step_unit import unit_said
 from validation.step_parts import with_unit
 
 STEP = (Path(__file__).parents[1] / "geometry" / "shaft_step.step").read_text()
@@ -46,9 +46,9 @@ def added(text: str, step: str = STEP) -> bytes:
     ids=["metre", "inch", "context of its own", "part in inches", "part in metres"],
 )
 def test_a_unit_of_density_is_not_that_of_the_shape(content, unit):
-    assert unit_said(content) == unit
+    assert length_unit(content) == unit
 
 
 def test_solids_in_two_units_are_refused():
     with pytest.raises(MeshError, match=r"several units of length \(inch, mm\).*its solids"):
-        unit_said(added(INCH + METRE + PROPERTY + SECOND_SOLID))
+        length_unit(added(INCH + METRE + PROPERTY + SECOND_SOLID))

@@ -17,7 +17,7 @@ from solidgear.machine.isolated import isolated
 from solidgear.meshing.cuts import tool
 from solidgear.meshing.gmsh_session import Session, import_gmsh
 from solidgear.meshing.revolved import draw_revolved
-from solidgear.meshing.solids import axis_angle
+from solidgear.meshing.step import axis_angle
 from solidgear.scene import Keyway, Segment
 from solidgear.scene.blends import Corner
 from solidgear.scene.body_file import UNITS

@@ -1,4 +1,4 @@
-"""The one currency of the house: free elastic parts with ports, and what holds them."""
+"""The one currency of the house: free elastic parts with ports, and their supports."""
 
 from solidgear.body.model import FURTHER, SINE, Block, Body, Port, Reflection, component_rows
 from solidgear.body.supports import Supports, as_supports

@@ -1,4 +1,4 @@
-"""Cache of what solvers have worked out about a body: it dies with the body."""
+"""Cache of results that solvers have computed about a body: it dies with the body."""
 
 from __future__ import annotations
 
@@ -9,12 +9,7 @@ T = TypeVar("T")
 
 
 class Cache:
-    """Things by their type, one of each.
-
-    Parameters
-    ----------
-    *things : object
-        What is known from the beginning.
+    """Things by their type, one of each, some of them there from the beginning.
 
     Examples
     --------
@@ -32,17 +27,17 @@ class Cache:
         self._things: dict[type, Any] = {type(thing): thing for thing in things}
 
     def get(self, kind: type[T], make: Callable[[], T]) -> T:
-        """The thing of a type, made when first asked for."""
+        """Return the thing of a type, made at the first call."""
         if kind not in self._things:
             self._things[kind] = make()
         return self._things[kind]
 
     def find(self, kind: type[T]) -> T | None:
-        """The thing of a type, if there is one."""
+        """Return the thing of a type, if there is one."""
         return self._things.get(kind)
 
     def keep(self, thing: object) -> None:
-        """Keep a thing that was made with others; it takes the place of one of its type."""
+        """Keep a thing that was made with others; it takes the place of one of the same type."""
         self._things[type(thing)] = thing
 
     def clear(self) -> None:

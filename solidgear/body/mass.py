@@ -7,18 +7,12 @@ import scipy.sparse as sp
 
 
 class ScalarMass:
-    """``kron(scalar, I)``: the same mass for every component of a node's motion.
+    """``kron(scalar, I)``: the same mass, a symmetric (n, n) matrix in kg, for every component of a
+    node's motion, numbered together.
 
-    Takes a third of the memory of the full matrix of a solid.  It multiplies arrays and sparse
+    Takes a third of the memory of the full matrix of a solid. It multiplies arrays and sparse
     matrices, is added to sparse matrices, and is turned into one by :meth:`tocsr`; scipy leaves all
     mixed operations to it.
-
-    Parameters
-    ----------
-    scalar : (n, n) sparse
-        Symmetric, kg.
-    components : int
-        Unknowns of a node, numbered together.
 
     Examples
     --------
@@ -57,29 +51,31 @@ class ScalarMass:
         return ScalarMass(self.scalar.T.tocsr(), self.components)
 
     def diagonal(self) -> np.ndarray:
-        """(n c,) main diagonal."""
+        """Return the main diagonal (n c,)."""
         return np.repeat(self.scalar.diagonal(), self.components)
 
     def tocsr(self) -> sp.csr_matrix:
-        """The full (n c, n c) matrix, sparse."""
+        """Return the full (n c, n c) matrix, sparse."""
         return sp.kron(self.scalar, sp.eye(self.components), format="csr")
 
     def toarray(self) -> np.ndarray:
-        """The full (n c, n c) matrix, dense."""
+        """Return the full (n c, n c) matrix, dense."""
         return self.tocsr().toarray()
 
-    def __matmul__(self, other):
-        if sp.issparse(other):
-            return self.tocsr() @ other
-        other = np.asarray(other)
-        if other.ndim not in (1, 2) or len(other) != self.shape[1]:
-            raise ValueError(f"matmul: dimension mismatch, {self.shape} by {other.shape}")
+    def __matmul__(self, operand):
+        if sp.issparse(operand):
+            return self.tocsr() @ operand
+        operand = np.asarray(operand)
+        if operand.ndim not in (1, 2) or len(operand) != self.shape[1]:
+            raise ValueError(f"matmul: dimension mismatch, {self.shape} by {operand.shape}")
         # all components and columns of a node side by side
-        columns = other.reshape(self.scalar.shape[1], -1)
-        return (self.scalar @ columns).reshape(other.shape)
+        columns = operand.reshape(self.scalar.shape[1], -1)
+        return (self.scalar @ columns).reshape(operand.shape)
 
-    def __rmatmul__(self, other):
-        return other @ self.tocsr() if sp.issparse(other) else (self.T @ np.asarray(other).T).T
+    def __rmatmul__(self, operand):
+        return (
+            operand @ self.tocsr() if sp.issparse(operand) else (self.T @ np.asarray(operand).T).T
+        )
 
     def __mul__(self, factor: float) -> ScalarMass:
         if not np.isscalar(factor):
@@ -88,13 +84,13 @@ class ScalarMass:
 
     __rmul__ = __mul__
 
-    def __add__(self, other):
-        return self.tocsr() + other
+    def __add__(self, operand):
+        return self.tocsr() + operand
 
     __radd__ = __add__
 
-    def __sub__(self, other):
-        return self.tocsr() - other
+    def __sub__(self, operand):
+        return self.tocsr() - operand
 
-    def __rsub__(self, other):
-        return other - self.tocsr()
+    def __rsub__(self, operand):
+        return operand - self.tocsr()

@@ -1,4 +1,4 @@
-"""Names of modes: family, plane of bending and number, whatever model has found them."""
+"""Names of modes: family, plane of bending and number, whatever model computed them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,6 @@ _FORM = re.compile(
 
 class ModeName(Name):
     """Name of a mode.
-
-    Parameters
-    ----------
-    text : str
 
     Examples
     --------
@@ -38,20 +34,16 @@ class ModeName(Name):
         if isinstance(text, ModeName):
             return text
         self = super().__new__(cls, text)
-        found = _FORM.fullmatch(text)
-        assert found is not None  # any text is a family at least
-        self.rigid = found["rigid"] is not None
-        self.family, self.plane = found["family"], found["plane"] or ""
-        self.number = int(found["number"]) if found["number"] else None
+        match = _FORM.fullmatch(text)
+        assert match is not None  # any text is a family at least
+        self.rigid = match["rigid"] is not None
+        self.family, self.plane = match["family"], match["plane"] or ""
+        self.number = int(match["number"]) if match["number"] else None
         return self
 
 
 def numbered(labels: Iterable[str]) -> list[ModeName]:
-    """Names of modes from their families, and planes, in the order given.
-
-    Parameters
-    ----------
-    labels : iterable of str
+    """Return names of modes from their families, and planes, in the same order.
 
     Examples
     --------
@@ -67,16 +59,12 @@ def numbered(labels: Iterable[str]) -> list[ModeName]:
 
 
 def meant(name: str, names: Sequence[str]) -> int | None:
-    """Place of the mode that a name means.
+    """Return the place of the mode that a name means among modes in ascending order of frequency;
+    None where there is none.
 
-    Parameters
-    ----------
-    name : str
-        ``bending 2`` is the second mode of bending in ascending order, whether or not a mirror plane
-        gives bending the names of its planes: turning a keyway by a degree out of that plane must
-        not make it another mode.
-    names : sequence of str
-        Of modes in ascending order of frequency.
+    ``bending 2`` is the second mode of bending in ascending order, whether or not a mirror plane
+    gives bending the names of its planes: turning a keyway by a degree out of that plane must not
+    make it another mode.
 
     Examples
     --------
@@ -84,10 +72,10 @@ def meant(name: str, names: Sequence[str]) -> int | None:
     >>> [meant(name, names) for name in ("bending 1", "bending 2", "bending z 1", "torsion 1")]
     [0, 1, 1, None]
     """
-    asked, every = ModeName(name), [ModeName(one) for one in names]
-    in_order = asked.family == BENDING and asked.number is not None and not asked.plane
-    if not in_order or not any(one.plane for one in every):
+    wanted, modes = ModeName(name), [ModeName(text) for text in names]
+    in_order = wanted.family == BENDING and wanted.number is not None and not wanted.plane
+    if not in_order or not any(mode.plane for mode in modes):
         return names.index(name) if name in names else None
     # where bearings couple both planes for some modes only, these have the names of no plane
-    own = [k for k, one in enumerate(every) if one.family == BENDING and one.number is not None]
-    return own[asked.number - 1] if asked.number and asked.number <= len(own) else None
+    bending = [k for k, m in enumerate(modes) if m.family == BENDING and m.number is not None]
+    return bending[wanted.number - 1] if wanted.number and wanted.number <= len(bending) else None

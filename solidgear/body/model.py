@@ -33,34 +33,26 @@ SINE = 2000
 Reflection = tuple[np.ndarray, np.ndarray]
 
 
-#: unknowns (n, k) to what spin makes of them (n, k), kg times them
+#: unknowns (n, k) to the effect of spin on them (n, k), kg times them
 Swirl = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Port:
-    """A six-component point on the axis through which a body is loaded and held.
-
-    Attributes
-    ----------
-    name : str
-    y : float
-        Axial position of the reference point, m.
-    attachment : str
-        How the point is tied to the material: ``average``, ``rigid``, ``section`` or ``node``.
-    x, z : float
-        Its place beside the axis, m.
-    """
+    """A six-component point on the axis through which a body is loaded and held."""
 
     name: str
-    y: float
+    y: float  #: of the reference point, m
+    #: to the material: ``average``, ``rigid``, ``section`` or ``node``
     attachment: str
+    #: x, z: place beside the axis, m
     x: float = 0.0
     z: float = 0.0
 
 
 def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarray:
-    """Places of some components (0 to 5) of some ports in a vector of six per port, port by port.
+    """Return the places of some components (0 to 5) of some ports in a vector of six per port, port
+    by port.
 
     Examples
     --------
@@ -105,10 +97,11 @@ class Block:
     def mirrored(
         self, name: str, components: tuple[int, ...], index: int, signs: tuple[float, ...]
     ) -> Block:
-        """The same block in the other bending plane, with its own components, and a sign for each.
+        """Return the same block in the other bending plane, with its own components, and a sign for
+        each.
 
-        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on the
-        components. `index` is the place of this block in its body.
+        In the x plane the matrices of the z plane act on ``(u_x, -thz)``: same matrices, signs on
+        the components. `index` is the place of this block in its body.
         """
         count = self.ports.shape[0] // len(signs)
         ports = sp.diags(np.tile(signs, count)) @ self.ports
@@ -129,9 +122,9 @@ class Block:
         return self.stiffness.shape[0]
 
     def section_loads(self, stations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Loads (n, s c) and Gram matrix (s c, s c) that give the section motions of shapes at ascending
-        stations (s,), m, from end to end of the shaft, by :mod:`solidgear.body.sections`; and the index
-        ``6 * station + component`` of every column.
+        """Return loads (n, s c) and Gram matrix (s c, s c) that give the section motions of shapes
+        at ascending stations (s,), m, from end to end of the shaft, by
+        :mod:`solidgear.body.sections`; and the index ``6 * station + component`` of every column.
         """
         columns = [6 * s + c for s in range(len(stations)) for c in self.components]
         loads, gram = (
@@ -141,7 +134,7 @@ class Block:
 
 
 class _Families(dict[int, "Body"]):
-    """Circumferential families that were asked for, by their number of waves."""
+    """Circumferential families built before, by their number of waves."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -251,13 +244,13 @@ class Body(Displayed):
             raise SolidgearError(
                 f"the {self.fidelity} body has no motions of {n} waves around its axis"
             )
-        kept = self.cache.get(_Families, _Families)
-        if n not in kept:
+        families = self.cache.get(_Families, _Families)
+        if n not in families:
             scale = (2 * np.pi * self.further.light(n)) ** 2
-            kept[n] = Body(
+            families[n] = Body(
                 self.fidelity, (self.further.block(n),), (), scale, self.length, self.mesh
             )
-        return kept[n]
+        return families[n]
 
     def surface(self, vectors: Mapping[int, np.ndarray]) -> Surface:
         """Surface of the body moved by a vector of unknowns.
@@ -345,8 +338,8 @@ class Body(Displayed):
             if not block.components:
                 continue
             scale = (abs(block.stiffness) @ abs(block.rigid)).max(axis=0)
-            # A shaft that is one rigid seat has no stiffness but rounding: it is held against what
-            # its mass would feel at the lowest elastic frequency.
+            # A shaft that is one rigid seat has no stiffness but rounding: it is compared with the
+            # inertia of its mass at the lowest elastic frequency.
             inertia = self.scale * abs(block.mass @ block.rigid).max(axis=0)
             met = abs(block.stiffness @ block.rigid) / np.maximum(scale, inertia)
             worst = max(worst, float(met.max()))

@@ -18,14 +18,12 @@ MERIDIANS = 12
 
 @dataclass(frozen=True)
 class Rings:
-    """Circles (r, y), the pieces of meridian (k, 2) between them with material on their left, and
-    those to draw.
-    """
+    """Circles around the axis, and pieces of meridian between them."""
 
-    r: np.ndarray
-    y: np.ndarray
-    pieces: np.ndarray
-    drawn: np.ndarray
+    r: np.ndarray  #: m
+    y: np.ndarray  #: m
+    pieces: np.ndarray  #: (k, 2) circles at both ends, material on the left
+    drawn: np.ndarray  #: circles to draw
 
 
 @dataclass(frozen=True)
@@ -41,8 +39,11 @@ class Wave:
 
 
 def wave(n, start, radial, tangential, axial, swirl=0.0) -> Wave:
-    full = np.broadcast_arrays(*(np.asarray(a, float) for a in (radial, tangential, axial, swirl)))
-    return Wave(n, start, *full)
+    arrays = np.broadcast_arrays(
+        *(np.asarray(a, float) for a in (radial, tangential, axial, swirl))
+    )
+    radial, tangential, axial, swirl = arrays
+    return Wave(n, start, radial, tangential, axial, swirl)
 
 
 def _on_axis(rings: Rings) -> np.ndarray:
@@ -50,7 +51,7 @@ def _on_axis(rings: Rings) -> np.ndarray:
 
 
 def ring_of(rings: Rings) -> np.ndarray:
-    """Ring of every point of the surface."""
+    """Return the ring of every point of the surface."""
     return np.repeat(np.arange(len(rings.r)), np.where(_on_axis(rings), 1, TURNS))
 
 
@@ -74,11 +75,13 @@ def revolve(rings: Rings, waves: list[Wave]) -> Surface:
 
     turn = np.arange(TURNS)
 
-    def at(which, k):
+    def point(which, k):
         return first[which][:, None] + np.where(on_axis[which][:, None], 0, k % TURNS)
 
     a, b = rings.pieces[~on_axis[rings.pieces].all(axis=1)].T
-    quads = np.stack([at(a, turn), at(a, turn + 1), at(b, turn + 1), at(b, turn)], axis=-1)
+    quads = np.stack(
+        [point(a, turn), point(a, turn + 1), point(b, turn + 1), point(b, turn)], axis=-1
+    )
     from_axis, to_axis = on_axis[a], on_axis[b]
     faces = quads[~(from_axis | to_axis)].reshape(-1, 4)
     triangles = np.concatenate(
@@ -90,8 +93,8 @@ def revolve(rings: Rings, waves: list[Wave]) -> Surface:
     spokes = np.arange(0, TURNS, TURNS // MERIDIANS)
     circles = rings.drawn[~on_axis[rings.drawn]]
     lines = [
-        np.stack([at(a, spokes), at(b, spokes)], axis=-1),
-        np.stack([at(circles, turn), at(circles, turn + 1)], axis=-1),
+        np.stack([point(a, spokes), point(b, spokes)], axis=-1),
+        np.stack([point(circles, turn), point(circles, turn + 1)], axis=-1),
     ]
     return Surface(
         points, displacement, faces, triangles, np.concatenate([x.reshape(-1, 2) for x in lines])

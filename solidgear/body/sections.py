@@ -22,7 +22,8 @@ Sections = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
-    """(p, s) hat functions of ascending stations at some places (p,), m, not beyond the outer ones.
+    """Return (p, s) hat functions of ascending stations at some places (p,), m, not beyond the
+    outer ones.
 
     Examples
     --------
@@ -31,9 +32,9 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
     array([[0.75, 0.25, 0.  ],
            [0.  , 1.  , 0.  ]])
     """
-    left = np.clip(np.searchsorted(stations, y, side="right") - 1, 0, len(stations) - 2)
-    t = (y - stations[left]) / (stations[left + 1] - stations[left])
-    values, columns = np.column_stack([1 - t, t]), np.column_stack([left, left + 1])
+    below = np.clip(np.searchsorted(stations, y, side="right") - 1, 0, len(stations) - 2)
+    t = (y - stations[below]) / (stations[below + 1] - stations[below])
+    values, columns = np.column_stack([1 - t, t]), np.column_stack([below, below + 1])
     return sp.csr_matrix(
         (values.ravel(), columns.ravel(), np.arange(0, 2 * len(y) + 1, 2)),
         shape=(len(y), len(stations)),
@@ -43,19 +44,19 @@ def hats(y: np.ndarray, stations: np.ndarray) -> sp.csr_matrix:
 def from_points(
     mass: Any, rigid: np.ndarray, y: np.ndarray, components: tuple[int, ...]
 ) -> Sections:
-    """Sections of a body whose unknowns are values at points ``y`` (m), closer to each other than
-    the stations; one with NaN is no value at a point and takes no part in the fields. `rigid` (n,
-    c) are rigid motions about the origin.
+    """Return sections of a body whose unknowns are values at points ``y`` (m), closer to each other
+    than the stations; one with NaN is no value at a point and takes no part in the fields. `rigid`
+    (n, c) are rigid motions about the origin.
     """
-    known = ~np.isnan(y)
-    place = np.where(known, y, 0.0)
+    at_point = ~np.isnan(y)
+    place = np.where(at_point, y, 0.0)
     # A rigid tilt about the origin is a section tilt plus y times a translation: without the latter
-    # it is what a section does about its own centre.
-    local = np.where(known[:, None], rigid, 0.0)
-    at = {c: k for k, c in enumerate(components)}
+    # it is the motion of a section about its own centre.
+    local = np.where(at_point[:, None], rigid, 0.0)
+    column = {c: k for k, c in enumerate(components)}
     for tilt, translation, sign in ((3, 2, 1.0), (5, 0, -1.0)):
-        if tilt in at and translation in at:
-            local[:, at[tilt]] -= sign * place * local[:, at[translation]]
+        if tilt in column and translation in column:
+            local[:, column[tilt]] -= sign * place * local[:, column[translation]]
 
     def sections(stations):
         count = len(components)
@@ -70,7 +71,7 @@ def from_points(
 
 
 def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
-    """Sections in fewer unknowns v, where ``u = reduction v``, from those of u."""
+    """Return sections in fewer unknowns v, where ``u = reduction v``, from those of u."""
 
     def reduced(stations):
         loads, gram = sections(stations)
@@ -80,11 +81,11 @@ def through(sections: Sections, reduction: sp.csr_matrix) -> Sections:
 
 
 def signed(sections: Sections, signs: tuple[float, ...]) -> Sections:
-    """Sections with the sign of components changed, as in the other bending plane."""
+    """Return sections with the sign of components changed, as in the other bending plane."""
 
-    def other(stations):
+    def mirrored(stations):
         loads, gram = sections(stations)
         sign = np.tile(signs, len(stations))
         return loads * sign, gram * np.outer(sign, sign)
 
-    return other
+    return mirrored

@@ -1,4 +1,4 @@
-"""Attachments of a body: springs between its ports and ground, and rigid masses on its ports."""
+"""Attachments of a body: springs between ports and ground, and rigid masses on ports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from solidgear.springs import root_of
 if TYPE_CHECKING:
     from solidgear.scene import Bearing, PointMass, Scene
 
-    #: what :func:`as_supports` takes
+    #: sources of :func:`as_supports`
     Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
 
 
@@ -105,9 +105,11 @@ class Supports:
         return np.concatenate(places) if places else np.zeros(0, int)
 
     def _refuse_absent(self, body: Body) -> None:
-        """Springs on motions that a body was built without would find it rigid there."""
-        held = {int(row) % 6 for row in np.flatnonzero(self.stiffness.any(axis=1))}
-        absent = held - {c for block in body.blocks for c in block.components}
+        """Refuse springs on motions that a body was built without: they would find it rigid
+        there.
+        """
+        resisted = {int(row) % 6 for row in np.flatnonzero(self.stiffness.any(axis=1))}
+        absent = resisted - {c for block in body.blocks for c in block.components}
         if absent:
             names = " ".join(DOF_NAMES[c] for c in sorted(absent))
             raise SolidgearError(
@@ -142,9 +144,9 @@ class Supports:
         Supports
         """
         keep = np.tile(np.isin(np.arange(6), list(components)), len(self.ports))
-        kept = np.outer(keep, keep)
-        inertia = None if self.inertia is None else np.where(kept, self.inertia, 0.0)
-        return replace(self, stiffness=np.where(kept, self.stiffness, 0.0), inertia=inertia)
+        both_kept = np.outer(keep, keep)
+        inertia = None if self.inertia is None else np.where(both_kept, self.inertia, 0.0)
+        return replace(self, stiffness=np.where(both_kept, self.stiffness, 0.0), inertia=inertia)
 
     def on_stations(self, stations: Iterable[Any], name: Callable[[Any], str] | None = None):
         """The same on ports as they are attached in a scene whose body carries several attachments.
@@ -159,8 +161,8 @@ class Supports:
         -------
         Supports
         """
-        known = {station.name: station for station in stations}
-        carriers = [known[port] for port in self.ports]
+        by_name = {station.name: station for station in stations}
+        carriers = [by_name[port] for port in self.ports]
         if name is not None:
             return replace(self, ports=tuple(map(name, carriers)))
         return replace(self, attachments=tuple(s.attachment for s in carriers))
@@ -196,26 +198,17 @@ class Supports:
 
 
 def separated(basis: np.ndarray) -> np.ndarray:
-    """Another orthonormal basis of the same space, in which what has nothing to do with one another
-    shares no column: a coordinate that lies in the space is a column of its own, and what rounding
-    mixes into it is an exact zero.
-
-    Parameters
-    ----------
-    basis : (n, k) ndarray
-        Orthonormal.
-
-    Returns
-    -------
-    (n, k) ndarray
+    """Return another orthonormal basis (n, k) of the same space, in which motions that have nothing
+    to do with one another share no column: a coordinate that lies in the space is a column of its
+    own, and rounding mixed into it becomes an exact zero.
     """
     onto = basis @ basis.T
     onto[np.abs(onto) < 1e-9] = 0.0
     count, group = connected_components(sp.csr_array(onto != 0), directed=False)
     out = np.zeros(basis.shape)
     column = 0
-    for one in range(count):
-        rows = np.flatnonzero(group == one)
+    for number in range(count):
+        rows = np.flatnonzero(group == number)
         if len(rows) == 1:
             inside = np.ones((1, int(onto[rows[0], rows[0]] > 0.5)))
         else:
@@ -227,15 +220,12 @@ def separated(basis: np.ndarray) -> np.ndarray:
 
 
 def as_supports(source: Holding) -> Supports:
-    """Supports of a scene (housing and masses included), of bearings (neither), or as they are.
+    """Return the supports of a scene (housing and masses included), of bearings (neither), or
+    supports as they are.
 
     A housing spring sits between ground and the axially rigid ring that carries all outer races:
-    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion. Of a
-    housing that gives in other motions too :func:`solidgear.springs.in_series` tells what is left.
-
-    Parameters
-    ----------
-    source : Scene, Supports or iterable of Bearing
+    eliminating that ring leaves ``K - K e (e'K e + k)^-1 e'K`` with e the common axial motion. A
+    housing that yields in other motions too is eliminated by :func:`solidgear.springs.in_series`.
 
     Examples
     --------
@@ -266,11 +256,11 @@ def as_supports(source: Holding) -> Supports:
 
 
 def _with_masses(names: tuple[str, ...], k: np.ndarray, masses: Iterable[PointMass]) -> Supports:
-    """Springs of bearings, with masses on their ports and on further ones."""
+    """Return the springs of bearings, with masses on their ports and on further ones."""
     ports = tuple(dict.fromkeys((*names, *(mass.station for mass in masses))))
     stiffness, inertia = np.zeros((2, 6 * len(ports), 6 * len(ports)))
     stiffness[: len(k), : len(k)] = k
     for mass in masses:
-        at = 6 * ports.index(mass.station) + np.arange(6)
-        inertia[np.ix_(at, at)] += mass.matrix
+        rows = 6 * ports.index(mass.station) + np.arange(6)
+        inertia[np.ix_(rows, rows)] += mass.matrix
     return Supports(ports, stiffness, (), inertia)

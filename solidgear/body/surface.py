@@ -1,4 +1,4 @@
-"""Drawing of a body: its surface moved by a vector of unknowns, and the mesh of a volume."""
+"""Drawing of a body: the surface moved by a vector of unknowns, and the mesh of a volume."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """A mesh of a volume whose unknowns are displacements x, y, z of its nodes, node by node."""
+    """A mesh of a volume whose unknowns are displacements x, y, z of the nodes, node by node."""
 
     element: str  #: one of :data:`solidgear.elements.ELEMENTS`
     nodes: np.ndarray  #: (3, n) m
@@ -44,7 +44,7 @@ class Volume:
 
 
 class Drawing(Protocol):
-    """Geometry that a builder leaves with its body for pictures and files."""
+    """Geometry that a builder leaves with the body for pictures and files."""
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Surface moved by the unknowns of some blocks, by name; blocks left out stand still."""
@@ -54,7 +54,7 @@ class Drawing(Protocol):
 
 
 def mesh_unknowns(body: Body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarray]:
-    """Block name -> unknowns of its mesh, with rigidly tied seats expanded.
+    """Return block name -> unknowns of the mesh, with rigidly tied seats expanded.
 
     Raises
     ------

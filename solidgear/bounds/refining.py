@@ -1,9 +1,9 @@
-"""Meshes of a harmonic solid that follow where its bars come from.
+"""Meshes of a harmonic solid that are refined where their error bars come from.
 
-The first mesh has one cell a band and strip and no cut at all. Where the local problems show that
-a corner holds the bar back, the cells around it are cut towards it, as often as theory says that it
-takes: a cut of ratio q leaves the share ``q^(2 a)`` of what a corner of exponent a costs. What is
-left away from corners falls with the order of the elements.
+The first mesh has one cell a band and strip and no cut at all. Where the local problems show that a
+corner decides the error bar, the cells around it are cut towards it, as often as theory says that
+it takes: a cut of ratio q leaves the share ``q^(2 a)`` of the cost of a corner of exponent a. The
+error away from corners falls with the order of the elements.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
 FIRST, HIGHEST = 3, 8
 #: meshes that are tried at most
 MOST_MESHES = 10
-#: share of the tolerance that a refined mesh is made for: bars of several places add up
+#: share of the tolerance that a refined mesh is made for: error bars of several places add up
 AIM = 0.7
-#: cells beside a corner that was cut leave about this share of what it cost before, and an order
-#: more a ninth of what is left: neither decides a bar, both how many meshes are tried
-BESIDE, BY_ORDER = 0.08, 9.0
+#: cells beside a corner that was cut leave about this share of its cost before, and an order more a
+#: ninth of the remaining error: neither decides an error bar, both how many meshes are tried
+BY_CUT, BY_ORDER = 0.08, 9.0
 #: cuts that one step may add to a corner, and orders to the mesh
 CUTS, ORDERS = 4, 2
 #: largest cell of the first mesh, in local outer radii
 SIZE = 4.0
-#: orders that left more than this each of a bar are no longer what it lacks
+#: orders that left more than this each of an error bar are no longer the cure
 SLOW = 0.5
 
 #: exponents of displacement at the ends of rigid and of averaged seats, planes and joined materials
@@ -47,20 +47,20 @@ EXPONENT = {"rigid": 0.5, "load": 1.0, "section": 1.0, "material": 0.7}
 
 @dataclass(frozen=True)
 class Meshed:
-    """A mesh of a harmonic solid as options of its builder."""
+    """A mesh of a harmonic solid as options of the builder."""
 
     order: int = FIRST
     size: float = SIZE  #: of the largest cells, in local outer radii
     #: corner, y and r in m, to cuts
     cuts: Mapping[tuple[float, float], int] = field(default_factory=dict)
     across: tuple[tuple[float, float], ...] = ()  #: points that further lines pass, y and r in m
-    given: Mapping[str, Any] = field(default_factory=dict)  #: options that are not about the mesh
-    #: what was away from corners when this mesh was asked for; zero at the start
+    fixed: Mapping[str, Any] = field(default_factory=dict)  #: options that are not about the mesh
+    #: error away from corners when this mesh was chosen; zero at the start
     smooth: float = 0.0
     raised: int = 0  #: by how many orders it was raised since
 
     def options(self) -> dict[str, Any]:
-        """For the builder."""
+        """Return the options of the builder."""
         return {
             "order": self.order,
             "layers": 0,
@@ -69,21 +69,13 @@ class Meshed:
             "plain": True,
             "across": self.across,
             "cuts": tuple((y, r, count) for (y, r), count in sorted(self.cuts.items())),
-            **self.given,
+            **self.fixed,
         }
 
 
 def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed:
-    """The next mesh.
-
-    Parameters
-    ----------
-    body : Body
-        Built on the mesh.
-    score : (ne,) ndarray
-        Of every cell, its share of the relative bar of what needs it most.
-    tol : float
-        Relative.
+    """Return the next mesh after the one that the body was built on, from the share of every cell
+    (ne,) in the relative error bar of the result that needs it most, and a relative tolerance.
     """
     corners, mesh_of = richer_space(coned(scene), body).corners, body.geometry
     cells, uncut = mesh_of.meridian.cells, mesh_of.uncut  # type: ignore[union-attr]
@@ -94,26 +86,26 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
         needs[vertex] = float(score[around].sum()), corner_strength(kind, angle)
         away[around] = 0.0
     aim = AIM * tol
-    each = aim / 2 / max(1, sum(share > aim / 8 for share, _ in needs.values()))
-    cuts, lines, beside = dict(mesh.cuts), Lines(uncut, mesh.across), 0.0
+    most = aim / 2 / max(1, sum(share > aim / 8 for share, _ in needs.values()))
+    cuts, lines, near_cuts = dict(mesh.cuts), Lines(uncut, mesh.across), 0.0
     for vertex, (share, exponent) in needs.items():
-        if share <= each:
+        if share <= most:
             continue
         place = place_of(mesh_of.meridian.points[:, vertex])  # type: ignore[union-attr]
-        more = math.ceil(math.log(share / each) / (2 * exponent * math.log(1 / CUT_RATIO)))
+        more = math.ceil(math.log(share / most) / (2 * exponent * math.log(1 / CUT_RATIO)))
         if place not in cuts:
-            lines.before(place)
+            lines.cut_slender(place)
         cuts[place] = min(cuts.get(place, 0) + min(max(more, 1), CUTS), 12)
-        beside += BESIDE * share
-    smooth = max(float(away.sum()), beside)
+        near_cuts += BY_CUT * share
+    smooth = max(float(away.sum()), near_cuts)
     order = mesh.order
     if smooth > aim / 2:
         slow = mesh.raised > 0 and smooth > SLOW**mesh.raised * mesh.smooth
-        if order >= HIGHEST or slow and not beside:
+        if order >= HIGHEST or slow and not near_cuts:
             lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
         else:
             rate = BY_ORDER
-            if mesh.raised and not beside:  # as orders did before
+            if mesh.raised and not near_cuts:  # as orders did before
                 rate = min(max((mesh.smooth / smooth) ** (1 / mesh.raised), 1 / SLOW), BY_ORDER)
             more = math.ceil(math.log(2 * smooth / aim) / math.log(rate))
             if order + more > HIGHEST:
@@ -132,21 +124,16 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
 
 
 def corner_strength(kind: str, angle: float) -> float:
-    """Exponent of displacement at a corner (Williams 1952): the less, the sharper.
-
-    Parameters
-    ----------
-    kind : str
-        See :func:`solidgear.bounds.singular.singular_vertices`.
-    angle : float
-        Of the material, rad.
+    """Return the exponent of displacement at a corner (Williams 1952) of a kind of
+    :func:`solidgear.bounds.singular.singular_vertices` and an angle of material, rad: the less, the
+    sharper.
 
     Examples
     --------
     >>> round(corner_strength("re-entrant", 3 * math.pi / 2), 3)
     0.544
     """
-    own = EXPONENT.get(kind, 1.0)
+    exponent = EXPONENT.get(kind, 1.0)
     if kind == "rigid" and angle > math.pi + 0.02:
         return 1 / 3
-    return min(own, corner_exponent(angle)) if angle > math.pi else own
+    return min(exponent, corner_exponent(angle)) if angle > math.pi else exponent

@@ -1,8 +1,8 @@
-"""The few constants that decide a bar and are measured, not derived.
+"""The few constants that decide an error bar and are measured, not derived.
 
 They stand in ``safety.json`` with the date and the shafts that they were measured on. That of local
-problems is judged by ``python -m validation.campaign answers``. Nothing else that is measured widens or narrows
-a bar.
+problems is judged by ``python -m validation.campaign answers``. Nothing else that is measured
+widens or narrows an error bar.
 """
 
 from __future__ import annotations
@@ -13,25 +13,25 @@ from importlib.resources import files
 
 _MEASURED = json.loads((files("solidgear.bounds") / "safety.json").read_text("utf-8"))
 
-#: on bounds by local problems: what the richer space does not see
+#: on bounds by local problems: errors that the richer space does not see
 LOCAL: float = _MEASURED["local problems"]["safety"]
 
 
 @dataclass(frozen=True)
 class Safety:
-    """Measured constants of a solid whose bars rest on two meshes."""
+    """Measured constants of a solid whose error bars rest on two meshes."""
 
-    #: bar over what a change of mesh leaves, after two meshes and after more
+    #: error bar over the change by the last mesh, after two meshes and after more
     steps: tuple[float, float]
-    #: share, share_of_free_modes: of what features change of a number, and of a mode that no
-    #: bearing holds: the bar is no less, for two meshes may agree by accident. Zero where the
+    #: share, share_of_free_modes: least error bar over the change that features make to a number,
+    #: and to a mode that no bearing holds, for two meshes may agree by accident. Zero where the
     #: meshes hold the whole part.
     share: float = 0.0
     share_of_free_modes: float = 0.0
-    shrinks: float = 1.0  #: what each finer mesh leaves of that
+    shrinks: float = 1.0  #: share of that which each finer mesh leaves
 
     def least_share(self, free: bool, meshes: int) -> float:
-        """Share of what features change that a bar holds at least after some meshes.
+        """Return the least error bar after some meshes, over the change that features make.
 
         Examples
         --------
@@ -48,7 +48,7 @@ def _steps(name: str) -> tuple[float, float]:
     return float(two), float(more)
 
 
-#: of meshes with layers towards corners, of plain refinement, and of what features change
+#: of meshes with layers towards corners, of plain refinement, and of features
 LAYERS, REFINEMENT = Safety(_steps("layers")), Safety(_steps("refinement"))
 FEATURES = Safety(
     _steps("features"),

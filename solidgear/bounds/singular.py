@@ -20,29 +20,22 @@ BENT = 0.02
 def singular_vertices(
     scene: Scene, ports: Sequence[Port], flat: Meridian, tangents: np.ndarray
 ) -> dict[int, tuple[str, float]]:
-    """Vertices of a mesh at which displacements are not smooth.
+    """Return the vertices of a mesh at which displacements are not smooth: kind, and angle of the
+    material there, rad.
 
-    Parameters
-    ----------
-    tangents : (ne, 4, 2, 2) ndarray
-        Derivatives of position (last) along both coordinates at the corners of every cell.
-
-    Returns
-    -------
-    dict of int to (str, float)
-        Kind, and the angle of the material there, rad. ``re-entrant``, ``rigid`` (end of a seat that
-        cannot deform), ``section`` (a plane that carries a load), ``material`` or ``load`` (end of
-        another seat).
+    Kinds are ``re-entrant``, ``rigid`` (end of a seat that cannot deform), ``section`` (a plane
+    that carries a load), ``material`` or ``load`` (end of another seat). `tangents` (ne, 4, 2, 2)
+    are the derivatives of position (last) along both coordinates at the corners of every cell.
     """
     points, tol = flat.points, 1e-9 * scene.length
     outside = _outside(flat)
     angle = np.zeros(points.shape[1])
     # towards the next and the previous corner, in the sense of the walk
-    for corner, (one, other, turn) in enumerate(
+    for corner, (first, second, turn) in enumerate(
         ((0, 1, (1, 1)), (1, 0, (1, -1)), (0, 1, (-1, -1)), (1, 0, (-1, 1)))
     ):
-        u = tangents[:, corner, one] * turn[0]
-        v = tangents[:, corner, other] * turn[1]
+        u = tangents[:, corner, first] * turn[0]
+        v = tangents[:, corner, second] * turn[1]
         cross = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
         np.add.at(angle, flat.cells[corner], np.arctan2(cross, np.einsum("ix,ix->i", u, v)))
     out = {int(v): "re-entrant" for v in np.flatnonzero(outside & (angle > np.pi + BENT))}
@@ -53,10 +46,10 @@ def singular_vertices(
         station = stations[port.name]
         section = port.attachment == "section"
         kind = "load" if port.attachment == "average" else port.attachment
-        on = outside if section else surface
+        candidates = outside if section else surface
         for y in [station.y] if section else [station.lo, station.hi]:
-            for found in np.flatnonzero(on & (np.abs(points[1] - y) < tol)):
-                vertex = int(found)
+            for number in np.flatnonzero(candidates & (np.abs(points[1] - y) < tol)):
+                vertex = int(number)
                 # a rigid seat that ends in a corner is the sharpest of all
                 if kind == "rigid" or out.get(vertex, "load") == "load":
                     out[vertex] = kind
@@ -67,7 +60,9 @@ def singular_vertices(
 
 
 def _outside(flat: Meridian) -> np.ndarray:
-    """Vertices on the surface, the ends of the axis included where faces meet it."""
+    """Return a mask of the vertices on the surface, the ends of the axis included where faces meet
+    it.
+    """
     sides = np.sort(
         np.concatenate([flat.cells[[a, b]] for a, b in ((0, 1), (1, 2), (2, 3), (3, 0))], axis=1),
         axis=0,
@@ -81,15 +76,15 @@ def _outside(flat: Meridian) -> np.ndarray:
 
 
 def _joined(scene: Scene, flat: Meridian) -> list[int]:
-    """Vertices at which materials of different stiffness meet."""
+    """Return the vertices at which materials of different stiffness meet."""
     laws = [(s.material.shear_modulus, s.material.nu) for s in scene.segments]
     number = {law: k for k, law in enumerate(dict.fromkeys(laws))}
     if len(number) == 1:
         return []
-    of = np.array([number[laws[s]] for s in flat.segment])
+    law_of_cell = np.array([number[laws[s]] for s in flat.segment])
     least = np.full(flat.points.shape[1], len(laws))
     most = np.full(flat.points.shape[1], -1)
     for corner in range(4):
-        np.minimum.at(least, flat.cells[corner], of)
-        np.maximum.at(most, flat.cells[corner], of)
+        np.minimum.at(least, flat.cells[corner], law_of_cell)
+        np.maximum.at(most, flat.cells[corner], law_of_cell)
     return [int(v) for v in np.flatnonzero(least < most)]

@@ -65,7 +65,7 @@ def bounded(
         coned(scene),
         body,
         statics=statics is not None,
-        found=found,
+        modes=found,
         wanted=list(dict.fromkeys(asked)),
         safety=LOCAL,
         later=later,
@@ -109,7 +109,7 @@ def mode_bars(scene: Scene, body: Body, supports: Supports, found: ModeSet) -> d
         shapes = sum(m.multiplicity for m in found.modes)
         every = widened(found, modes(body, supports, shapes + ABOVE, ovalising=True))
     bounds = harmonic_bounds(
-        coned(scene), body, statics=False, found=every, wanted=names, safety=LOCAL
+        coned(scene), body, statics=False, modes=every, wanted=names, safety=LOCAL
     )
     last = _highest(every)
     return {

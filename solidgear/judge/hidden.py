@@ -41,7 +41,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, found: ModeSet) 
     known = replace(every, beyond=(*every.beyond, *every.above), above=())
     names = [mode.name for mode in (*_elastic(found), *first)]
     bounds = harmonic_bounds(
-        coned(scene), body, statics=False, found=known, wanted=names, safety=LOCAL
+        coned(scene), body, statics=False, modes=known, wanted=names, safety=LOCAL
     )
     least = {mode.name: bounds.frequency(mode) * (1 - mode.error) for mode in first}
     limit = min([found.evidence[COUNTED], *least.values()])

@@ -98,7 +98,7 @@ class Loop(ABC):
         self.plan = model.meshes_of(scene, options or {})
         self.most = most
         #: of a harmonic solid, the one it begins with, and later the last one
-        self.mesh = Meshed(given=self.plan.levels[0])
+        self.mesh = Meshed(fixed=self.plan.levels[0])
         self.levels: list[Numbers] = []
         self.sizes: list[tuple[float, ...]] = []
         self.steps: list[Step] = []

@@ -45,19 +45,20 @@ class Tabulated:
         return self.jac.transpose(2, 3, 0, 1)
 
     def gradient(self, factor: np.ndarray) -> np.ndarray:
-        """(ne, dim, nb, nq) gradients in physical coordinates, times a factor (ne, nq)."""
-        to = self.inverse * factor
-        dim = len(to)
-        out = np.empty((to.shape[2], dim, *self.value.shape))
+        """Return (ne, dim, nb, nq) gradients in physical coordinates, times a factor (ne, nq)."""
+        scaled = self.inverse * factor
+        dim = len(scaled)
+        out = np.empty((scaled.shape[2], dim, *self.value.shape))
         for i in range(dim):
-            np.multiply(self.slope[:, 0], to[0, i][:, None], out=out[:, i])
+            np.multiply(self.slope[:, 0], scaled[0, i][:, None], out=out[:, i])
             for c in range(1, dim):
-                out[:, i] += self.slope[:, c] * to[c, i][:, None]
+                out[:, i] += self.slope[:, c] * scaled[c, i][:, None]
         return out
 
 
 def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values (nb, nq) and reference gradients (nb, dim, nq) of an element at points (dim, nq).
+    """Return values (nb, nq) and reference gradients (nb, dim, nq) of an element at points (dim,
+    nq).
 
     Examples
     --------
@@ -73,15 +74,15 @@ def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndar
     shape = points.shape[1:]
     value = np.array([np.broadcast_to(v, shape) for v in values])
     gradient = np.empty((count, len(gradients[0]), *shape))
-    for of, grad in zip(gradient, gradients):
-        for out, g in zip(of, grad):
+    for rows, grad in zip(gradient, gradients):
+        for out, g in zip(rows, grad):
             out[:] = g
     return value, gradient
 
 
 class Tabulation:
-    """Basis functions of an element at reference points (dim, nq), to be mapped to elements a batch at
-    a time; `geometry` is the element of the mapping, of an isoparametric one itself.
+    """Basis functions of an element at reference points (dim, nq), to be mapped to elements a batch
+    at a time; `geometry` is the element of the mapping, of an isoparametric one itself.
     """
 
     def __init__(self, geometry: Element, element: Element, points: np.ndarray):
@@ -106,12 +107,12 @@ class Tabulation:
 def tabulate(
     geometry: Element, nodes: np.ndarray, element: Element, points: np.ndarray
 ) -> Tabulated:
-    """Basis functions tabulated once; parameters as for :class:`Tabulation`."""
+    """Tabulate basis functions once; parameters as for :class:`Tabulation`."""
     return Tabulation(geometry, element, points).on(nodes)
 
 
 def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Inverses and determinants of (d, d, ...) matrices, d = 2 or 3, by cofactors.
+    """Return inverses and determinants of (d, d, ...) matrices, d = 2 or 3, by cofactors.
 
     Examples
     --------
@@ -136,9 +137,9 @@ def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mask (ne,) of elements whose nodes (dim, nb, ne), one for every unknown, are an affine image of
-    the reference nodes to ``STRAIGHT`` of their smallest extent, and the constant Jacobians (dim,
-    dim, ne) in the least-squares sense, position first.
+    """Return a mask (ne,) of elements whose nodes (dim, nb, ne), one for every unknown, are an
+    affine image of the reference nodes to ``STRAIGHT`` of their smallest extent, and the constant
+    Jacobians (dim, dim, ne) in the least-squares sense, position first.
     """
     dim, _, ne = nodes.shape
     affine = np.column_stack([element.doflocs, np.ones(len(element.doflocs))])
@@ -152,23 +153,12 @@ def straight(element: Element, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
-    """(nb, ne) numbering of scalar unknowns, scikit-fem's own."""
+    """Return the (nb, ne) numbering of scalar unknowns, scikit-fem's own."""
     return np.asarray(Dofs(mesh, element).element_dofs)
 
 
 class Pattern:
-    """Sparse pattern of an element connectivity, reused for every matrix on it.
-
-    Parameters
-    ----------
-    dofs : (nb, ne) ndarray of int
-
-    Attributes
-    ----------
-    n : int
-        Number of unknowns.
-    place : (ne, nb * nb) ndarray of int
-        Place of every entry of every element matrix among the entries of the assembled one.
+    """Sparse pattern of an element connectivity (nb, ne), reused for every matrix on it.
 
     Examples
     --------
@@ -185,26 +175,27 @@ class Pattern:
     """
 
     def __init__(self, dofs: np.ndarray):
-        self.n = int(dofs.max()) + 1
+        self.n = int(dofs.max()) + 1  #: number of unknowns
         nb, ne = dofs.shape
         assemblable(ne, nb)
-        of = np.ascontiguousarray(dofs.T, np.int32)
+        numbers = np.ascontiguousarray(dofs.T, np.int32)
         # Element entries row by row, each row being an unknown of an element.  A transposition is a
         # counting sort by column that leaves rows in order; the pattern is symmetric, so each entry
         # carries the number of its mirror image.
         slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
         by_row = sp.csr_matrix(
-            (slots.ravel(), of.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)
+            (slots.ravel(), numbers.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)
         ).tocsc()
         element, a = by_row.indices, by_row.data % nb
         mirror = (element * (nb * nb) + a)[:, None] + np.arange(0, nb * nb, nb, dtype=np.int32)
         entries = sp.csr_matrix(
-            (mirror.ravel(), of[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)
+            (mirror.ravel(), numbers[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)
         ).tocsc()
         # A change of row opens a new entry.  So does a change of column: were the last row of
         # column j the first of column j + 1, symmetry and the diagonal would contradict it.
         first = np.ones(entries.nnz, bool)
         np.not_equal(entries.indices[1:], entries.indices[:-1], out=first[1:])
+        #: place of every entry of every element matrix among the entries of the assembled one
         self.place = np.empty((ne, nb * nb), np.int32)
         self.place.ravel()[entries.data] = np.cumsum(first, dtype=np.int32) - 1
         starts = np.flatnonzero(first)
@@ -212,7 +203,9 @@ class Pattern:
         self.indptr = np.searchsorted(starts, entries.indptr).astype(np.int32)
 
     def sum(self, components: int = 1) -> Sum:
-        """An empty matrix on this pattern, of so many unknowns of a node, numbered together."""
+        """Return an empty matrix on this pattern, of a number of unknowns of a node, numbered
+        together.
+        """
         return Sum(self, components)
 
 
@@ -230,12 +223,12 @@ class Sum:
         component (m, nb, nb) will do.
         """
         c = self.c
-        at = self.pattern.place[elements].ravel() * np.intp(c * c)
+        places = self.pattern.place[elements].ravel() * np.intp(c * c)
         for k, plane in enumerate(values.reshape(c * c, -1)):
-            np.add.at(self.data[k:], at, plane)
+            np.add.at(self.data[k:], places, plane)
 
     def matrix(self) -> sp.csr_matrix:
-        """The assembled (n c, n c) matrix, its unknowns grouped by node."""
+        """Return the assembled (n c, n c) matrix, with unknowns grouped by node."""
         p, c = self.pattern, self.c
         if c == 1:
             return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
@@ -245,8 +238,6 @@ class Sum:
 
 
 def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
-    """A list of elements cut into pieces whose work arrays, of so many bytes an element, stay
-    within ``BATCH_BYTES``.
-    """
+    """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""
     step = max(1, int(BATCH_BYTES / bytes_each))
     return [elements[i : i + step] for i in range(0, len(elements), step)]

@@ -21,14 +21,14 @@ from solidgear.frames import on_axis, shift
 class Attached(NamedTuple):
     """A port of a block."""
 
-    place: float | Sequence[float]  #: its y on the axis, or its point, m
-    rows: np.ndarray | sp.spmatrix | None = None  #: (c, n) its motion
-    #: (n,) in place of that, the unknowns that move with it as one rigid piece
+    place: float | Sequence[float]  #: y on the axis, or the point, m
+    rows: np.ndarray | sp.spmatrix | None = None  #: (c, n) motion of the port
+    #: (n,) in place of that, a mask of the unknowns that move with it as one rigid piece
     held: np.ndarray | None = None
 
 
 def with_ports(block: Block, ports: Iterable[Attached]) -> Block:
-    """A block that has no ports yet, with all of them in their order."""
+    """Add all ports, in their order, to a block that has none yet."""
     nothing = sp.csr_matrix((len(block.components), block.size))
     rows, ties = [nothing[:0]], []
     for index, port in enumerate(ports):
@@ -41,8 +41,8 @@ def with_ports(block: Block, ports: Iterable[Attached]) -> Block:
 def tie_rigidly(
     block: Block, ties: Sequence[tuple[int, float | Sequence[float], np.ndarray]]
 ) -> Block:
-    """Let surfaces of a block move as rigid bodies: of each the index of its port, its place (y on the
-    axis, or a point, m), and the (n,) mask of its unknowns.
+    """Let surfaces of a block move as rigid bodies: of each the index of the port, the place (y on
+    the axis, or a point, m), and the (n,) mask of unknowns.
 
     These are replaced by the motion of the port, through ``u = T u_reduced``, so ``T'KT`` and
     ``T'MT``. SolidgearError if two surfaces share unknowns, which would make them one rigid body.
@@ -67,10 +67,10 @@ def tie_rigidly(
     extra = sp.lil_matrix((ports.shape[0], c * len(ties)))
     for k, (index, place, mask) in enumerate(ties):
         local = _about(block, place)
-        at = np.flatnonzero(mask)
-        columns.append(sp.csr_matrix(_rows(local, at, n)))
+        unknowns = np.flatnonzero(mask)
+        columns.append(sp.csr_matrix(_rows(local, unknowns, n)))
         # Motion of the port under rigid motions of the body about the origin.
-        carry = np.linalg.lstsq(local[at], block.rigid[at], rcond=None)[0]
+        carry = np.linalg.lstsq(local[unknowns], block.rigid[unknowns], rcond=None)[0]
         carry[np.abs(carry) < 1e-12] = 0.0
         rigid.append(carry)
         y.append(np.full(c, np.nan))
@@ -98,17 +98,17 @@ def tie_rigidly(
 
 
 def reduced(swirl: Swirl | None, t: sp.csr_matrix) -> Swirl | None:
-    """Effect of spin on fewer unknowns v, where ``u = t v``, from that of u."""
+    """Return the effect of spin on fewer unknowns v, where ``u = t v``, from that on u."""
     return None if swirl is None else lambda v: t.T @ swirl(t @ v)
 
 
 def _about(block: Block, place: float | Sequence[float]) -> np.ndarray:
-    """Rigid motions about a point, or one on the axis."""
-    own = list(block.components)
-    return block.rigid @ shift(-on_axis(place))[np.ix_(own, own)]
+    """Return rigid motions about a point, or one on the axis."""
+    components = list(block.components)
+    return block.rigid @ shift(-on_axis(place))[np.ix_(components, components)]
 
 
-def _rows(values, at, n):
+def _rows(values, places, n):
     out = np.zeros((n, values.shape[1]))
-    out[at] = values[at]
+    out[places] = values[places]
     return out

@@ -23,7 +23,7 @@ _CORNERS = ElementQuad1()
 
 @dataclass(frozen=True)
 class Kind:
-    """Cells that are tabulated alike."""
+    """Cells that share one tabulation."""
 
     cells: np.ndarray  #: (m,)
     curved: bool
@@ -31,13 +31,7 @@ class Kind:
 
 
 class Shapes:
-    """Geometry and basis of the cells of a meridian.
-
-    Parameters
-    ----------
-    element : scikit-fem element
-        Of the unknowns.
-    """
+    """Geometry and basis of the cells of a meridian, by the element of the unknowns."""
 
     def __init__(self, flat: Meridian, element: Element):
         self.flat, self.element = flat, element
@@ -46,38 +40,42 @@ class Shapes:
         self._nodes = self._curved_nodes()
         marks = list(zip(flat.arc >= 0, map(tuple, flat.flip.T)))
         self.kinds = [
-            Kind(np.array([k for k, mark in enumerate(marks) if mark == kind]), *kind)
-            for kind in sorted(set(marks))
+            Kind(
+                np.array([k for k, mark in enumerate(marks) if mark == (curved, flip)]),
+                curved,
+                flip,
+            )
+            for curved, flip in sorted(set(marks))
         ]
 
     def tabulation(self, kind: Kind, points: np.ndarray) -> Tabulation:
-        """Basis of some cells at reference points."""
-        made = Tabulation(self.element if kind.curved else _CORNERS, self.element, points)
+        """Tabulate the basis of some cells at reference points."""
+        basis = Tabulation(self.element if kind.curved else _CORNERS, self.element, points)
         odd = [f for edge in np.flatnonzero(kind.flip) for f in self._odd(int(edge))]
         if odd:
-            made.value, made.slope = made.value.copy(), made.slope.copy()
-            made.value[odd] *= -1
-            made.slope[odd] *= -1
-        return made
+            basis.value, basis.slope = basis.value.copy(), basis.slope.copy()
+            basis.value[odd] *= -1
+            basis.slope[odd] *= -1
+        return basis
 
     def nodes(self, kind: Kind, cells: np.ndarray) -> np.ndarray:
-        """(2, nn, m) coefficients of the mapping of some cells of one kind, m."""
+        """Return (2, nn, m) coefficients of the mapping of some cells of one kind, m."""
         if not kind.curved:
             return self.flat.points[:, self.flat.cells[:, cells]]
         return self._nodes[:, :, [self._place[int(cell)] for cell in cells]]
 
     def on(self, kind: Kind, cells: np.ndarray, points: np.ndarray) -> Tabulated:
-        """Basis on some cells of one kind."""
+        """Tabulate the basis on some cells of one kind."""
         return self.tabulation(kind, points).on(self.nodes(kind, cells))
 
     def places(self, dofs: np.ndarray) -> np.ndarray:
-        """(2, n) coefficients of position in the basis, m: of straight cells only those of corners
-        are not zero in a hierarchical basis.
+        """Return (2, n) coefficients of position in the basis, m: of straight cells only those of
+        corners are not zero in a hierarchical basis.
         """
         out = np.zeros((2, int(dofs.max()) + 1))
         if self._nodal:
-            at = np.array([self.element.doflocs[:, 0], self.element.doflocs[:, 1]])
-            straight = Tabulation(_CORNERS, self.element, at)
+            nodes = np.array([self.element.doflocs[:, 0], self.element.doflocs[:, 1]])
+            straight = Tabulation(_CORNERS, self.element, nodes)
             out[:, dofs.T] = straight.on(self.flat.points[:, self.flat.cells]).x
         else:
             out[:, dofs[:4]] = self.flat.points[:, self.flat.cells]
@@ -90,24 +88,24 @@ class Shapes:
         return not np.isnan(self.element.doflocs).any()
 
     def _edge(self, edge: int) -> np.ndarray:
-        """Basis functions that belong to a local edge, lowest first."""
-        each = self.element.facet_dofs
-        return 4 + edge * each + np.arange(each)
+        """Return the basis functions that belong to a local edge, lowest first."""
+        count = self.element.facet_dofs
+        return 4 + edge * count + np.arange(count)
 
     def _odd(self, edge: int) -> np.ndarray:
-        """Those that are odd along it."""
+        """Return the basis functions of a local edge that are odd along it."""
         return self._edge(edge)[1::2] if not self._nodal else np.zeros(0, int)
 
     def _curved_nodes(self) -> np.ndarray:
-        """(2, nb, m) coefficients of the mapping of the curved cells."""
+        """Return (2, nb, m) coefficients of the mapping of the curved cells."""
         flat, cells = self.flat, self.curved
         corner = flat.points[:, flat.cells[:, cells]]
         if self._nodal:
-            at = np.array([self.element.doflocs[:, 0], self.element.doflocs[:, 1]])
-            out = Tabulation(_CORNERS, self.element, at).on(corner).x.transpose(0, 2, 1).copy()
+            nodes = np.array([self.element.doflocs[:, 0], self.element.doflocs[:, 1]])
+            out = Tabulation(_CORNERS, self.element, nodes).on(corner).x.transpose(0, 2, 1).copy()
             for k, cell in enumerate(cells):
                 edge = int(flat.arc[cell])
-                along, across = _local(edge, at)
+                along, across = _local(edge, nodes)
                 a, b = (corner[:, end, k] for end in ENDS[edge])
                 out[:, :, k] += across * _bulge(a, b, flat.centre[:, cell], along)[0]
             return out
@@ -117,37 +115,39 @@ class Shapes:
         for k, cell in enumerate(cells):
             edge = int(flat.arc[cell])
             a, b = (corner[:, end, k] for end in ENDS[edge])
-            own = self._edge(edge)
+            functions = self._edge(edge)
             points, direction = _on_edge(edge, x)
-            slope = reference(self.element, points)[1][own, direction]
+            slope = reference(self.element, points)[1][functions, direction]
             wanted = _bulge(a, b, flat.centre[:, cell], x)[1]
             # their derivatives are Legendre polynomials, orthogonal on the edge
-            out[:, own, k] = (wanted * w) @ slope.T / (slope**2 @ w)
+            out[:, functions, k] = (wanted * w) @ slope.T / (slope**2 @ w)
         return out
 
 
-def _local(edge: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coordinate along a local edge, and the share of it that reaches a point (1 on the edge)."""
+def _local(edge: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the coordinate along a local edge, and the share that reaches a point (1 on the
+    edge).
+    """
     if edge in (LOW, HIGH):
-        return at[0], at[1] if edge == HIGH else 1 - at[1]
-    return at[1], at[0] if edge == OUT else 1 - at[0]
+        return points[0], points[1] if edge == HIGH else 1 - points[1]
+    return points[1], points[0] if edge == OUT else 1 - points[0]
 
 
 def _on_edge(edge: int, x: np.ndarray) -> tuple[np.ndarray, int]:
-    """Reference points on a local edge, and the direction it runs in."""
+    """Return reference points on a local edge, and the direction it runs in."""
     if edge in (LOW, HIGH):
         return np.array([x, np.full_like(x, float(edge == HIGH))]), 0
     return np.array([np.full_like(x, float(edge == OUT)), x]), 1
 
 
 def _bulge(a, b, centre, t) -> tuple[np.ndarray, np.ndarray]:
-    """Distance of an arc from a to b from its chord at shares t of its angle, and the derivative;
-    (2, len(t)), m.
+    """Return the distance of an arc from a to b from the chord at shares t of the angle, and the
+    derivative; (2, len(t)), m.
     """
     va, vb = a - centre, b - centre
     start = np.arctan2(va[1], va[0])
     turn = np.arctan2(va[0] * vb[1] - va[1] * vb[0], va @ vb)
-    radius, angle = np.hypot(*va), start + turn * np.asarray(t)
+    radius, angle = np.hypot(va[0], va[1]), start + turn * np.asarray(t)
     arc = centre[:, None] + radius * np.array([np.cos(angle), np.sin(angle)])
     chord = a[:, None] + np.outer(b - a, t)
     slope = radius * turn * np.array([-np.sin(angle), np.cos(angle)]) - (b - a)[:, None]

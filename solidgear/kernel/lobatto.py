@@ -8,17 +8,8 @@ import numpy as np
 
 
 def lobatto(order: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Functions of one direction and their derivatives.
-
-    Parameters
-    ----------
-    x : (...) ndarray
-        From 0 to 1.
-
-    Returns
-    -------
-    value, slope : (..., order + 1) ndarray
-        ``1 - x`` and ``x`` first, then those that vanish at both ends.
+    """Return (..., order + 1) functions of one direction at x from 0 to 1, and their derivatives:
+    ``1 - x`` and ``x`` first, then those that vanish at both ends.
 
     Examples
     --------
@@ -38,41 +29,41 @@ def lobatto(order: int, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return value, slope
 
 
-def products(order: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Functions of a quadrilateral (..., (order + 1)^2, q) at reference points (..., q, 2), and their
-    gradients with the direction first; the first direction counts slowest.
+def products(order: int, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return functions of a quadrilateral (..., (order + 1)^2, q) at reference points (..., q, 2),
+    and their gradients with the direction first; the first direction counts slowest.
     """
-    a, da = lobatto(order, at[..., 0])
-    b, db = lobatto(order, at[..., 1])
+    a, da = lobatto(order, points[..., 0])
+    b, db = lobatto(order, points[..., 1])
 
     def product(u, v):
-        both = u[..., :, None] * v[..., None, :]
-        return np.moveaxis(both.reshape(*both.shape[:-2], -1), -2, -1)
+        outer = u[..., :, None] * v[..., None, :]
+        return np.moveaxis(outer.reshape(*outer.shape[:-2], -1), -2, -1)
 
     return product(a, b), np.stack([product(da, b), product(a, db)])
 
 
 @lru_cache(maxsize=32)
 def at_nodes(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points ((order + 1)^2, 2) on which a product function is told apart from others, and the matrix
+    """Return points ((order + 1)^2, 2) on which product functions are independent, and the matrix
     from values there to coefficients.
     """
     x = (1 - np.cos(np.pi * np.arange(order + 1) / order)) / 2
     a, b = np.meshgrid(x, x, indexing="ij")
-    one = np.linalg.inv(lobatto(order, x)[0])
-    return np.stack([a.ravel(), b.ravel()], axis=1), np.kron(one, one)
+    inverse = np.linalg.inv(lobatto(order, x)[0])
+    return np.stack([a.ravel(), b.ravel()], axis=1), np.kron(inverse, inverse)
 
 
 @lru_cache(maxsize=32)
 def gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points from 0 to 1 and weights of Gauss's rule."""
+    """Return points from 0 to 1 and weights of Gauss's rule."""
     x, w = np.polynomial.legendre.leggauss(count)
     return (x + 1) / 2, w / 2
 
 
 @lru_cache(maxsize=32)
 def gauss_box(count: int, dimension: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (dimension, n) from 0 to 1 and weights of the product of so many of Gauss's rules."""
+    """Return points (dimension, n) from 0 to 1 and weights of the product of Gauss's rules."""
     x, w = gauss(count)
     points = np.array([g.ravel() for g in np.meshgrid(*(x,) * dimension, indexing="ij")])
     return points, reduce(np.multiply.outer, (w,) * dimension).ravel()
@@ -80,10 +71,10 @@ def gauss_box(count: int, dimension: int) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=32)
 def sides(order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Places of functions among the products: of the four corners and then of the four sides, each
-    in the sense of its coordinate; and of those that vanish on all sides.
+    """Return the places of functions among the products: of the four corners and then of the four
+    sides, each in the sense of the coordinate; and of those that vanish on all sides.
 
-    Sides are low, outer, high and inner, as in :data:`solidgear.meshing.blended.ENDS`.
+    Sides are low, outer, high and inner, as in :data:`solidgear.meshing.cells.ENDS`.
     """
     place = np.arange((order + 1) ** 2).reshape(order + 1, order + 1)
     corner = [place[0, 0], place[1, 0], place[1, 1], place[0, 1]]

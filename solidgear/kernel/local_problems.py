@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-#: added to patch matrices whose diagonal is one: nearly dependent functions of slender cells
+#: added to patch matrices whose diagonal is one: functions of slender cells are nearly dependent
 REGULAR = 1e-12
 
 #: least diagonal entry of a patch, in its largest, that is not rounding
@@ -45,18 +45,18 @@ class Cell:
     unknowns: np.ndarray  #: (n,) numbers of its unknowns in the richer space
     stiffness: np.ndarray  #: (n, n)
     loads: np.ndarray  #: (h, n, k) ``R(phi_i v)`` by hat
-    inside: np.ndarray  #: (k, k) products of energy of what was condensed
+    inside: np.ndarray  #: (k, k) products of energy of the condensed unknowns
 
 
 def condensed(cell: Cell, inner: np.ndarray) -> Cell:
-    """A cell without some of its unknowns, told by a mask, which no other cell has."""
+    """Return a cell without some unknowns, given by a mask, which no other cell has."""
     if not inner.any():
         return cell
     outer = ~inner
     rows = cell.stiffness[inner]
-    own, across, loads = rows[:, inner], rows[:, outer], cell.loads[:, inner]
+    inner_block, across, loads = rows[:, inner], rows[:, outer], cell.loads[:, inner]
     total = loads.sum(axis=0)
-    solved = _solve(own, np.hstack([across, total]))
+    solved = _solve(inner_block, np.hstack([across, total]))
     follow, alone = solved[:, : across.shape[1]], solved[:, across.shape[1] :]
     return Cell(
         cell.hats,
@@ -68,8 +68,8 @@ def condensed(cell: Cell, inner: np.ndarray) -> Cell:
 
 
 def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
-    """Products of energy (m, k, k) of the sum of all local solutions, cell by cell, of which the sum is a
-    bound of the errors; `rigid` (n, r) are rigid motions in the unknowns of the richer space.
+    """Compute products of energy (m, k, k) of the sum of all local solutions, cell by cell, whose
+    sum bounds the errors; `rigid` (n, r) are rigid motions in the unknowns of the richer space.
 
     Examples
     --------
@@ -85,19 +85,19 @@ def energies(cells: Sequence[Cell], rigid: np.ndarray) -> np.ndarray:
     for k, cell in enumerate(cells):
         for h, hat in enumerate(cell.hats):
             patches.setdefault(hat, []).append((k, h))
-    found = [np.zeros(cell.loads.shape[1:]) for cell in cells]
+    solutions = [np.zeros(cell.loads.shape[1:]) for cell in cells]
     numbered = np.empty(len(rigid), int)
     for members in patches.values():
         for k, x in _solved(cells, members, rigid, numbered):
-            found[k] += x
-    return np.array([_energy(cell, x, rigid) for cell, x in zip(cells, found)])
+            solutions[k] += x
+    return np.array([_energy(cell, x, rigid) for cell, x in zip(cells, solutions)])
 
 
 def merged(
     unknowns: Sequence[np.ndarray], numbered: np.ndarray
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Unknowns of several cells, each once, and where those of every cell stand among them; an array as
-    long as there are unknowns in all is written over.
+    """Return the unknowns of several cells, each once, and the places of those of every cell among
+    them; an array as long as there are unknowns in all is written over.
 
     Examples
     --------
@@ -105,24 +105,26 @@ def merged(
     >>> [ids[place].tolist() for place in places]
     [[7, 3], [3, 5]]
     """
-    every = np.concatenate(unknowns)
-    order = np.arange(len(every))
-    numbered[every] = order
-    ids = every[numbered[every] == order]
+    repeated = np.concatenate(unknowns)
+    order = np.arange(len(repeated))
+    numbered[repeated] = order
+    ids = repeated[numbered[repeated] == order]
     numbered[ids] = order[: len(ids)]
-    return ids, [numbered[own] for own in unknowns]
+    return ids, [numbered[ids_of_cell] for ids_of_cell in unknowns]
 
 
 def _solved(
     cells: Sequence[Cell], members: list[tuple[int, int]], rigid: np.ndarray, numbered: np.ndarray
 ):
-    """Displacements of the cells of one patch under its hat."""
+    """Yield the displacements of the cells of one patch under the hat, each with the number of the
+    cell.
+    """
     ids, places = merged([cells[k].unknowns for k, _ in members], numbered)
     n, count = len(ids), cells[members[0][0]].loads.shape[2]
     stiffness, load = np.zeros((n, n)), np.zeros((n, count))
-    for (k, h), at in zip(members, places):
-        stiffness[at[:, None], at] += cells[k].stiffness
-        load[at] += cells[k].loads[h]
+    for (k, h), place in zip(members, places):
+        stiffness[place[:, None], place] += cells[k].stiffness
+        load[place] += cells[k].loads[h]
     # an unknown that moves all of a condensed cell as a rigid body has no stiffness but rounding
     diagonal = stiffness.diagonal()
     root = 1 / np.sqrt(np.maximum(diagonal, ROUNDED * diagonal.max()))
@@ -134,12 +136,12 @@ def _solved(
     stiffness += free @ free.T
     stiffness.flat[:: n + 1] += REGULAR
     x = _solve(stiffness, load) * root[:, None]
-    for (k, _), at in zip(members, places):
-        yield k, x[at]
+    for (k, _), place in zip(members, places):
+        yield k, x[place]
 
 
 def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solution with a positive definite matrix, which is written over."""
+    """Return the solution with a positive definite matrix, which is written over."""
     _, x, info = lapack.dposv(matrix.T, right, lower=True, overwrite_a=True)
     if info:
         raise np.linalg.LinAlgError("a local problem is not positive definite")
@@ -147,24 +149,24 @@ def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def _energy(cell: Cell, x: np.ndarray, rigid: np.ndarray) -> np.ndarray:
-    """Energy of a cell without its rigid motion, which costs none but rounding."""
+    """Return the energy of a cell without the rigid motion, which costs none but rounding."""
     free = _orthonormal(rigid[cell.unknowns])
     x = x - free @ (free.T @ x)
     return x.T @ cell.stiffness @ x + cell.inside
 
 
 def _orthonormal(motions: np.ndarray) -> np.ndarray:
-    """Basis of at most a few motions, those that vanish or repeat others left out."""
+    """Return a basis of at most a few motions, those that vanish or repeat others left out."""
     out: list[np.ndarray] = []
     for motion in motions.T:
         size = np.sqrt(motion @ motion)
         if size == 0.0:
             continue
-        rest = motion / size
+        residual = motion / size
         for _ in range(2):  # twice is enough (Kahan)
-            for known in out:
-                rest = rest - known * (known @ rest)
-        left = np.sqrt(rest @ rest)
-        if left > 1e-9:
-            out.append(rest / left)
+            for unit in out:
+                residual = residual - unit * (unit @ residual)
+        norm = np.sqrt(residual @ residual)
+        if norm > 1e-9:
+            out.append(residual / norm)
     return np.array(out).T if out else motions[:, :0]

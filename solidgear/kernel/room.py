@@ -15,23 +15,23 @@ MOST_ENTRIES = 2_000_000_000
 
 
 def assemblable(elements: float, size: int) -> None:
-    """Refuse (:class:`NoRoom`) meshes whose matrices cannot be assembled, by the rows of an
-    element matrix of one component; asked before a mesh with a bound of its elements, and after it
-    with their number.
+    """Refuse (:class:`NoRoom`) meshes whose matrices cannot be assembled, by the rows of an element
+    matrix of one component; called before a mesh with a bound of its elements, and after it with
+    their number.
     """
     entries = elements * size**2
     number = f"{elements:.0f}" if elements < 1e6 else f"{elements:.2g}"
-    what = f"matrices of {number} elements"
+    matrices = f"matrices of {number} elements"
     if entries > MOST_ENTRIES:
         raise NoRoom(
-            f"{what} have {entries:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can "
+            f"{matrices} have {entries:.2g} matrix entries, more than the {MOST_ENTRIES:.0e} that can "
             "be numbered",
             np.inf,
             np.inf,
         )
-    require(SOUGHT * entries / MB, what)
+    require(SOUGHT * entries / MB, matrices)
 
 
 def assembled(entries: int, unknowns: int) -> None:
-    """Refuse (:class:`NoRoom`) a matrix of so many entries that will not fit into memory."""
+    """Refuse (:class:`NoRoom`) a matrix whose entries will not fit into memory."""
     require(PUT * entries / MB, f"matrices of {unknowns} unknowns")

@@ -1,10 +1,10 @@
 """Tetrahedra that fold between points of one smooth surface, cut in two.
 
-Where two curved faces of an element meet in an edge, or two curved edges in a vertex, the surface has
-one tangent plane: the angle between them is half a turn or more and det J is zero or less there,
-however fine the mesh is. Straight edges would take a share of the volume that falls by no order. So an
-edge of such an element that goes through the material from surface to surface is halved, and with it
-all elements around that edge. No node that was there moves.
+Where two curved faces of an element meet in an edge, or two curved edges in a vertex, the surface
+has one tangent plane: the angle between them is half a turn or more and det J is zero or less
+there, however fine the mesh is. Straight edges would take a share of the volume that falls by no
+order. So an edge of such an element that goes through the material from surface to surface is
+halved, and with it all elements around that edge. No node that was there moves.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ WAYS = (0.0, 0.25, 0.5)
 
 
 def bisected(filling: Filling) -> Filling:
-    """The elements, those that fold cut in two where no part of them folds then."""
+    """Return the elements, those that fold cut in two where no part of them folds then."""
     while True:
         mesh, inside = filling.mesh, filling.inside
         folded = mesh.t2e[:, element_ratios(mesh) < FOLD]
@@ -32,16 +32,16 @@ def bisected(filling: Filling) -> Filling:
 
 
 def _halved(filling: Filling, edges: np.ndarray) -> Filling:
-    """The elements with some edges halved, but for those beside one that is, and those that would leave
-    a fold; the very elements that were given where none is.
+    """Return the elements with some edges halved, but for those beside one that is, and those that
+    would leave a fold; the same filling where none is.
     """
     mesh = filling.mesh
     middles = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
-    whole = np.ones(mesh.t.shape[1], bool)
-    points, cells, parents, cut = mesh.p, [mesh.t], [np.arange(len(whole))], []
+    uncut = np.ones(mesh.t.shape[1], bool)
+    points, cells, parents, cut = mesh.p, [mesh.t], [np.arange(len(uncut))], []
     for edge in edges:
         around = np.flatnonzero((mesh.t2e == edge).any(axis=0))
-        if not whole[around].all():
+        if not uncut[around].all():
             continue
         corners, ends = mesh.t[:, around], mesh.edges[:, edge]
         halves = np.hstack([np.where(corners == end, points.shape[1], corners) for end in ends])
@@ -49,20 +49,20 @@ def _halved(filling: Filling, edges: np.ndarray) -> Filling:
         middle = points[:, ends].mean(axis=1, keepdims=True)
         reach = points[:, np.unique(corners)].mean(axis=1, keepdims=True) - middle
         trials = [np.hstack([points, middle + way * reach]) for way in WAYS]
-        made = [ten_nodes(p, halves, mesh.edges[:, sides], middles[:, sides]) for p in trials]
-        least = [element_ratios(part).min() for part in made]
+        parts = [ten_nodes(p, halves, mesh.edges[:, sides], middles[:, sides]) for p in trials]
+        least = [element_ratios(part).min() for part in parts]
         if max(least) < FOLD:
             continue
         points = trials[int(np.argmax(least))]
         cells.append(halves)
         parents.append(np.tile(around, 2))
-        whole[around] = False
+        uncut[around] = False
         cut.append(edge)
     if not cut:
         return filling
-    cells[0], parents[0] = mesh.t[:, whole], parents[0][whole]
-    left = np.delete(np.arange(mesh.edges.shape[1]), cut)
-    finer = ten_nodes(points, np.hstack(cells), mesh.edges[:, left], middles[:, left])
+    cells[0], parents[0] = mesh.t[:, uncut], parents[0][uncut]
+    uncut_edges = np.delete(np.arange(mesh.edges.shape[1]), cut)
+    finer = ten_nodes(points, np.hstack(cells), mesh.edges[:, uncut_edges], middles[:, uncut_edges])
     before = edge_places(mesh.edges, finer.edges)
     return Filling(
         finer,

@@ -1,8 +1,8 @@
 """Blocks of cells at edges that have a fillet or a chamfer, on the two sides of a joint and on the
 two sides of a band.
 
-Next to such an edge a mesh has a block of as many rows as rings.  What becomes of it is in
-:mod:`solidgear.meshing.blended`; here it is found how large it is along the shaft.
+Next to such an edge a mesh has a block of as many rows as rings, which
+:mod:`solidgear.meshing.blended` exchanges; this file finds how large it is along the shaft.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Zone:
         return max(self.depth, self.skip)
 
     def depth_at(self, r: np.ndarray) -> np.ndarray:
-        """Depths at some radii, m."""
+        """Return the depths at some radii, m."""
         return np.interp(r, *np.array(sorted(self.knots)).T)
 
 
@@ -70,21 +70,23 @@ class Joint:
     line: int = -1  #: mesh line of the joint, once there is one
 
     def zone(self, side: int) -> Zone:
-        """The zone of one side."""
+        """Return the zone of one side."""
         return self.low if side < 0 else self.high
 
     def cells(self, corner: Corner) -> int:
-        """Rows of the block of an edge: of a root all there are in its zone."""
+        """Return the rows of the block of an edge: of a root all there are in its zone."""
         return self.zone(corner.face_side).rows
 
     def shift(self, r: np.ndarray) -> np.ndarray:
-        """Distance of the line of the joint from it where both sides have material, m."""
+        """Return the distance of the line of the joint from it where both sides have material,
+        m.
+        """
         roots = sorted((c.r, c.side * c.axial) for c in self.corners if c.root)
         return np.interp(r, *np.array(roots).T) if roots else np.zeros(np.shape(r))
 
 
 def joints_of(scene: Shaft, grading: Grading, marks: Sequence[Mark]) -> list[Joint]:
-    """Joints with fillets or chamfers, and how large the blocks are along the shaft."""
+    """Return joints with fillets or chamfers, and how large the blocks are along the shaft."""
     by_place = defaultdict(list)
     for corner in scene.outline.corners:
         by_place[corner.joint].append(corner)
@@ -92,17 +94,20 @@ def joints_of(scene: Shaft, grading: Grading, marks: Sequence[Mark]) -> list[Joi
     joints = [Joint(ends[k], k, by_place[k]) for k in sorted(by_place)]
     for joint in joints:
         for zone in (joint.low, joint.high):
-            _size(joint, zone, grading, ends, marks)
+            _set_size(joint, zone, grading, ends, marks)
     return joints
 
 
-def _size(joint: Joint, zone: Zone, grading: Grading, ends, marks) -> None:
-    """Rows and depths of one side of a joint."""
+def _set_size(joint: Joint, zone: Zone, grading: Grading, ends, marks) -> None:
+    """Set rows and depths of one side of a joint."""
     k = grading.along_corner
-    here = [c for c in joint.corners if c.face_side == zone.side]
-    rims, roots = ([c for c in here if c.root is root] for root in (False, True))
+    corners = [c for c in joint.corners if c.face_side == zone.side]
+    rims, roots = ([c for c in corners if c.root is root] for root in (False, True))
     zone.skip = max((c.axial for c in joint.corners if c.root and c.side == zone.side), default=0.0)
-    zone.rows = 2 * k if rims else k if roots else 0
+    if rims:
+        zone.rows = 2 * k
+    else:
+        zone.rows = k if roots else 0
     zone.knots = [(c.r, c.axial) for c in rims]
     if not roots:
         return
@@ -124,35 +129,35 @@ def rounded_layers(
     reach: float,
     ratio: float,
 ) -> int:
-    """Geometric layers towards the edges of some surfaces at a joint with fillets or chamfers,
-    where a right-angled shoulder gets so many; they begin at `reach`, m, and have a ratio to the
-    one before.
+    """Return the geometric layers towards the edges of some surfaces at a joint with fillets or
+    chamfers, where a right-angled shoulder gets `layers`; they begin at `reach`, m, and have a
+    ratio to the one before.
     """
     edges = [edge for edge in outline.edges_at(joint) if edge.surface in surfaces]
     roots = [edge.root for edge in edges if edge.root]
     if not roots:
         return corner_layers(outline, joint, layers)
-    found = [corner_layers(outline, joint, layers, [edge for edge in edges if not edge.root])]
+    needed = [corner_layers(outline, joint, layers, [edge for edge in edges if not edge.root])]
     for root in roots:
         if root.kind == "chamfer":
-            found.append(corner_layers(outline, joint, layers))
+            needed.append(corner_layers(outline, joint, layers))
         else:
             size = GROWTH * DEPTH * min(root.axial, root.radial)
             wanted = int(np.ceil(np.log(max(reach / size, 1.0)) / -np.log(ratio) - 1e-9))
-            found.append(min(layers, max(1, wanted)))
-    return max(found)
+            needed.append(min(layers, max(1, wanted)))
+    return max(needed)
 
 
 def lines_along(
     scene: Shaft, grading: Grading, marks: Sequence[Mark], joints: Sequence[Joint]
 ) -> np.ndarray:
-    """Mesh lines along the shaft, with the rows of blocks on either side of joints.
+    """Return mesh lines along the shaft, with the rows of blocks on either side of joints.
 
     Where a fillet only runs into the space between two marks, the line of the joint takes the place
     of the first one beyond it.
     """
     places = _beside_blocks(scene, grading, marks, joints)
-    every = [np.array([0.0])]
+    stretches = [np.array([0.0])]
     for (a, start), (b, end) in zip(places, places[1:]):
         after, before = start.high if start else Zone(1), end.low if end else Zone(-1)
         length = b.y - a.y - after.reach - before.reach
@@ -162,15 +167,15 @@ def lines_along(
         if before.reach:
             last = np.linspace(lines[-1], b.y, before.rows + 1) if before.rows else [b.y]
             lines = np.concatenate([lines[:-1], last])
-        every.append(lines[1:])
-    return np.concatenate(every)
+        stretches.append(lines[1:])
+    return np.concatenate(stretches)
 
 
 def _beside_blocks(
     scene: Shaft, grading: Grading, marks: Sequence[Mark], joints: Sequence[Joint]
 ) -> list[tuple[Mark, Joint | None]]:
-    """Marks with the joints they stand for, without those that fall into a block: what ends there
-    ends at the block.
+    """Return marks with the joints they stand for, without those that fall into a block: a line
+    that ends there ends at the block.
     """
     out: list[tuple[Mark, Joint | None]] = []
     for mark in marks:
@@ -195,7 +200,7 @@ def _beside_blocks(
 
 
 def _layers(scene: Shaft, grading: Grading, joint: int) -> int:
-    """Layers along the shaft towards a joint with fillets or chamfers."""
+    """Return the layers along the shaft towards a joint with fillets or chamfers."""
     if not 0 < joint < len(scene.segments):
         return 0
     reach = grading.reach * joint_length(scene.segments, joint - 1)

@@ -34,7 +34,7 @@ class Cell:
 
 
 def ring_cells(scene: Shaft, plan: Layout) -> tuple[Cells, Places]:
-    """All cells between lines and rings, in their order, and where their corners are."""
+    """Return all cells between lines and rings, in their order, and the places of their corners."""
     cells: Cells = {}
     places: Places = {}
     for row, k in enumerate(plan.segment):

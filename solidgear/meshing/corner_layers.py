@@ -41,30 +41,21 @@ def cut_towards(
     ratio: float,
     across: Sequence[np.ndarray] = (),
 ) -> Pieces:
-    """Cut the cells around some vertices, as often as each asks for.
+    """Cut cells (ne, 4), vertices in the order of a walk around each, towards some of the vertices,
+    and return the pieces.
 
-    Parameters
-    ----------
-    cells : (ne, 4) ndarray of int
-        Vertices in the order of a walk around each.
-    points : (n, 2) ndarray
-        Of the vertices, m.
-    layers : mapping of int to int
-        Vertex to number of cuts.
-    ratio : float
-        What is left of a side at the corner by each cut; less of a side so long that the small cell
-        would be longer than `LONGEST` times its width.
-    across : sequence of (2,) ndarray
-        Points on sides, m: before all else a line is drawn through each, from side to opposite side
-        through all cells in its way.
+    `points` (n, 2) are of the vertices, m; `layers` the number of cuts by vertex. Each cut leaves
+    `ratio` of a side at the corner; less of a side so long that the small cell would be longer than
+    `LONGEST` times the width. Before all else a line is drawn through each point `across`, (2,) on
+    a side, m, from side to opposite side through all cells in its way.
 
     Examples
     --------
     One square, cut twice towards its first corner:
 
     >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-    >>> found = cut_towards(np.array([[0, 1, 2, 3]]), square, {0: 2}, 0.1)
-    >>> len(found.parent), float(found.points[found.corners[0]].max())
+    >>> pieces = cut_towards(np.array([[0, 1, 2, 3]]), square, {0: 2}, 0.1)
+    >>> len(pieces.parent), float(pieces.points[pieces.corners[0]].max())
     (5, 0.010000000000000002)
     """
     work = _Cutting(cells, points)
@@ -80,17 +71,17 @@ def cut_towards(
 
 
 def side_at(cells: ArrayLike, points: ArrayLike, point: np.ndarray) -> tuple[int, int, float]:
-    """The side of a mesh of (ne, 4) cells that a point (m) lies on, by its ends, and how far along
-    it is; SolidgearError if there is none.
+    """Return the side of a mesh of (ne, 4) cells that a point (m) lies on, by both ends, and how
+    far along it is; SolidgearError if there is none.
     """
-    every, places = np.array(cells), np.array(points)
-    a, b = every.ravel(), np.roll(every, -1, axis=1).ravel()
+    corners, places = np.array(cells), np.array(points)
+    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     way = places[b] - places[a]
     length = np.einsum("ix,ix->i", way, way)
     share = np.clip(np.einsum("ix,ix->i", point - places[a], way) / length, 0.0, 1.0)
-    off = np.linalg.norm(places[a] + share[:, None] * way - point, axis=1)
-    k = int(off.argmin())
-    if off[k] > 1e-6 * np.sqrt(length[k]):
+    distance = np.linalg.norm(places[a] + share[:, None] * way - point, axis=1)
+    k = int(distance.argmin())
+    if distance[k] > 1e-6 * np.sqrt(length[k]):
         raise SolidgearError(
             f"across: no side of the mesh passes y = {point[1]:.6g} m, r = {point[0]:.6g} m"
         )
@@ -110,7 +101,9 @@ class _Cutting:
             self._note(piece, corners)
 
     def across(self, point: np.ndarray) -> None:
-        """All cells in the way of a line that begins on a side and goes on to opposite sides."""
+        """Cut all cells in the way of a line that begins on a side and goes on to opposite
+        sides.
+        """
         a, b, share = side_at(self.corners, self.points, point)
         if min(share, 1 - share) < 1e-9:
             return  # a line is there
@@ -129,17 +122,16 @@ class _Cutting:
                     far = corners[(k + 1) % 4], corners[(k + 2) % 4]
                 else:
                     continue  # cut already: they face each other across a corner
-                known = on_side.get(far) or on_side.get(far[::-1])
-                if known is None:
-                    one, other = far
-                    known = self._new(self.points[one], self.points[other], share)
-                    on_side[far] = known
+                far_point = on_side.get(far) or on_side.get(far[::-1])
+                if far_point is None:
+                    far_point = self._new(self.points[far[0]], self.points[far[1]], share)
+                    on_side[far] = far_point
                     todo.append((*far, share))
-                here = on_side.get((a, b)) or on_side.get((b, a))
-                assert here is not None
-                self._two(piece, (a, b), far, (here, known), share)
+                near_point = on_side.get((a, b)) or on_side.get((b, a))
+                assert near_point is not None
+                self._halve(piece, (a, b), far, (near_point, far_point), share)
 
-    def _two(
+    def _halve(
         self,
         piece: int,
         near: tuple[int, int],
@@ -147,31 +139,29 @@ class _Cutting:
         new: tuple[int, int],
         share: float,
     ) -> None:
-        """Replace a piece by its halves on both sides of a line."""
+        """Replace a piece by the halves on both sides of a line."""
         corners, local = self.corners[piece], self.local[piece]
-        at = {v: local[k] for k, v in enumerate(corners)}
-        at |= {
-            middle: (1 - share) * at[one] + share * at[other]
-            for (one, other), middle in zip((near, far), new)
-        }
+        place = {v: local[k] for k, v in enumerate(corners)}
+        for (a, b), middle in zip((near, far), new):
+            place[middle] = (1 - share) * place[a] + share * place[b]
         for v in corners:
             self.around[v].discard(piece)
         halves = []
-        for gone in (1, 0):
-            swap = {near[gone]: new[0], far[gone]: new[1]}
+        for end in (1, 0):
+            swap = {near[end]: new[0], far[end]: new[1]}
             halves.append([int(swap.get(v, v)) for v in corners])
         self.parent.append(self.parent[piece])
         self.corners[piece] = halves[0]
         self.corners.append(halves[1])
-        self.local[piece] = np.array([at[v] for v in halves[0]])
-        self.local.append(np.array([at[v] for v in halves[1]]))
+        self.local[piece] = np.array([place[v] for v in halves[0]])
+        self.local.append(np.array([place[v] for v in halves[1]]))
         self._note(piece, halves[0])
         self._note(len(self.corners) - 1, halves[1])
 
     def cut(self, vertex: int, ratio: float) -> None:
-        """All pieces around a vertex."""
+        """Cut all pieces around a vertex."""
         around = sorted(self.around[vertex])
-        ends = {self._beside(piece, vertex)[k] for piece in around for k in (1, 3)}
+        ends = {self._corners_from(piece, vertex)[k] for piece in around for k in (1, 3)}
         length = {v: float(np.linalg.norm(self.points[v] - self.points[vertex])) for v in ends}
         longest = LONGEST * min(length.values())
         share = {v: ratio * min(1.0, longest / length[v]) for v in ends}
@@ -179,37 +169,37 @@ class _Cutting:
         for v in sorted(ends):
             on_side[v] = self._new(self.points[vertex], self.points[v], share[v])
         for piece in around:
-            self._three(piece, vertex, on_side, share)
+            self._cut_in_three(piece, vertex, on_side, share)
 
-    def _three(self, piece: int, vertex: int, on_side, share) -> None:
-        """Replace a piece by its small corner and two trapezia."""
+    def _cut_in_three(self, piece: int, vertex: int, on_side, share) -> None:
+        """Replace a piece by the small corner and two trapezia."""
         first = self.corners[piece].index(vertex)
         _, after, far, before = (self.corners[piece][(first + k) % 4] for k in range(4))
-        here = np.array([self.local[piece][(first + k) % 4] for k in range(4)])
+        local = np.array([self.local[piece][(first + k) % 4] for k in range(4)])
         s, t = share[after], share[before]
         weights = np.array([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
         middle = len(self.points)
         corner = np.array([self.points[self.corners[piece][(first + k) % 4]] for k in range(4)])
         self.points.append(weights @ corner)
         a, b = on_side[after], on_side[before]
-        at_a, at_b = (1 - s) * here[0] + s * here[1], (1 - t) * here[0] + t * here[3]
-        at_middle = weights @ here
+        local_a, local_b = (1 - s) * local[0] + s * local[1], (1 - t) * local[0] + t * local[3]
+        local_middle = weights @ local
         for v in self.corners[piece]:
             self.around[v].discard(piece)
         self.corners[piece] = _turned([vertex, a, middle, b], first)
-        self.local[piece] = np.array(_turned([here[0], at_a, at_middle, at_b], first))
+        self.local[piece] = np.array(_turned([local[0], local_a, local_middle, local_b], first))
         self._note(piece, self.corners[piece])
-        for ids, where in (
-            ([a, after, far, middle], [at_a, here[1], here[2], at_middle]),
-            ([b, middle, far, before], [at_b, at_middle, here[2], here[3]]),
+        for ids, places in (
+            ([a, after, far, middle], [local_a, local[1], local[2], local_middle]),
+            ([b, middle, far, before], [local_b, local_middle, local[2], local[3]]),
         ):
             self.parent.append(self.parent[piece])
             self.corners.append(_turned(ids, first))
-            self.local.append(np.array(_turned(where, first)))
+            self.local.append(np.array(_turned(places, first)))
             self._note(len(self.parent) - 1, self.corners[-1])
 
-    def _beside(self, piece: int, vertex: int) -> list[int]:
-        """Corners of a piece from one of them on."""
+    def _corners_from(self, piece: int, vertex: int) -> list[int]:
+        """Return the corners of a piece, beginning with one of them."""
         first = self.corners[piece].index(vertex)
         return [self.corners[piece][(first + k) % 4] for k in range(4)]
 
@@ -222,6 +212,8 @@ class _Cutting:
             self.around.setdefault(v, set()).add(piece)
 
 
-def _turned(four: list, first: int) -> list:
-    """Four corners in the sense of the parent: the one that stands at its corner ``first`` there."""
-    return [four[(k - first) % 4] for k in range(4)]
+def _turned(corners: list, first: int) -> list:
+    """Return four corners in the sense of the parent, from those that begin at its corner
+    ``first``.
+    """
+    return [corners[(k - first) % 4] for k in range(4)]

@@ -22,21 +22,11 @@ SHOULDER = 0.5445
 
 
 def corner_exponent(angle: float) -> float:
-    """Exponent of displacement at a traction-free corner, smaller of the symmetric and
-    antisymmetric modes.
+    """Return the exponent of displacement at a traction-free corner, smaller of the symmetric and
+    antisymmetric modes; `angle` is of the material, rad, and 1.0 is returned up to pi.
 
     Williams (1952), J. Appl. Mech. 19, 526: ``sin(l w) = +- l sin(w)`` for a material angle w;
     0.5445 at 270 degrees.
-
-    Parameters
-    ----------
-    angle : float
-        Material angle, rad, above pi for a re-entrant corner.
-
-    Returns
-    -------
-    float
-        1.0 for corners that are not re-entrant.
 
     Examples
     --------
@@ -55,7 +45,8 @@ def corner_exponent(angle: float) -> float:
 
 
 def _root(angle: float, sign: float, low: float, high: float) -> float:
-    """Root of ``sin(x angle) + sign x sin(angle)`` between two ends of different sign, by halving.
+    """Return the root of ``sin(x angle) + sign x sin(angle)`` between two ends of different sign,
+    by halving.
 
     SciPy's root finders would do the same and take a tenth of a second to import, in every command.
     """
@@ -70,7 +61,7 @@ def _root(angle: float, sign: float, low: float, high: float) -> float:
 
 
 def sharpest_corner(scene: Shaft) -> tuple[float, float]:
-    """Largest material angle at a shoulder of a scene, rad, and its exponent by
+    """Return the largest material angle at a shoulder of a scene, rad, and its exponent by
     :func:`corner_exponent`; (pi, 1) when there is no shoulder.
 
     Examples
@@ -87,12 +78,12 @@ def sharpest_corner(scene: Shaft) -> tuple[float, float]:
 def corner_layers(
     outline: Outline, joint: int, layers: int, edges: Sequence[Edge] | None = None
 ) -> int:
-    """Geometric layers that the corners of two segments need, were they sharp, where a right-angled
-    shoulder needs so many: those of both surfaces, unless edges are given.
+    """Return the geometric layers that the corners of two segments need, were they sharp, where a
+    right-angled shoulder needs `layers`: those of both surfaces, unless edges are given.
 
-    Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and what they have to
-    shrink grows with ``1 - exponent``, which is zero on a smooth outline. A change of material
-    counts as a shoulder.
+    Layers of one ratio shrink the error by ``ratio ** (2 exponent)`` each, and the error that they
+    have to shrink grows with ``1 - exponent``, which is zero on a smooth outline. A change of
+    material counts as a shoulder.
     """
     if outline.segments[joint - 1].material != outline.segments[joint].material:
         return layers
@@ -107,7 +98,7 @@ EDGE = np.pi / 4
 
 
 def is_notched(mesh: Any) -> bool:
-    """True for a volume mesh of scikit-fem whose surface has a sharp concave edge.
+    """Return whether the surface of a volume mesh of scikit-fem has a sharp concave edge.
 
     Examples
     --------
@@ -123,7 +114,7 @@ def is_notched(mesh: Any) -> bool:
     edge = mesh.f2e[:, outside]
     facet = np.broadcast_to(np.arange(len(outside)), edge.shape).ravel()
     order = np.argsort(edge.ravel(), kind="stable")
-    one, other = facet[order[::2]], facet[order[1::2]]
-    turned = np.sum(normal[:, one] * normal[:, other], axis=0) < np.cos(EDGE)
-    rising = np.sum(normal[:, one] * (middle[:, other] - middle[:, one]), axis=0) > 0
+    a, b = facet[order[::2]], facet[order[1::2]]  # on both sides of each edge
+    turned = np.sum(normal[:, a] * normal[:, b], axis=0) < np.cos(EDGE)
+    rising = np.sum(normal[:, a] * (middle[:, b] - middle[:, a]), axis=0) > 0
     return bool(np.any(turned & rising))

@@ -1,5 +1,5 @@
-"""Middle nodes of curved tetrahedra: moved out so that sides enclose the volume of what they stand for,
-and drawn in where elements fold.
+"""Middle nodes of curved tetrahedra: moved out so that sides enclose the volume of the surface they
+follow, and drawn in where elements fold.
 """
 
 from __future__ import annotations
@@ -22,35 +22,35 @@ FOLD = 0.05
 #: larger by (s / c)^2 / 5 encloses the same area. Of regular triangles on a cylinder the same holds at
 #: 0.22 to 0.27, as they lie on it
 OUT = 0.25
-#: of a sagitta, how far an edge may move to give back volume: a fifth of what seats allow
+#: of a sagitta, how far an edge may move to give back volume: a fifth of the tolerance of seats
 MOST_GIVEN = 0.02
 
 
 def with_nodes(mesh: M, doflocs: np.ndarray) -> M:
-    """The mesh with its nodes elsewhere: what belongs to what stays, and with it the tables of edges,
+    """Return the mesh with nodes elsewhere: connections stay, and with them the tables of edges,
     faces and unknowns, which take longer to make than all else of a mesh.
     """
     moved = copy(mesh)
     moved.doflocs = np.ascontiguousarray(doflocs)
-    vars(moved).pop("_cached_mapping", None)  # it knows where nodes were
+    vars(moved).pop("_cached_mapping", None)  # it holds the old places
     return moved
 
 
 def with_middles(mesh: M, edges: np.ndarray, middles: np.ndarray) -> M:
-    """A second-order mesh with middle nodes at some places (3, k), m, each on the edge between two
-    vertices (2, k); others stay.
+    """Return a second-order mesh with middle nodes at some places (3, k), m, each on the edge
+    between two vertices (2, k); others stay.
     """
-    at = edge_places(edges, mesh.edges)
+    place = edge_places(edges, mesh.edges)
     doflocs = mesh.doflocs.copy()
-    doflocs[:, mesh.dofs.edge_dofs[0, at >= 0]] = middles[:, at[at >= 0]]
+    doflocs[:, mesh.dofs.edge_dofs[0, place >= 0]] = middles[:, place[place >= 0]]
     return with_nodes(mesh, doflocs)
 
 
 def ten_nodes(
     points: np.ndarray, corners: np.ndarray, edges: np.ndarray, middles: np.ndarray
 ) -> MeshTet2:
-    """Ten-node tetrahedra by (4, ne) corners among points (3, n), m, of which only theirs are kept,
-    with middle nodes as for :func:`with_middles`.
+    """Return ten-node tetrahedra by (4, ne) corners among points (3, n), m, of which only theirs
+    are kept, with middle nodes as for :func:`with_middles`.
     """
     used, small = np.unique(corners, return_inverse=True)
     straight = MeshTet1(
@@ -59,14 +59,14 @@ def ten_nodes(
     )
     place = np.full(points.shape[1], -1)
     place[used] = np.arange(len(used))
-    known = place[edges]
-    among = (known >= 0).all(axis=0)
-    return with_middles(MeshTet2.from_mesh(straight), known[:, among], middles[:, among])
+    ends = place[edges]
+    in_mesh = (ends >= 0).all(axis=0)
+    return with_middles(MeshTet2.from_mesh(straight), ends[:, in_mesh], middles[:, in_mesh])
 
 
 @dataclass(frozen=True)
 class Filling:
-    """Curved tetrahedra in what is drawn."""
+    """Curved tetrahedra in drawn volumes."""
 
     mesh: MeshTet2
     volume: np.ndarray  #: (ne,) number of the drawn volume that each element is in
@@ -77,13 +77,13 @@ class Filling:
 
 
 def relaxed(filling: Filling) -> Filling:
-    """The elements with the middle nodes of those that fold drawn towards the middle of their edges,
-    as far as needed.
+    """Return the elements with the middle nodes of those that fold drawn towards the middle of
+    their edges, as far as needed.
 
     Elements that fold between two faces of one surface have been cut in two before
-    (:mod:`solidgear.meshing.bisecting`); the tip of a cone, wedges of few degrees and slivers are
-    left. What chords take from a drawn volume there, its other curved sides give back, each by the
-    share that it has in what all of them can give: some 1e-3 of their sagittas.
+    (:mod:`solidgear.meshing.bisecting`); the tip of a cone, wedges of few degrees and slivers
+    remain. The volume that chords take from a drawn volume there, its other curved sides give back,
+    each by the share that it has in all that they can give: some 1e-3 of their sagittas.
     """
     mesh = filling.mesh
     straight = mesh.p[:, mesh.edges].mean(axis=1)
@@ -102,13 +102,15 @@ def relaxed(filling: Filling) -> Filling:
         mesh = with_nodes(mesh, doflocs)
     if (keep == 1.0).all():
         return filling
-    return _given_back(filling, mesh, curve, keep)
+    return _with_volume_restored(filling, mesh, curve, keep)
 
 
-def _given_back(filling: Filling, mesh: MeshTet2, curve: np.ndarray, keep: np.ndarray) -> Filling:
-    """Every drawn volume of a mesh with straightened edges as large as its sides enclosed before, where
-    folded elements count with their sign; as far as that moves no edge by too much, and not where
-    an element would fold.
+def _with_volume_restored(
+    filling: Filling, mesh: MeshTet2, curve: np.ndarray, keep: np.ndarray
+) -> Filling:
+    """Return the mesh with every drawn volume as large as its sides enclosed before edges were
+    straightened, where folded elements count with their sign; as far as that moves no edge by too
+    much, and not where an element would fold.
     """
     drawn, part = np.unique(filling.volume, return_inverse=True)
     lowest = np.full(len(keep), part.max())
@@ -129,40 +131,40 @@ def _given_back(filling: Filling, mesh: MeshTet2, curve: np.ndarray, keep: np.nd
     while True:
         doflocs = mesh.doflocs.copy()
         doflocs[:, middles] += scale[lowest] * gain * curve
-        given = with_nodes(mesh, doflocs)
-        folded = np.unique(part[element_ratios(given) < FOLD])
+        restored = with_nodes(mesh, doflocs)
+        folded = np.unique(part[element_ratios(restored) < FOLD])
         if not scale[folded].any():
             break
         scale[folded] = 0.0
-    # what is missing at the surface counts twice in the second moments of a full section, of a hollow
+    # volume missing at the surface counts twice in the second moments of a full section, of a hollow
     # one less
-    left = 2 * np.abs(1 - np.bincount(part, element_volumes(given)) / size)
-    return replace(filling, mesh=given, straightened=dict(zip(drawn.tolist(), left.tolist())))
+    error = 2 * np.abs(1 - np.bincount(part, element_volumes(restored)) / size)
+    return replace(filling, mesh=restored, straightened=dict(zip(drawn.tolist(), error.tolist())))
 
 
 def _gain(mesh: MeshTet2, curve: np.ndarray) -> np.ndarray:
-    """Volume for each edge between curved sides, were its sagitta twice as large: a third of the area
-    of each side times what moves along its normal. Edges in the plane of a side, such as those of cut
-    faces, give none.
+    """Return the volume that each edge between curved sides would add, were its sagitta twice as
+    large: a third of the area of each side times its motion along the normal. Edges in the plane of
+    a side, such as those of cut faces, add none.
     """
     facets = mesh.boundary_facets()
     normal = outward(mesh, facets) / 2
     sides = mesh.facets[[[0, 1, 0], [1, 2, 2]]][:, :, facets]
     gain, least = np.zeros(curve.shape[1]), np.full(curve.shape[1], np.inf)
     depth = np.maximum(np.linalg.norm(curve, axis=0), 1e-300)
-    for at in edge_places(mesh.edges, sides):
-        along = (normal * curve[:, at]).sum(axis=0)
-        np.add.at(gain, at, along / 3)
-        np.minimum.at(least, at, np.abs(along) / np.linalg.norm(normal, axis=0) / depth[at])
+    for place in edge_places(mesh.edges, sides):
+        along = (normal * curve[:, place]).sum(axis=0)
+        np.add.at(gain, place, along / 3)
+        np.minimum.at(least, place, np.abs(along) / np.linalg.norm(normal, axis=0) / depth[place])
     return np.where((least > 0.5) & (depth > 1e-9 * np.ptp(mesh.p)), gain, 0.0)
 
 
 def volume_preserved(mesh: MeshTet2) -> MeshTet2:
-    """The mesh with middle nodes, which lie on the true surface, moved a little beyond it, so that
-    curved sides enclose as much as it does.
+    """Return the mesh with middle nodes, which lie on the true surface, moved a little beyond it,
+    so that curved sides enclose as much as it does.
 
-    On a circle of sixteen edges they move by 1e-5 of its radius, and what is lost falls from 5e-5
-    to some 2e-6 of the volume.
+    On a circle of sixteen edges they move by 1e-5 of its radius, and the volume lost falls from
+    5e-5 to some 2e-6.
     """
     a, b = mesh.p[:, mesh.edges[0]], mesh.p[:, mesh.edges[1]]
     middles = mesh.dofs.edge_dofs[0]

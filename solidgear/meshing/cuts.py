@@ -1,4 +1,4 @@
-"""Tools of features: the solid of OCC that one cuts out of a shaft, and its formula of element
+"""Tools of features: the solid of OCC that one cuts out of a shaft, and the formula of element
 size.
 """
 
@@ -22,40 +22,40 @@ EDGES = 3.0
 LEAST = 0.35
 #: growth of the element size per distance from a feature
 GROWTH = 1.0
-#: how far a tool reaches beyond the surface, in radii
-BEYOND = 0.2
+#: how far a tool reaches out of the surface, in radii
+OVERHANG = 0.2
 
 
 def tool(occ: Any, feature: Cut, radius: float) -> int:
-    """Tag of the solid that cuts a feature into a segment of some outer radius, m; it reaches out
-    of the shaft, and is not yet cut with it.
+    """Return the tag of the solid that cuts a feature into a segment of some outer radius, m; it
+    reaches out of the shaft, and is not yet cut with it.
     """
-    made = feature.tool(occ, radius, BEYOND * radius)
+    solid = feature.tool(occ, radius, OVERHANG * radius)
     if feature.angle:
-        occ.rotate([(3, made)], 0, 0, 0, 0, 1, 0, feature.angle)
-    return made
+        occ.rotate([(3, solid)], 0, 0, 0, 0, 1, 0, feature.angle)
+    return solid
 
 
 def feature_size(
     feature: Cut, radius: float, refinement: float, finer: float = 1.0
 ) -> tuple[str, float]:
-    """Formula (in x, y, z, m) of the element edge around a feature of a segment of some radius, m,
-    and its least value, m.
+    """Return a formula (in x, y, z, m) of the element edge around a feature of a segment of some
+    radius, m, and the least value, m.
 
     `refinement` divides the size; `finer` divides it too, and the largest that a hole or a round
     end may have.
     """
     straight, curved = feature.edges(radius)
     divided = ACROSS * refinement
-    # what is curved is round at any refinement
+    # curved edges are round at any refinement
     least = min(straight / divided, curved / max(1.0, divided)) / finer
     return f"{_num(least)}+{_num(GROWTH)}*{feature.distance(radius, _frame(feature))}", least
 
 
 def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, float]:
-    """Formula of the element edge where stresses around a feature are highest, and its least value,
-    m: at the re-entrant edges of the floor of a keyway and of the ends of a flat, at the wall of a
-    hole.
+    """Return a formula of the element edge where stresses around a feature are highest, and the
+    least value, m: at the re-entrant edges of the floor of a keyway and of the ends of a flat, at
+    the wall of a hole.
 
     The least of a hole, which eight edges around are the least of, differs from refinement
     ``LEAST`` on.
@@ -80,9 +80,9 @@ def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, floa
 def fine_lines(
     feature: Cut, radius: float, refinement: float, edges: bool
 ) -> tuple[float, float, float]:
-    """A cut as edges that elements grow from: see
-    :func:`solidgear.meshing.element_size.rough_cells`; parameters as for :func:`edge_size`, and
-    whether that is asked for.
+    """Return a cut as edges that elements grow from: see
+    :func:`solidgear.meshing.element_size.rough_cells`; parameters as for :func:`edge_size`, which
+    `edges` chooses.
     """
     least = (edge_size if edges else feature_size)(feature, radius, refinement)[1]
     length, wall = feature.lines(radius)
@@ -96,8 +96,8 @@ def _frame(feature: Cut) -> Frame:
 
 
 def mirror_plane(features: tuple[Cut, ...]) -> int | None:
-    """The plane that all features are symmetric about: 0 for x = 0, 2 for z = 0; None where there
-    is neither.
+    """Return the plane that all features are symmetric about: 0 for x = 0, 2 for z = 0; None where
+    there is neither.
 
     Examples
     --------

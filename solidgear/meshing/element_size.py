@@ -1,4 +1,4 @@
-"""The size of tetrahedra, a closed formula in radius and y, and roughly how many it makes of them."""
+"""The size of tetrahedra, a closed formula in radius and y, and roughly how many fill a shaft."""
 
 from collections.abc import Sequence
 from math import pi
@@ -22,11 +22,11 @@ def rough_cells(
     graded_size: float | None = None,
     fine: Sequence[tuple[float, float, float]] = (),
 ) -> float:
-    """Number of tetrahedra to within a factor of three or so, without meshing: enough to refuse
-    what is absurd.
+    """Return the number of tetrahedra to within a factor of three or so, without meshing: enough to
+    refuse an absurd size.
 
     Volume is filled at the size in the bulk, and edges that are graded towards at a size that grows
-    from them. `fine` are further edges: their length and the element size at them, m, and its
+    from them. `fine` are further edges: their length and the element size at them, m, and the
     growth by the distance.
 
     Examples
@@ -49,7 +49,7 @@ def rough_cells(
     edges += [(2 * pi * b.r, PER_BLEND * min(b.axial, b.radial), _GROWTH) for b in outline.corners]
     for length, least, growth in (*edges, *fine):
         # the integral of size^-3 around an edge, of which a quarter lies in the material
-        slope = min(growth, _GROWTH)  # elements grow no faster, whatever is asked for
+        slope = min(growth, _GROWTH)  # elements grow no faster, whatever the formula says
         total += pi * length / (4 * slope**2 * least) * max(0.0, 1 - least / size)
     return PER_CUBE * total
 
@@ -62,7 +62,7 @@ def size_formulas(
     reach: float | None,
     around: int,
 ) -> list[str]:
-    """Formulas of the element edge in x, y, z, m, as gmsh's parser reads them; the least one
+    """Return formulas of the element edge in x, y, z, m, as gmsh's parser reads them; the least one
     counts.
 
     `corners` are those (y, radius) to grade towards; sizes as for
@@ -112,7 +112,9 @@ def size_formulas(
 
 
 def _num(value):
-    """In brackets, since gmsh's parser ends the process at a sign after an operator."""
+    """Return a number in brackets, since gmsh's parser ends the process at a sign after an
+    operator.
+    """
     return f"({float(value)!r})"
 
 

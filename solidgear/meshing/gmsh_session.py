@@ -12,8 +12,8 @@ _APT = (
 
 
 def import_gmsh() -> Any:
-    """The module gmsh; MeshError if it or a system library it needs is missing, with what to
-    install.
+    """Return the module gmsh; MeshError if it or a system library it needs is missing, with the
+    packages to install.
     """
     try:
         import gmsh
@@ -27,13 +27,9 @@ def import_gmsh() -> Any:
 
 
 class Session:
-    """A gmsh model of our own that leaves no trace in a gmsh the caller may already be using.
+    """A gmsh model that leaves no trace in a gmsh the caller may already be using.
 
     A context manager; the options of gmsh are as they were afterwards.
-
-    Parameters
-    ----------
-    gmsh : module
     """
 
     options = {
@@ -74,9 +70,9 @@ class Session:
             self.model = gmsh.model.getCurrent()
         for name, value in self.options.items():
             gmsh.option.setNumber(name, value)
-        taken = set(gmsh.model.list())
+        names = set(gmsh.model.list())
         number = 0
-        while f"solidgear{number}" in taken:
+        while f"solidgear{number}" in names:
             number += 1
         self.name = f"solidgear{number}"
         gmsh.model.add(self.name)
@@ -84,7 +80,7 @@ class Session:
     def __exit__(self, *exception):
         gmsh = self.gmsh
         if abandoned():
-            return  # gmsh is still meshing after Ctrl-C: what it works on must stay
+            return  # gmsh is still meshing after Ctrl-C: its model must stay
         if self.ours:
             gmsh.finalize()
             return

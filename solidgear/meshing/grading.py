@@ -25,8 +25,8 @@ SHELL = 2.0
 #: lines nearer to the far end of an interval than this share of it are left out
 ROOM_ONE, ROOM_TWO = 0.75, 0.45
 
-#: seats narrower than this many cells' depths indent what cells do not see: after two meshes a plain
-#: bar with a seat as wide as its radius was 2.5e-3 off, one of two radii 1e-4
+#: seats narrower than this many cells' depths indent the shaft unseen by the cells: after two meshes a
+#: plain bar with a seat as wide as its radius was 2.5e-3 off, one of two radii 1e-4
 DEEP = 2.5
 #: of a number of layers that is whole but for it
 ROUNDING = 1e-9
@@ -76,25 +76,27 @@ class Grading:
     def seat_layers(
         self, station: Station, segments: Sequence[Segment], ties: Sequence[str]
     ) -> int:
-        """Further layers towards the ends of a narrow seat that is built with some ties.
+        """Return the further layers towards the ends of a narrow seat that is built with some ties.
 
         A load on a ring indents the shaft over a few widths of the ring, which cells that know of
-        the radius only do not see: two coarse meshes then agree on what both of them lack. They are
-        as many as bring the last layer down to the width of the seat; none where grading starts
+        the radius only do not see: two coarse meshes then agree on an error of both. The layers are
+        as many as bring the last one down to the width of the seat; none where grading starts
         within it, on a line, or under sections, which spread no load on it. Where no shoulder
         grades the surface (:func:`ungraded_depth`) one for a seat that is narrower than two and a
         half depths of its cells.
         """
         width = station.hi - station.lo
-        under = segments_under(station, segments)
-        if self.plain or width <= 2 * TOUCH or not under or set(ties) <= {"section"}:
+        seat_segments = segments_under(station, segments)
+        if self.plain or width <= 2 * TOUCH or not seat_segments or set(ties) <= {"section"}:
             return 0
-        start = self.reach * max(corner_length(segments[k]) for k in under)
+        start = self.reach * max(corner_length(segments[k]) for k in seat_segments)
         more = ceil(log(width / start) / log(self.ratio) - ROUNDING)
         graded = self.layers if "rigid" in ties else self.edge
         if more > 0 or graded or not self.layers:
             return max(0, more)
-        return int(width < DEEP * max(ungraded_depth(segments, k) for k in under) * (1 - ROUNDING))
+        return int(
+            width < DEEP * max(ungraded_depth(segments, k) for k in seat_segments) * (1 - ROUNDING)
+        )
 
     @property
     def along_corner(self) -> int:
@@ -102,7 +104,7 @@ class Grading:
         return max(1, round(self.corner_cells * self.refinement))
 
     def cell(self, segment: Segment) -> tuple[float, float]:
-        """Cell sizes of a segment beside singular points and away from them, m."""
+        """Return the cell sizes of a segment beside singular points and away from them, m."""
         if self.size is not None:
             return self.size, self.size
         far = self.relative_size * _radius(segment)
@@ -110,8 +112,8 @@ class Grading:
 
 
 def local_length(segment: Segment) -> float:
-    """Length over which what happens at a line of the surface dies away, m: the radius, or a
-    shell's ``2 sqrt(r t)``.
+    """Return the length over which the effect of a line on the surface dies away, m: the radius, or
+    a shell's ``2 sqrt(r t)``.
 
     Examples
     --------
@@ -126,14 +128,14 @@ def local_length(segment: Segment) -> float:
 
 
 def corner_length(segment: Segment) -> float:
-    """Length over which stress at a corner is singular, m: the wall, or the radius of a solid
-    shaft.
+    """Return the length over which stress at a corner is singular, m: the wall, or the radius of a
+    solid shaft.
     """
     return min(_wall(segment), _radius(segment))
 
 
 def joint_length(segments: Sequence[Segment], k: int) -> float:
-    """Length over which stress at the corners where segment k ends is singular, m.
+    """Return the length over which stress at the corners where segment k ends is singular, m.
 
     The least of the walls on both sides, and of a disc that stands out further than it is thick,
     its thickness.
@@ -157,7 +159,7 @@ def joint_length(segments: Sequence[Segment], k: int) -> float:
 
 
 def _thickness(segments, surface, low: float) -> float:
-    """Length of the first segments whose surface stays above a level, m."""
+    """Return the length of the first segments whose surface stays above a level, m."""
     total = 0.0
     for segment in segments:
         if min(surface(segment)) <= low + TOUCH:
@@ -171,19 +173,19 @@ def _outer(segment) -> tuple[float, float]:
 
 
 def _bore(segment) -> tuple[float, float]:
-    """Its bore, the higher the further it stands in."""
+    """Return the bore, the higher the further it stands in."""
     return -segment.inner0, -segment.inner1
 
 
 def segments_under(station: Station, segments: Sequence[Segment]) -> list[int]:
-    """Places of the segments that a seat lies on."""
+    """Return the places of the segments that a seat lies on."""
     lo, hi = station.lo + TOUCH, station.hi - TOUCH
     return [k for k, s in enumerate(segments) if s.y0 < hi and lo < s.y1]
 
 
 def ungraded_depth(segments: Sequence[Segment], k: int) -> float:
-    """Depth of the cells of a coarse mesh under the surface of segment k, m; zero where the surface
-    itself is graded.
+    """Return the depth of the cells of a coarse mesh under the surface of segment k, m; zero where
+    the surface itself is graded.
 
     A shoulder grades the surface of its smaller side, and lines run on from there into the larger
     one: between them and a surface that no shoulder ends at there is nothing.
@@ -204,7 +206,7 @@ def ungraded_depth(segments: Sequence[Segment], k: int) -> float:
     after = [(a.outer1, b.outer0) for a, b in zip(segments[k:], segments[k + 1 :])]
     before = [(b.outer0, a.outer1) for a, b in zip(segments[:k], segments[1 : k + 1])]
     for pairs in (after, reversed(before)):
-        step = next(((own, other) for own, other in pairs if abs(own - other) > TOUCH), None)
+        step = next(((near, far) for near, far in pairs if abs(near - far) > TOUCH), None)
         if step:
             depth = min(depth, max(step[0] - step[1], 0.0))
     return depth
@@ -219,33 +221,18 @@ def _wall(segment) -> float:
 
 
 def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.ndarray:
-    """Positions 0 .. length of mesh lines with geometric layers towards the two ends.
+    """Return positions 0 .. length of mesh lines, ascending, m, with geometric layers towards the
+    two ends.
 
     Layers stand at ``reach ratio^k`` from their end, k = 0 .. layers, as far as there is room: a
-    short interval between two singular points is a layer itself and is not filled with more.
-    Beyond ``reach`` cells go on growing by the same ratio up to the smaller size, from there with
-    the distance. The density is that of refinement 1; other refinements sample it with
-    proportionally more cells, which keeps meshes similar.
+    short interval between two singular points is a layer itself and is not filled with more. Beyond
+    ``reach`` cells go on growing by the same ratio up to the smaller size, from there with the
+    distance. The density is that of refinement 1; other refinements sample it with proportionally
+    more cells, which keeps meshes similar.
 
-    Parameters
-    ----------
-    length : float
-        m.
-    size : float or (float, float)
-        Largest cell, m; two sizes are those at the ends and far from them.
-    ratio : float
-        Of a layer to the one before.
-    reach : float or (float, float)
-        Distance at which grading starts, m, at both ends or at each.
-    refinement : float
-        Multiplies the number of cells.
-    low, high : int
-        Layers at the two ends.
-
-    Returns
-    -------
-    (n + 1,) ndarray
-        Ascending, m.
+    `size` is the largest cell, m, or two sizes at the ends and far from them; `ratio` that of a
+    layer to the one before; `reach` the distance at which grading starts, m, at both ends or at
+    each; `low` and `high` are the layers at the two ends.
 
     Examples
     --------
@@ -265,24 +252,26 @@ def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.nd
         places |= {float(length - d) for d in _layers(high, last, near, ratio) if d < room}
     lines = np.array(distinct(sorted(places), 1e-9 * length))
     lines[-1] = length  # a last layer thinner than that must not move the end
-    filled = [lines[:1]]
+    stretches = [lines[:1]]
     for a, b in zip(lines[:-1], lines[1:]):
-        filled.append(_filled(a, b, length, near, far)[1:])
-    lines = np.concatenate(filled)
+        stretches.append(_filled(a, b, length, near, far)[1:])
+    lines = np.concatenate(stretches)
     n = len(lines) - 1
     m = max(1, int(round(n * refinement)))
     return lines if m == n else np.interp(np.linspace(0, n, m + 1), np.arange(n + 1), lines)
 
 
 def _layers(count: int, start: float, near: float, ratio: float) -> np.ndarray:
-    """Distances of lines from an end: the layers, and beyond ``start`` up to cells of ``near``."""
-    beyond = max(0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6)))
-    return start * ratio ** np.arange(-beyond, count + 1)
+    """Return distances of lines from an end: the layers, and beyond ``start`` up to cells of
+    ``near``.
+    """
+    growing = max(0, int(np.ceil(np.log(near / start / (1 - ratio)) / -np.log(ratio) - 1e-6)))
+    return start * ratio ** np.arange(-growing, count + 1)
 
 
 def _filled(a: float, b: float, length: float, near: float, far: float) -> np.ndarray:
-    """Lines from a to b no further apart than the local cell size: ``near``, or the distance to the
-    nearer end where that is more, up to ``far``.
+    """Return lines from a to b no further apart than the local cell size: ``near``, or the distance
+    to the nearer end where that is more, up to ``far``.
     """
     if near >= far:
         n = max(1, int(np.ceil((b - a) / far - 1e-6)))
@@ -297,7 +286,7 @@ def _filled(a: float, b: float, length: float, near: float, far: float) -> np.nd
 
 
 def distinct(values: Sequence[float], tol: float) -> list[float]:
-    """Ascending values without those that repeat the one before, to a tolerance.
+    """Return ascending values without those that repeat the one before, to a tolerance.
 
     Examples
     --------

@@ -27,23 +27,10 @@ SQUARENESS = 0.5
 
 
 def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np.ndarray]:
-    """Mesh a scene with curved 27-node hexahedra.
+    """Mesh a scene with curved 27-node hexahedra, right-handed, and return the segment (n,) of
+    each; `around` is the number of cells around the circumference, a multiple of 4, at least 8.
 
-    Parameters
-    ----------
-    around : int
-        Cells around the circumference, a multiple of 4, at least 8.
-
-    Returns
-    -------
-    mesh : skfem.MeshHex2
-        Right-handed.
-    segment : (n_elements,) ndarray of int
-
-    Raises
-    ------
-    MeshError
-        If ``around`` does not fit, or a bore closes to a point (use tetrahedra there).
+    MeshError if ``around`` does not fit, or a bore closes to a point (use tetrahedra there).
 
     Examples
     --------
@@ -68,8 +55,8 @@ def hexahedra(scene: Shaft, plan: Layout, around: int = 8) -> tuple[MeshHex2, np
 def straight_hexahedra(
     scene: Shaft, plan: Layout, around: int
 ) -> tuple[MeshHex1, np.ndarray, np.ndarray]:
-    """The same with straight edges, places of the (ne, 27, 3) nodes of its elements, and segments;
-    errors as there.
+    """Return the same mesh with straight edges, places of the (ne, 27, 3) nodes of elements,
+    and segments; errors as there.
     """
     if around % 4 or around < 8:
         raise MeshError(
@@ -108,45 +95,50 @@ def straight_hexahedra(
             keys.append(_core_key(fine[:, :8] // 2, cell.ids[0], cell.ids[3], rim_ids, k, around))
             owner.append(np.full(len(i), cell.segment))
             continue
-        out, up = fan[..., 0], fan[..., 2]
+        out, along = fan[..., 0], fan[..., 2]
         on_core = solid and cell.ring == 1
-        inner = r[0][up] * (rim[turn] if on_core else inflate)
-        outer = r[2][up] * inflate
-        here = inner + (outer - inner) * out / 2
-        if cell.arc:  # what a curved side draws along with it in the middle
-            here = here + (r[1] - (r[0] + r[2]) / 2)[up] * inflate * (out == 1)
+        inner = r[0][along] * (rim[turn] if on_core else inflate)
+        outer = r[2][along] * inflate
+        radius = inner + (outer - inner) * out / 2
+        if cell.arc:  # middle nodes follow a curved side
+            radius = radius + (r[1] - (r[0] + r[2]) / 2)[along] * inflate * (out == 1)
         nodes.append(
-            np.stack([here * np.sin(angle[turn]), y[out, up], here * np.cos(angle[turn])], axis=-1)
+            np.stack(
+                [radius * np.sin(angle[turn]), y[out, along], radius * np.cos(angle[turn])], axis=-1
+            )
         )
         corner = fan[:, :8] // 2
         ids = np.array([[cell.ids[0], cell.ids[3]], [cell.ids[1], cell.ids[2]]])
         keys.append(_ring_key(ids[corner[..., 0], corner[..., 2]], corner[..., 1], around))
         owner.append(np.full(around, cell.segment))
     place, key = np.concatenate(nodes), np.concatenate(keys)
-    _, where, t = np.unique(key, return_index=True, return_inverse=True)
-    points = place[:, :8].reshape(-1, 3)[where]
+    _, first, t = np.unique(key, return_index=True, return_inverse=True)
+    points = place[:, :8].reshape(-1, 3)[first]
     straight = MeshHex1(points.T.copy(), t.reshape(key.shape).T.copy().astype(np.int32))
     return straight, place, np.concatenate(owner)
 
 
 def _core(k: int) -> np.ndarray:
-    """(2k+1, 2k+1, 2) nodes of the core for a unit radius, in (z, x): a Coons patch between four
-    bulged sides.
+    """Return (2k+1, 2k+1, 2) nodes of the core for a unit radius, in (z, x): a Coons patch between
+    four bulged sides.
     """
     n = 2 * k
     t = 5 * np.pi / 4 + np.arange(4 * n) * np.pi / (2 * n)
     square = np.cos(np.pi / 4) / np.maximum(abs(np.cos(t)), abs(np.sin(t)))
     r = (1 - SQUARENESS) + SQUARENESS * square
     edge = np.column_stack([r * np.cos(t), r * np.sin(t)])
-    low, right, high, left = (
-        edge[: n + 1],
-        edge[n : 2 * n + 1],
-        edge[2 * n : 3 * n + 1][::-1],
-        np.roll(edge, -3 * n, axis=0)[: n + 1][::-1],
-    )
+    low = edge[: n + 1]
+    right_side = edge[n : 2 * n + 1]
+    high = edge[2 * n : 3 * n + 1][::-1]
+    left_side = np.roll(edge, -3 * n, axis=0)[: n + 1][::-1]
     s = np.linspace(0, 1, n + 1)
     u, v = s[:, None, None], s[None, :, None]
-    patch = (1 - v) * low[:, None] + v * high[:, None] + (1 - u) * left[None] + u * right[None]
+    patch = (
+        (1 - v) * low[:, None]
+        + v * high[:, None]
+        + (1 - u) * left_side[None]
+        + u * right_side[None]
+    )
     corners = (
         (1 - u) * (1 - v) * low[0]
         + u * (1 - v) * low[-1]
@@ -157,17 +149,19 @@ def _core(k: int) -> np.ndarray:
 
 
 def _rim(core: np.ndarray) -> np.ndarray:
-    """Radius of the core's edge, counter-clockwise from its first corner, at every half cell."""
+    """Return the radius of the core's edge, counter-clockwise from the first corner, at every half
+    cell.
+    """
     n = core.shape[0] - 1
     edge = np.concatenate([core[:n, 0], core[n, :n], core[:0:-1, n], core[0, :0:-1]])
     return np.linalg.norm(edge, axis=1)
 
 
 def _nine(cell: Cell, places) -> tuple[np.ndarray, np.ndarray]:
-    """(3, 3) r and y of a quadrilateral at its corners, the middles of its sides and its middle,
-    by half cells outwards and along the shaft.
+    """Return (3, 3) r and y of a quadrilateral at the corners, the middles of the sides and the
+    middle, by half cells outwards and along the shaft.
     """
-    corner = np.array([places[one] for one in cell.ids])
+    corner = np.array([places[vertex] for vertex in cell.ids])
     out = np.zeros((3, 3, 2))
     out[0, 0], out[2, 0], out[2, 2], out[0, 2] = corner
     out[1, [0, 2]] = (out[0, [0, 2]] + out[2, [0, 2]]) / 2
@@ -176,23 +170,23 @@ def _nine(cell: Cell, places) -> tuple[np.ndarray, np.ndarray]:
         edge, *centre = cell.arc
         a, b = (corner[end] - centre for end in ENDS[edge])
         bulge = (a + b) * (np.linalg.norm(a) / np.linalg.norm(a + b) - 0.5)
-        at = {LOW: (1, 0), OUT: (2, 1), HIGH: (1, 2), IN: (0, 1)}[edge]
-        out[at] += bulge
+        middle_of_edge = {LOW: (1, 0), OUT: (2, 1), HIGH: (1, 2), IN: (0, 1)}[edge]
+        out[middle_of_edge] += bulge
         out[1, 1] += bulge / 2
     return out[..., 0], out[..., 1]
 
 
 def _ring_key(ids, turn, around):
-    """Keys of vertices: those of the meridian, turned."""
+    """Return keys of vertices: those of the meridian, turned."""
     return 1 + (ids.astype(np.int64) * around + turn % around)
 
 
 def _core_key(corner, low, high, rim_ids, k, around):
-    """Keys of core vertices: those on the edge are vertices of the first ring, inner ones are
-    negative.
+    """Return keys of core vertices: those on the edge are vertices of the first ring, inner ones
+    are negative.
     """
-    i, j, up = corner[..., 0], corner[..., 1], corner[..., 2]
+    i, j, along = corner[..., 0], corner[..., 1], corner[..., 2]
     turn = np.select([j == 0, i == k, j == k, i == 0], [i, k + j, 3 * k - i, 4 * k - j], -1)
-    axis = np.array([low, high], dtype=np.int64)[up]
+    axis = np.array([low, high], dtype=np.int64)[along]
     inside = -1 - (axis * (k + 1) + i) * (k + 1) - j
-    return np.where(turn >= 0, _ring_key(rim_ids[up], turn, around), inside)
+    return np.where(turn >= 0, _ring_key(rim_ids[along], turn, around), inside)

@@ -15,7 +15,7 @@ from solidgear.meshing.teeth import turn_at
 
 Place = tuple[float, float]
 #: share of the section that holes take from which elements at them are refined as all others are.
-#: What elements leave at a hole is of second order and counts by that share: the edge may grow with
+#: The error of elements at a hole is of second order and counts by that share: the edge may grow with
 #: its root. Eight edges instead of sixteen around holes of 0.7 and 3 % changed no number by 1e-4
 FULL_SHARE = 0.1
 
@@ -35,10 +35,12 @@ class Hole:
 
 
 def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
-    """Holes of a bolt circle in a segment, with the element edge that a refinement asks of them."""
+    """Return the holes of a bolt circle in a segment, with the element edge that a refinement asks
+    of them.
+    """
     # a circle of fewer than eight edges is no hole
-    taken = bolts.count * bolts.diameter**2 / 4
-    share = taken / (min(segment.outer0, segment.outer1) ** 2 - segment.inner0**2)
+    area = bolts.count * bolts.diameter**2 / 4
+    share = area / (min(segment.outer0, segment.outer1) ** 2 - segment.inner0**2)
     divided = ACROSS * refinement * min(1.0, sqrt(share / FULL_SHARE))
     least = pi * bolts.diameter / 8 / max(1.0, divided)
     lo, hi = bolts.reach(segment)
@@ -46,12 +48,12 @@ def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
 
 
 def hole_places(
-    bolts: Any, segment: Any, twists: list[tuple[Any, Any]], first: float, within: float
+    bolts: Any, segment: Any, twists: list[tuple[Any, Any]], first: float, reach: float
 ) -> list[Place]:
-    """Middles (x, z) of holes in the straight sector, whose middle looks to +z, m.
+    """Return the middles (x, z) of holes in the straight sector, whose middle looks to +z, m.
 
     `twists` turn the sections later, `first` is the angle of the middle of the sector in the shaft,
-    and `within` the angle from there up to which holes are wanted, rad.
+    and `reach` the angle from there up to which holes are wanted, rad.
 
     Examples
     --------
@@ -66,24 +68,24 @@ def hole_places(
     start = bolts.angle - first - float(turn_at(np.array([(lo + hi) / 2]), twists)[0])
     angles = [(start + 2 * pi * k / bolts.count + pi) % (2 * pi) - pi for k in range(bolts.count)]
     r = bolts.circle / 2
-    return [(r * sin(t), r * cos(t)) for t in angles if abs(t) < within]
+    return [(r * sin(t), r * cos(t)) for t in angles if abs(t) < reach]
 
 
 def hole_size(hole: Hole, places: Sequence[Place]) -> str:
-    """Formula (in x, y, z, m) of the element edge at holes: fine at their walls, growing with the
-    distance from the nearest of some middles (x, z).
+    """Return a formula (in x, y, z, m) of the element edge at holes: fine at their walls, growing
+    with the distance from the nearest of some middles (x, z).
     """
     away = ""
     for x, z in places:
-        own = f"Sqrt((x-{_num(x)})^2+(z-{_num(z)})^2)"
-        away = f"Min({own},{away})" if away else own
+        distance = f"Sqrt((x-{_num(x)})^2+(z-{_num(z)})^2)"
+        away = f"Min({distance},{away})" if away else distance
     across = f"Max(0,{away}-{_num(hole.radius)})"
     along = f"Max(0,Max({_num(hole.lo)}-y,y-{_num(hole.hi)}))"
     return f"{_num(hole.least)}+{_num(GROWTH)}*Sqrt({across}^2+{along}^2)"
 
 
 def fine_lines(hole: Hole) -> tuple[float, float, float]:
-    """Holes as edges that elements grow from: see
+    """Return holes as edges that elements grow from: see
     :func:`solidgear.meshing.element_size.rough_cells`.
     """
     # around a wall of radius a there are a growth / least as many more as along a line

@@ -1,4 +1,5 @@
-"""Layout of the mesh lines of a shaft of revolution.
+"""Layout of the mesh lines of a shaft of revolution, with strips of rings along bands at fillets
+and chamfers.
 
 Stress is singular at every shoulder and at every edge of a seat, so structured meshes are graded
 geometrically towards all of them, axially and radially. A refinement ``s`` multiplies the number of
@@ -7,22 +8,39 @@ cells of a fixed density, so that meshes with different ``s`` are similar.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from solidgear.meshing.bands import Bands, first_of_run, radial_bands
-from solidgear.meshing.blocks import Joint, joints_of, lines_along, rounded_layers
+from solidgear.meshing.blocks import DEPTH, Joint, joints_of, lines_along, rounded_layers
 from solidgear.meshing.grading import Grading, joint_length
 from solidgear.meshing.marks import marks_of, owners_of
-from solidgear.meshing.rings import needs_of, ring_lines, runs_of
-from solidgear.meshing.strips import SIDES, Strips, split_bands, strip_of
-from solidgear.scene.outline import SURFACES
+from solidgear.meshing.rings import Radii, Run, needs_of, ring_lines, runs_of
+from solidgear.scene.blends import Corner
+from solidgear.scene.outline import SURFACES, Outline, Surface
 
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
+
+#: largest share of a band that a strip takes
+MOST_OF_BAND = 0.3
+
+
+class Strip(NamedTuple):
+    """Rings of blocks along one side of a band."""
+
+    depth: float  #: m, where no rim says otherwise
+    cells: int
+
+
+#: strips by band, first segment of a run, and the side of the band
+Strips = dict[tuple[int, int, Surface], Strip]
+#: sides of a band, from the inside
+SIDES: tuple[Surface, Surface] = (SURFACES[1], SURFACES[0])
 
 
 @dataclass(frozen=True)
@@ -44,14 +62,14 @@ class Layout:
     joints: tuple[Joint, ...] = ()
 
     def radii(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all band boundaries of a segment at one place of its span y0 to y1, from the
-        inside, m.
+        """Return radii of all band boundaries of a segment at one place of the span y0 to y1, from
+        the inside, m.
         """
         t = (y - span[0]) / (span[1] - span[0])
         return (1 - t) * self.left[segment] + t * self.right[segment]
 
     def divided(self, segment: int) -> list[np.ndarray]:
-        """Subdivision of every band of a segment from the inside, each from 0 to 1."""
+        """Return the subdivision of every band of a segment from the inside, each from 0 to 1."""
         lowest, end = self.bands[segment]
         return [
             self.fractions[band, first_of_run(self.bands, band, segment)]
@@ -84,8 +102,8 @@ class Layout:
         return sum(len(self.ring_numbers(k)) - 1 for k in self.segment)
 
     def ring_numbers(self, segment: int) -> np.ndarray:
-        """Numbers of a segment's ring lines from the inside, the same as its neighbours' where they
-        share a band.
+        """Return the numbers of a segment's ring lines from the inside, the same as its neighbours'
+        where they share a band.
         """
         lowest = self.bands[segment][0]
         parts = [
@@ -95,8 +113,8 @@ class Layout:
         return np.concatenate([*parts, [self._offsets[self.bands[segment][1]]]])
 
     def rings(self, segment: int, span: tuple[float, float], y: float) -> np.ndarray:
-        """Radii of all ring lines of a segment at one place of its span y0 to y1, from its bore or
-        the axis outwards, m.
+        """Return radii of all ring lines of a segment at one place of its span y0 to y1, from its
+        bore or the axis outwards, m.
         """
         b = self.radii(segment, span, y)
         parts = [
@@ -106,19 +124,12 @@ class Layout:
 
 
 def layout(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None = None) -> Layout:
-    """Lay out bands and mesh lines for a scene.
+    """Lay out bands and mesh lines for a scene; SolidgearError if a seat ends among the cells of a
+    fillet or chamfer.
 
-    Parameters
-    ----------
-    attachments : tuple of str, optional
-        Attachments every station will be built with; by default those of the scene. Planes of
-        section ties are lines of the mesh and graded, ends of rigid seats are graded like
-        shoulders.
-
-    Raises
-    ------
-    SolidgearError
-        If a seat ends among the cells of a fillet or chamfer.
+    `attachments` are those that every station will be built with; by default those of the scene.
+    Planes of section ties are lines of the mesh and graded, ends of rigid seats are graded like
+    shoulders.
 
     Examples
     --------
@@ -158,3 +169,131 @@ def layout(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None =
     if strips:
         bands, left, right, fractions = split_bands(outline, bands, left, right, strips, fractions)
     return Layout(y, owners_of(y, segments), bands, left, right, fractions, tuple(joints))
+
+
+def strip_of(joints: Sequence[Joint], bands: Bands, run: Run, surface: Surface) -> Strip | None:
+    """Return the strip along one side of a band; None where no fillet or chamfer lies on it."""
+    wanted = [
+        (DEPTH * c.radial if c.root else c.radial, joint.cells(c))
+        for joint in joints
+        for c in joint.corners
+        if c.surface == surface
+        and c.owner in run.segments
+        and run.band == _band_at(bands, c.owner, surface)
+    ]
+    if not wanted:
+        return None
+    depth = min(MOST_OF_BAND * min(run.thicknesses), max(d for d, _ in wanted))
+    return Strip(depth, max(n for _, n in wanted))
+
+
+def _band_at(bands: Bands, segment: int, surface: Surface) -> int:
+    """Return the band of a segment that lies at one surface."""
+    lowest, end = bands[segment]
+    return lowest if surface == "bore" else end - 1
+
+
+def split_bands(
+    outline: Outline,
+    bands: Bands,
+    left: Radii,
+    right: Radii,
+    strips: Strips,
+    fractions: Mapping[tuple[int, int], np.ndarray],
+) -> tuple:
+    """Return bands, left, right and fractions with strips as bands of their own."""
+    lowest, end = min(b[0] for b in bands), max(b[1] for b in bands)
+    sides = {
+        band: [s for s in SIDES if any((band, k, s) in strips for k in range(len(bands)))]
+        for band in range(lowest, end)
+    }
+    start, count = {}, 0
+    for band in range(lowest, end):
+        start[band] = count
+        count += 1 + len(sides[band])
+    start[end] = count
+    new_left, new_right = (
+        tuple(
+            _with_strips(outline, k, side, np.array(radii[k], float), bands, strips, sides)
+            for k in range(len(bands))
+        )
+        for side, radii in ((1, left), (-1, right))
+    )
+    new_fractions = {}
+    for (band, first), lines in fractions.items():
+        place = start[band] + ("bore" in sides[band])
+        new_fractions[place, first] = lines
+        for surface in sides[band]:
+            strip = strips.get((band, first, surface))
+            strip_place = place + (1 if surface == "outer" else -1)
+            new_fractions[strip_place, first] = (
+                np.linspace(0, 1, strip.cells + 1) if strip else np.zeros(1)
+            )
+    new_bands = tuple((start[low], start[high]) for low, high in bands)
+    return new_bands, new_left, new_right, new_fractions
+
+
+def _with_strips(
+    outline: Outline,
+    segment: int,
+    side: int,
+    radii: np.ndarray,
+    bands: Bands,
+    strips: Strips,
+    sides: Mapping[int, Sequence[Surface]],
+) -> np.ndarray:
+    """Return radii of the boundaries at the start (side 1) or end (-1) of a segment with those of
+    strips.
+    """
+    rims = {surface: outline.rim(segment, surface, side) for surface in SIDES}
+    _clear_of_rims(segment, side, radii, bands, rims)
+    roots = {}
+    for surface in SIDES:
+        root = outline.root(segment + (side < 0), surface)
+        if root and root.face_owner == segment:
+            roots[surface, _band_at(bands, root.owner, surface)] = root
+    low, high = bands[segment]
+    out = [radii[0]]
+    for band in range(low, high):
+        for surface in sides[band]:
+            base = radii[band - low + (surface == "outer")]
+            inwards = 1 if surface == "bore" else -1
+            rim, root = rims[surface], roots.get((surface, band))
+            strip = strips.get((band, first_of_run(bands, band, segment), surface))
+            if strip and rim and band == _band_at(bands, segment, surface):
+                base = base + inwards * rim.radial
+            elif strip:
+                raised = root.out * root.radial if root else 0.0
+                base = base - raised + inwards * strip.depth
+            out.append(base)
+        out.append(radii[band - low + 1])
+    return np.array(out)
+
+
+def _clear_of_rims(
+    segment: int,
+    side: int,
+    radii: np.ndarray,
+    bands: Bands,
+    rims: Mapping[Surface, Corner | None],
+) -> None:
+    """Move radii of the bands at an end of a segment clear of the rims."""
+    inner, outer = (rim.radial if rim else 0.0 for rim in rims.values())
+    if not (outer or inner) or len(radii) == 2:
+        return
+    neighbour = segment - side
+    if 0 <= neighbour < len(bands):
+        # boundaries shared with the neighbour stay
+        high = max(0, bands[neighbour][1] - bands[segment][0])
+        low = max(0, bands[neighbour][0] - bands[segment][0])
+        if outer and high < len(radii) - 1:
+            a, b = radii[high], radii[-1]
+            radii[high:-1] = a + (radii[high:-1] - a) * (b - outer - a) / (b - a)
+        if inner and low > 0:
+            a, b = radii[low], radii[0]
+            radii[1 : low + 1] = a + (radii[1 : low + 1] - a) * (b + inner - a) / (b - a)
+        return
+    a, b = radii[0], radii[-1]
+    inside = (radii[1:-1] - a) / (b - a)
+    a, b = a + inner, b - outer
+    radii[1:-1] = a + inside * (b - a)

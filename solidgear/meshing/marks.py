@@ -25,8 +25,8 @@ class Mark(NamedTuple):
 
 
 def marks_of(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None) -> list[Mark]:
-    """Ends, segment boundaries, seat ends and section planes; where several coincide the strongest
-    counts.
+    """Return the ends, segment boundaries, seat ends and section planes; where several coincide the
+    strongest counts.
     """
     segments, tol = scene.segments, SAME_PLACE * scene.length
     weight: dict[float, int] = {s.y0: 0 for s in segments} | {segments[-1].y1: 0}
@@ -36,25 +36,25 @@ def marks_of(scene: Shaft, grading: Grading, attachments: tuple[str, ...] | None
 
     for station in scene.stations:
         ties = attachments or (station.attachment,)
-        held = "rigid" in ties
+        is_rigid = "rigid" in ties
         narrow = grading.seat_layers(station, segments, ties)
         # A seat that ends at a face needs its layers too: the shear that it carries, along the axis
         # or in tilting, ends in a corner whose other side is free of it.
         for y in (station.lo, station.hi):
-            add(y, (grading.layers if held else grading.edge) + narrow)
+            add(y, (grading.layers if is_rigid else grading.edge) + narrow)
         planes = "section" in ties and tol < station.y < scene.length - tol
         add(station.y, max(grading.edge, grading.layers - 1) if planes else 0)
     for joint in range(1, len(segments)):
         add(segments[joint].y0, corner_layers(scene.outline, joint, grading.layers))
     marks = []
     for mark in distinct(sorted(weight), tol):
-        here = [layers for y, layers in weight.items() if abs(y - mark) <= tol]
-        marks.append(Mark(mark, max(here)))
+        coinciding = [layers for y, layers in weight.items() if abs(y - mark) <= tol]
+        marks.append(Mark(mark, max(coinciding)))
     return marks
 
 
 def lines_between(scene: Shaft, grading: Grading, a: Mark, b: Mark, length: float) -> np.ndarray:
-    """Lines from 0 to a length (m), graded towards the two marks beside it."""
+    """Return lines from 0 to a length (m), graded towards the two marks beside it."""
     tol = SAME_PLACE * scene.length
     owner = next(s for s in scene.segments if (a.y + b.y) / 2 < s.y1 + tol)
     return graded(
@@ -69,13 +69,15 @@ def lines_between(scene: Shaft, grading: Grading, a: Mark, b: Mark, length: floa
 
 
 def owners_of(lines: np.ndarray, segments: Sequence) -> np.ndarray:
-    """Segment of every cell between two lines."""
+    """Return the segment of every cell between two lines."""
     middle = (lines[1:] + lines[:-1]) / 2
     return np.minimum(np.searchsorted([s.y1 for s in segments], middle), len(segments) - 1)
 
 
 def _length_at(y: float, segments: Sequence, tol: float) -> float:
-    """Length (m) over which stress at a place is singular: of the joint there, or of the segment."""
+    """Return the length (m) over which stress at a place is singular: of the joint there, or of the
+    segment.
+    """
     near = [k for k, s in enumerate(segments) if s.y0 < y + tol and y < s.y1 + tol]
     if len(near) > 1:
         return min(joint_length(segments, k) for k in near[:-1])

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 #: y and r of a corner, m, and how often the cells around it are cut
 Cut = tuple[float, float, int]
-#: what a cut leaves of a side: the best ratio of layers towards a singularity of any exponent (Gui
+#: share of a side that a cut leaves: the best ratio of layers towards a singularity of any exponent (Gui
 #: and Babuska 1986, Numer. Math. 49, 613)
 CUT_RATIO = 0.15
 
 
 @dataclass(frozen=True)
 class Meridian:
-    """Quadrilaterals in the (r, y) plane, all numbered alike.
+    """Quadrilaterals in the (r, y) plane.
 
     Every cell is numbered inner-low, outer-low, outer-high, inner-high, so that its first
     local coordinate runs outwards and its second along the shaft: hierarchical
@@ -46,7 +46,7 @@ class Meridian:
 
 
 def meridian(scene: Shaft, plan: Layout) -> Meridian:
-    """Mesh of the meridian of a scene along a layout.
+    """Mesh the meridian of a scene along a layout.
 
     Examples
     --------
@@ -58,16 +58,16 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     >>> float(mesh.points[0].max()), float(mesh.points[1].max())
     (0.03, 0.3)
     """
-    made, places = quadrilaterals(scene, plan)
+    quads, places = quadrilaterals(scene, plan)
     index: dict[int, int] = {}
-    for cell in made:
+    for cell in quads:
         for corner in cell.ids:
             index.setdefault(corner, len(index))
     points = np.array([places[corner] for corner in index]).T
-    cells = np.array([[index[corner] for corner in cell.ids] for cell in made]).T
-    edge, centre = np.full(len(made), -1), np.zeros((2, len(made)))
-    flip = np.zeros((4, len(made)), bool)
-    for k, cell in enumerate(made):
+    cells = np.array([[index[corner] for corner in cell.ids] for cell in quads]).T
+    edge, centre = np.full(len(quads), -1), np.zeros((2, len(quads)))
+    flip = np.zeros((4, len(quads)), bool)
+    for k, cell in enumerate(quads):
         if cell.arc:
             edge[k], *centre[:, k] = cell.arc
         if cell.flip is not None:
@@ -75,9 +75,9 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
     return Meridian(
         points,
         cells,
-        np.array([cell.segment for cell in made]),
-        np.array([k for k, cell in enumerate(made) if cell.ring == cell.count - 1]),
-        np.array([k for k, cell in enumerate(made) if cell.ring == 0]),
+        np.array([cell.segment for cell in quads]),
+        np.array([k for k, cell in enumerate(quads) if cell.ring == cell.count - 1]),
+        np.array([k for k, cell in enumerate(quads) if cell.ring == 0]),
         edge,
         centre,
         flip,
@@ -85,17 +85,17 @@ def meridian(scene: Shaft, plan: Layout) -> Meridian:
 
 
 def drawn_across(flat: Meridian, across: Sequence[tuple[float, float]]) -> Meridian:
-    """A mesh with further lines, from side to opposite side through all cells in their way, each by
-    y and r of a point on a side that it passes, m; SolidgearError if no side is there.
+    """Return a mesh with further lines, from side to opposite side through all cells in their way,
+    each by y and r of a point on a side that it passes, m; SolidgearError if no side is there.
     """
     through = [np.array([r, y]) for y, r in across]
     return _pieced(flat, cut_towards(flat.cells.T, flat.points.T, {}, CUT_RATIO, through))
 
 
 def cut_meridian(flat: Meridian, cuts: Sequence[Cut]) -> tuple[Meridian, np.ndarray]:
-    """A mesh whose cells are cut towards some of its vertices, each told by y and r, m, and how often all
-    cells around it are cut; and the cell of the uncut mesh that each of its cells lies in.
-    SolidgearError if no vertex is there.
+    """Return a mesh whose cells are cut towards some vertices, each given by y and r, m, and
+    how often all cells around it are cut; and the cell of the uncut mesh that each new cell lies
+    in. SolidgearError if no vertex is there.
 
     Examples
     --------
@@ -114,17 +114,17 @@ def cut_meridian(flat: Meridian, cuts: Sequence[Cut]) -> tuple[Meridian, np.ndar
 
 
 def _pieced(flat: Meridian, pieces: Pieces) -> Meridian:
-    """The mesh of some pieces; what lies on an arc stays on it."""
+    """Return the mesh of some pieces; corners on an arc stay on it."""
     parent, corners = pieces.parent, pieces.corners
     points = pieces.points.copy()
     arc = np.full(len(parent), -1)
     for k in np.flatnonzero(flat.arc[parent] >= 0):
         edge = int(flat.arc[parent[k]])
-        on = on_side(pieces.local[k], edge)
-        if on.sum() == 2:
+        on_arc = on_side(pieces.local[k], edge)
+        if on_arc.sum() == 2:
             arc[k] = edge
-            for v, at in zip(corners[k][on], pieces.local[k][on]):
-                points[v] = _on_arc(flat, int(parent[k]), edge, at)
+            for v, local in zip(corners[k][on_arc], pieces.local[k][on_arc]):
+                points[v] = _on_arc(flat, int(parent[k]), edge, local)
     outer, inner = (
         np.array([on_side(local, side).sum() == 2 for local in pieces.local]) for side in (1, 3)
     )
@@ -141,7 +141,7 @@ def _pieced(flat: Meridian, pieces: Pieces) -> Meridian:
 
 
 def _vertex_at(flat: Meridian, y: float, r: float) -> int:
-    """The vertex at a place."""
+    """Return the vertex at a place."""
     away = np.hypot(flat.points[0] - r, flat.points[1] - y)
     nearest = int(away.argmin())
     if away[nearest] > 1e-8 * flat.points[1].max():
@@ -153,15 +153,17 @@ def _vertex_at(flat: Meridian, y: float, r: float) -> int:
 
 
 def on_side(local: np.ndarray, side: int) -> np.ndarray:
-    """(4,) which corners of a piece, (4, 2) in the coordinates of its cell, lie on a side of that."""
-    axis, at = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[side]
-    return np.abs(local[:, axis] - at) < 1e-12
+    """Return (4,) a mask of the corners of a piece, (4, 2) in the coordinates of its cell, that lie
+    on a side of that.
+    """
+    axis, value = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[side]
+    return np.abs(local[:, axis] - value) < 1e-12
 
 
-def _on_arc(flat: Meridian, cell: int, edge: int, at: np.ndarray) -> np.ndarray:
-    """Place on the arc of a cell, m."""
+def _on_arc(flat: Meridian, cell: int, edge: int, local: np.ndarray) -> np.ndarray:
+    """Return the place on the arc of a cell, m, of a point in the coordinates of the cell."""
     a, b = (flat.points[:, flat.cells[end, cell]] for end in ENDS[edge])
-    share = at[0] if edge in (0, 2) else at[1]
+    share = local[0] if edge in (0, 2) else local[1]
     va, vb = a - flat.centre[:, cell], b - flat.centre[:, cell]
     turn = share * np.arctan2(va[0] * vb[1] - va[1] * vb[0], va @ vb)
     c, s = np.cos(turn), np.sin(turn)
@@ -169,12 +171,12 @@ def _on_arc(flat: Meridian, cell: int, edge: int, at: np.ndarray) -> np.ndarray:
 
 
 def _conflicts(corners: np.ndarray) -> np.ndarray:
-    """(4, m) sides that run the other way than in the first cell that has them."""
+    """Return (4, m) a mask of sides that run the other way than in the first cell that has them."""
     first: dict[tuple[int, int], int] = {}
     out = np.zeros((4, len(corners)), bool)
     for k, cell in enumerate(corners):
         for side, (a, b) in enumerate(ENDS):
-            one, two = int(cell[a]), int(cell[b])
-            start = first.setdefault((min(one, two), max(one, two)), one)
-            out[side, k] = start != one
+            begin, end = int(cell[a]), int(cell[b])
+            first_begin = first.setdefault((min(begin, end), max(begin, end)), begin)
+            out[side, k] = first_begin != begin
     return out

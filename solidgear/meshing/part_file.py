@@ -1,4 +1,4 @@
-"""Contents of the files of a part: its surface, volume, groups and coarser meshes."""
+"""Contents of the files of a part: surface, volume, groups and coarser meshes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from solidgear.machine.isolated import IsolatedError, isolated
 from solidgear.meshing.mesh_file import FileMesh, mesh_from
 from solidgear.meshing.placing import Placing
 from solidgear.meshing.quality import MeshError
-from solidgear.meshing.step import look
+from solidgear.meshing.step import survey
 from solidgear.scene.body_file import BodyTable, CoarseMesh, PartGroup
 from solidgear.scene.patches import Patch
 
@@ -28,6 +28,9 @@ SAME_BODY = 0.2
 
 
 def content_of(path: Path) -> bytes:
+    """Read the bytes of a file; SceneError where it is too large, MeshError where it cannot be
+    opened.
+    """
     try:
         if path.stat().st_size > LARGEST:
             raise SceneError(
@@ -38,58 +41,66 @@ def content_of(path: Path) -> bytes:
         raise MeshError(f"cannot be opened: {error.strerror or error}") from None
 
 
-class Found(NamedTuple):
-    """Content of a file, in the scene.
+class PartContent(NamedTuple):
+    """Content of a file, in the scene."""
 
-    ``points`` (3, n) and ``triangles`` (3, t) of its surface and of what lies between groups;
-    ``sides`` (2, t), group on each side, -1 outside; ``own_mesh``, fields of a :class:`BodyFile`.
-    """
-
-    points: np.ndarray
-    triangles: np.ndarray
-    sides: np.ndarray
-    volume: float
+    points: np.ndarray  #: (3, n) on the surface and between groups, m
+    triangles: np.ndarray  #: (3, t) of both
+    sides: np.ndarray  #: (2, t) group on each side, -1 outside
+    volume: float  #: m^3
     groups: tuple[PartGroup, ...]
-    told: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
-    own_mesh: dict[str, Any] = {}
+    material_groups: tuple[str, ...] = ()  #: groups that stand for materials, where several do
+    remarks: tuple[str, ...] = ()  #: oddities of the file
+    mesh_fields: dict[str, Any] = {}  #: of a :class:`BodyFile`, where the file holds a mesh
     patches: tuple[Patch, ...] = ()
 
 
 @lru_cache(maxsize=8)
-def file_mesh(path: str, sha256: str, place: Placing, named: tuple[str, ...]) -> FileMesh:
-    """The mesh of a file of some content, kept: what varies other entries of a scene asks for it again."""
-    return isolated(mesh_from, path, place, named, seconds=LOOK_SECONDS)
+def file_mesh(path: str, sha256: str, place: Placing, names: tuple[str, ...]) -> FileMesh:
+    """Read the mesh of a file of some content; kept, since sweeps over other entries of a scene ask
+    for it again.
+    """
+    return isolated(mesh_from, path, place, names, seconds=LOOK_SECONDS)
 
 
-def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> Found:
-    """Content of the file of a part."""
-    named = tuple(table.materials)
+def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> PartContent:
+    """Read the content of the file of a part, placed in the scene."""
+    names = tuple(table.materials)
     try:
         if table.step is not None:
-            seen = isolated(look, str(path), place, named, seconds=LOOK_SECONDS)
-            groups = _groups(table, seen.volumes, seen.rest)
-            return Found(seen.points, seen.triangles, seen.sides, seen.volume, groups)
+            part = isolated(survey, str(path), place, names, seconds=LOOK_SECONDS)
+            groups = _groups(table, part.volumes, part.unnamed)
+            return PartContent(part.points, part.triangles, part.sides, part.volume, groups)
         sha = hashlib.sha256(content).hexdigest()
-        found = file_mesh(str(path), sha, place, named)
+        mesh_in_file = file_mesh(str(path), sha, place, names)
     except (IsolatedError, MemoryError) as error:
         raise MeshError(
             f"cannot be read: the reader {error or 'ran out of memory'}; the file is broken or too "
             "large"
         ) from None
-    mesh = found.mesh
-    counts = tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t))
-    groups = _groups(table, found.volumes(len(named) + 1), found.rest)
-    own_mesh = {"element": found.element, "counts": counts, "file_materials": found.materials}
-    points, triangles, sides = found.faces()
-    more = (found.told, found.remarks, own_mesh, tuple(_patches(found)))
-    return Found(points, triangles, sides, found.volume, groups, *more)
+    mesh = mesh_in_file.mesh
+    points, triangles, sides = mesh_in_file.faces()
+    return PartContent(
+        points,
+        triangles,
+        sides,
+        volume=mesh_in_file.volume,
+        groups=_groups(table, mesh_in_file.volumes(len(names) + 1), mesh_in_file.unnamed_groups),
+        material_groups=mesh_in_file.material_groups,
+        remarks=mesh_in_file.remarks,
+        mesh_fields={
+            "element": mesh_in_file.element,
+            "counts": tuple(int(a.shape[1]) for a in (mesh.p, mesh.edges, mesh.facets, mesh.t)),
+            "file_materials": mesh_in_file.materials,
+        },
+        patches=tuple(_patches(mesh_in_file)),
+    )
 
 
-def _patches(found: FileMesh) -> Iterator[Patch]:
-    """Named faces of a mesh: their middles by area, and their sizes."""
-    for name, facets in found.patches.items():
-        corners = found.mesh.p[:, found.mesh.facets[:, facets]]  # (3, corner, facet)
+def _patches(file: FileMesh) -> Iterator[Patch]:
+    """Yield named faces of a mesh: their middles by area, and their sizes, m."""
+    for name, facets in file.patches.items():
+        corners = file.mesh.p[:, file.mesh.facets[:, facets]]  # (3, corner, facet)
         weight = np.linalg.norm(
             np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], axis=0), axis=0
         )
@@ -98,8 +109,8 @@ def _patches(found: FileMesh) -> Iterator[Patch]:
         yield Patch(name=name, point=(x, y, z), extent=extent)
 
 
-def _groups(table: BodyTable, volumes, rest: tuple[str, ...]) -> tuple[PartGroup, ...]:
-    """Groups with materials of their own, and the rest where there is one."""
+def _groups(table: BodyTable, volumes, unnamed: tuple[str, ...]) -> tuple[PartGroup, ...]:
+    """Return the groups with materials of their own, and the rest where there is one."""
     if not table.materials:
         return ()
     groups = [
@@ -107,49 +118,53 @@ def _groups(table: BodyTable, volumes, rest: tuple[str, ...]) -> tuple[PartGroup
         for (name, material), volume in zip(table.materials.items(), volumes)
     ]
     if len(volumes) > len(groups) and volumes[-1] > 0:
-        groups.append(PartGroup(name="", volume=float(volumes[-1]), members=rest))
+        groups.append(PartGroup(name="", volume=float(volumes[-1]), members=unnamed))
     return tuple(groups)
 
 
-def skin(found: Found) -> tuple[np.ndarray, np.ndarray]:
-    """Points and triangles of the surface alone."""
-    outside = (found.sides < 0).any(axis=0)
-    used, triangles = np.unique(found.triangles[:, outside], return_inverse=True)
-    return found.points[:, used], triangles.reshape(3, -1)
+def skin(part: PartContent) -> tuple[np.ndarray, np.ndarray]:
+    """Return points (3, n) and triangles (3, t) of the surface alone."""
+    outside = (part.sides < 0).any(axis=0)
+    used, triangles = np.unique(part.triangles[:, outside], return_inverse=True)
+    return part.points[:, used], triangles.reshape(3, -1)
 
 
 def coarser_meshes(
-    table: BodyTable, paths: list[Path], place: Placing, finest: Found
+    table: BodyTable, paths: list[Path], place: Placing, finest: PartContent
 ) -> tuple[CoarseMesh, ...]:
-    """Coarser meshes of a part; SceneError for one of another body, and for meshes out of order."""
-    out, counts = [], [finest.own_mesh["counts"][3]] if paths else []
+    """Read the coarser meshes of a part; SceneError for a mesh of another body, and for meshes out
+    of order.
+    """
+    out, counts = [], [finest.mesh_fields["counts"][3]] if paths else []
     size = np.ptp(skin(finest)[0], axis=1)
     for k in reversed(range(len(paths))):
         try:
             content = content_of(paths[k])
-            found = read(table, paths[k], place, content)
+            part = read(table, paths[k], place, content)
         except MeshError as error:
             raise SceneError(str(error), path=("mesh", k)) from None
-        off = np.append(np.ptp(skin(found)[0], axis=1) / size, found.volume / finest.volume) - 1
-        if abs(off).max() > SAME_BODY:
-            worst = int(abs(off).argmax())
-            what = ("size along x", "size along y", "size along z", "volume")[worst]
+        difference = (
+            np.append(np.ptp(skin(part)[0], axis=1) / size, part.volume / finest.volume) - 1
+        )
+        if abs(difference).max() > SAME_BODY:
+            worst = int(abs(difference).argmax())
+            size_name = ("size along x", "size along y", "size along z", "volume")[worst]
             raise SceneError(
-                f"a mesh of another body: its {what} is {100 * off[worst]:+.3g} % from that of the "
-                "last one",
+                f"a mesh of another body: its {size_name} is {100 * difference[worst]:+.3g} % from that "
+                "of the last one",
                 path=("mesh", k),
             )
-        counts.append(found.own_mesh["counts"][3])
+        counts.append(part.mesh_fields["counts"][3])
         if not counts[-1] < counts[-2]:
             raise SceneError(
                 f"has {counts[-1]} elements and the next mesh {counts[-2]}; list meshes coarse to "
                 "fine",
                 path=("mesh", k),
             )
-        if found.own_mesh["element"] != finest.own_mesh["element"]:
+        if part.mesh_fields["element"] != finest.mesh_fields["element"]:
             raise SceneError(
-                f"is of {found.own_mesh['element']} and the last mesh of "
-                f"{finest.own_mesh['element']}; only meshes of one element are a sequence",
+                f"is of {part.mesh_fields['element']} and the last mesh of "
+                f"{finest.mesh_fields['element']}; only meshes of one element are a sequence",
                 path=("mesh", k),
             )
         sha = hashlib.sha256(content).hexdigest()

@@ -1,4 +1,4 @@
-"""Placing of a part in a scene: its axis turned to y, the lower end of it at y = 0."""
+"""Placing of a part in a scene: the axis turned to y, the lower end of it at y = 0."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ Triple = tuple[float, float, float]
 
 
 class Placing(NamedTuple):
-    """From places in a file to places in a scene, ``turn @ (unit * x - foot)``."""
+    """A map from places in a file to places in a scene, ``turn @ (unit * x - foot)``."""
 
     unit: float  #: m for each unit of the file
     turn: tuple[Triple, Triple, Triple]  #: 3 x 3, a rotation
-    #: what comes to lie at the origin: where the axis of the part leaves it, m, in the axes of the
-    #: file
+    #: point that comes to lie at the origin, where the axis of the part leaves it: m, in the axes of
+    #: the file
     foot: Triple
 
-    def of(self, points: np.ndarray) -> np.ndarray:
-        """Places in the scene, m, of (3, n) places in the file."""
+    def to_scene(self, points: np.ndarray) -> np.ndarray:
+        """Return places in the scene, m, of (3, n) places in the file."""
         return np.array(self.turn) @ (self.unit * points - np.array(self.foot)[:, None])
 
-    def back(self, points: np.ndarray) -> np.ndarray:
-        """Places in the file, m, of (3, n) places in the scene."""
+    def to_file(self, points: np.ndarray) -> np.ndarray:
+        """Return places in the file, m, of (3, n) places in the scene."""
         return np.array(self.turn).T @ points + np.array(self.foot)[:, None]
 
 
@@ -39,7 +39,7 @@ TURNS: dict[str, tuple[Triple, Triple, Triple]] = {
 
 
 def turn_of(axis: str | Triple) -> tuple[Triple, Triple, Triple]:
-    """The rotation that turns an axis of the file to +y, that of a direction of length one by the
+    """Return the rotation that turns an axis of the file to +y, a direction of length one by the
     least angle.
 
     Examples

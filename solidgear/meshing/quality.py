@@ -31,8 +31,8 @@ _BATCH = 4000  # elements looked at at once
 
 
 class MeshError(SolidgearError):
-    """A mesh that cannot be made, or must not be used; the message names the element and what to
-    do.
+    """A mesh that cannot be made, or must not be used; the message names the element and the
+    remedy.
     """
 
 
@@ -54,8 +54,8 @@ class MeshQuality:
     #: smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
     #: sliver wrongly
     min_volume_ratio: float
-    #: largest share that the second moments of a part of it are off by, as edges of elements that
-    #: would fold are straight: it falls by no order
+    #: largest error of the second moments of a part of it, as edges of elements that would fold are
+    #: straight, relative: it falls by no order
     straightened: float = 0.0
 
 
@@ -120,20 +120,20 @@ def check_mesh(
 
 
 def element_ratios(mesh: Mesh) -> np.ndarray:
-    """(min det J) / (max det J) inside each element, no gate: 1 for affine ones, -1 where no det J
-    is positive. MeshError for what is no volume mesh, or has no elements.
+    """Return (min det J) / (max det J) inside each element, no gate: 1 for affine ones, -1 where no
+    det J is positive. MeshError for a mesh of no volume, or without elements.
     """
     return _measure(mesh)[3]
 
 
 def element_volumes(mesh: Mesh) -> np.ndarray:
-    """Volume of each element, m^3; no gate."""
+    """Return the volume of each element, m^3; no gate."""
     return np.concatenate([_polynomials(mesh, part)[2] for part in _parts(mesh)])
 
 
 def cell_sizes(mesh: Mesh) -> tuple[float, float, float]:
-    """Sizes of the cells, m, along their longest, their middle and their shortest direction: each
-    the mean over the volume.
+    """Return the sizes of the cells, m, along their longest, their middle and their shortest
+    direction: each the mean over the volume.
 
     Of a box they are its edges: of any cell, twice the standard deviation of its corners along its
     principal directions.
@@ -142,15 +142,15 @@ def cell_sizes(mesh: Mesh) -> tuple[float, float, float]:
     spokes = corners - corners.mean(axis=1, keepdims=True)
     spread = np.einsum("ike,jke->eij", spokes, spokes) / len(mesh.t)
     # rounding may leave a direction of a flat cell below zero
-    own = 2 * np.sqrt(np.maximum(np.linalg.eigvalsh(spread), 0.0))
+    sizes = 2 * np.sqrt(np.maximum(np.linalg.eigvalsh(spread), 0.0))
     volumes = element_volumes(mesh)
-    short, middle, long = (float(size) for size in volumes @ own / volumes.sum())
+    short, middle, long = (float(size) for size in volumes @ sizes / volumes.sum())
     return long, middle, short
 
 
 def outward(mesh: Mesh, facets: np.ndarray) -> np.ndarray:
-    """(3, k) normals of boundary facets by their first three corners, out of the material, as long as
-    the parallelogram of these is large, m^2.
+    """Return (3, k) normals of boundary facets by their first three corners, out of the material,
+    as long as the parallelogram of these is large, m^2.
     """
     a, b, c = (mesh.p[:, corner] for corner in mesh.facets[:3, facets])
     normal = np.cross((b - a).T, (c - a).T).T
@@ -159,12 +159,12 @@ def outward(mesh: Mesh, facets: np.ndarray) -> np.ndarray:
 
 
 def _parts(mesh) -> list[slice]:
-    """Elements in batches."""
+    """Return elements in batches."""
     return [slice(i, i + _BATCH) for i in range(0, mesh.t.shape[1], _BATCH)]
 
 
 def _measure(mesh):
-    """Quality, and per element the least and greatest det J and their ratio."""
+    """Return the quality, and per element the least and greatest det J and their ratio."""
     if mesh.dim() != 3:
         raise MeshError(
             f"a volume mesh is needed, but {type(mesh).__name__} has dimension {mesh.dim()}: "
@@ -173,8 +173,8 @@ def _measure(mesh):
     if mesh.t.shape[1] == 0:
         raise MeshError("the mesh has no elements: check the geometry it was made from")
 
-    found = [_extremes(mesh, part) for part in _parts(mesh)]
-    low, high, volumes = (np.concatenate(x) for x in zip(*found))
+    extremes = [_extremes(mesh, part) for part in _parts(mesh)]
+    low, high, volumes = (np.concatenate(x) for x in zip(*extremes))
     ratio = np.divide(low, high, out=np.full_like(low, -1.0), where=high > 0.0)
     quality = MeshQuality(
         n_elements=int(mesh.t.shape[1]),
@@ -193,8 +193,8 @@ _DEGREE = {(True, False): 0, (True, True): 3, (False, False): 2, (False, True): 
 
 
 def _polynomials(mesh, part):
-    """Lattice values of det J, its Bernstein coefficients and volumes of some elements, and the
-    rule behind them.
+    """Return lattice values of det J, Bernstein coefficients and volumes of some elements, and
+    the rule behind them.
     """
     element = mesh.elem()
     tet, curved = element.refdom.nnodes == 4, element.doflocs.shape[0] > element.refdom.nnodes
@@ -206,7 +206,7 @@ def _polynomials(mesh, part):
 
 
 def _extremes(mesh, part):
-    """Least and greatest det J of some elements, and their volumes.
+    """Return the least and greatest det J of some elements, and their volumes.
 
     det J is a polynomial, so its Bernstein coefficients bound it over the whole element; where they
     leave a doubt the element is cut in eight, again and again, and only the doubtful pieces are
@@ -224,14 +224,14 @@ def _extremes(mesh, part):
         # at a corner a coefficient is the value
         np.minimum.at(low, owner, pieces[:, :, rule.corners].min(axis=(0, 2)))
         open_ = (pieces.min(axis=2) < low[owner] - _TOLERANCE * high[owner]) & (low[owner] > 0.0)
-        child, at = np.nonzero(open_)
-        owner, piece = owner[at], pieces[child, at].T
+        child, doubtful = np.nonzero(open_)
+        owner, piece = owner[doubtful], pieces[child, doubtful].T
     np.minimum.at(low, owner, piece.min(axis=0) if len(owner) else 0.0)
     return low, high, volumes
 
 
 def _determinants(mesh, element, points, part):
-    """det J, shape (points, elements)."""
+    """Return det J (points, elements)."""
     # one small dense product instead of scikit-fem's cached loop over nine Jacobian entries
     gradients = np.empty((element.doflocs.shape[0], *points.shape))  # (node, 3, point)
     for i, gradient in enumerate(gradients):
@@ -247,22 +247,19 @@ def _determinants(mesh, element, points, part):
 
 @dataclass(frozen=True)
 class _Bernstein:
-    """Polynomials of one degree on a reference element.
+    """Polynomials of one degree on a reference element."""
 
-    ``points`` (3, m) the lattice; ``from_values`` (m, m) makes coefficients of values there;
-    ``children`` (8, m, m) makes the coefficients of the eight pieces of the element; ``corners``
-    the coefficients that are values at its corners.
-    """
-
-    points: np.ndarray
-    from_values: np.ndarray
-    children: np.ndarray
-    corners: np.ndarray
+    points: np.ndarray  #: (3, m) the lattice
+    from_values: np.ndarray  #: (m, m) makes coefficients of values there
+    children: np.ndarray  #: (8, m, m) makes the coefficients of the eight pieces of the element
+    corners: np.ndarray  #: coefficients that are values at its corners
 
 
 @cache
 def _bernstein(tet: bool, degree: int) -> _Bernstein:
-    """On the tetrahedron of a total degree, on the cube of a degree in each coordinate."""
+    """Return the polynomials on the tetrahedron of a total degree, or on the cube of a degree in
+    each coordinate.
+    """
     powers = np.array(
         [p for p in product(range(degree + 1), repeat=3) if not tet or sum(p) <= degree]
     )
@@ -308,18 +305,18 @@ def _multinomial(degree: int, powers) -> float:
 
 
 def _binomials(degree: int, powers) -> float:
-    each = [factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in powers]
-    return float(np.prod(each))
+    factors = [factorial(degree) / factorial(int(i)) / factorial(degree - int(i)) for i in powers]
+    return float(np.prod(factors))
 
 
-def _refuse(mesh, bad, value, what, name, unit, cure):
+def _refuse(mesh, bad, value, fault, name, unit, cure):
     if not bad.any():
         return
     worst = int(np.argmin(np.where(np.isnan(value), -np.inf, value)))
     x, y, z = mesh.p[:, mesh.t[:, worst]].mean(axis=1)
     count = int(bad.sum())
     raise MeshError(
-        f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {what}, "
+        f"{count} of {len(bad)} elements {'is' if count == 1 else 'are'} {fault}, "
         f"the worst is element {worst} at ({x:.4g}, {y:.4g}, {z:.4g}) m "
         f"with {name} {value[worst]:.3g} {unit}: {cure}"
     )

@@ -23,7 +23,7 @@ STRAIGHT = 1e-6
 
 
 def tolerance_of(segments: Sequence[Shape]) -> float:
-    """Length (m) below which two positions are one."""
+    """Return the length (m) below which two positions are one."""
     return 1e-9 * (segments[-1].y1 - segments[0].y0)
 
 
@@ -35,9 +35,9 @@ def draw_revolved(
     start: float = 0.0,
     turn: float = 2.0 * pi,
 ) -> None:
-    """Draw the meridian with shared edges and turn it about y by an angle, from one from +x towards -z
-    on, rad. Cross-sections at ``planes`` are to be made of element faces, and the outer surface is
-    split along circles; both are places y, m.
+    """Draw the meridian with shared edges and turn it about y by an angle, from one from +x towards
+    -z on, rad. Cross-sections at ``planes`` become element faces, and the outer surface is split
+    along circles; both are places y, m.
     """
     occ = gmsh.model.occ
     tolerance = tolerance_of(outline.segments)
@@ -63,9 +63,9 @@ def draw_revolved(
         for corner in outline.corners:
             if corner.centre and {a, b} == {point(*corner.on_face), point(*corner.on_cylinder)}:
                 middle = occ.addPoint(*corner.centre, 0.0)
-                made = occ.addCircleArc(a, middle, b)
+                arc = occ.addCircleArc(a, middle, b)
                 occ.remove([(0, middle)])
-                return made
+                return arc
         return occ.addLine(a, b)
 
     slabs = _slabs(outline.segments, planes, tolerance)
@@ -98,12 +98,12 @@ def _embed_tips(gmsh: Any, tolerance: float) -> None:
     for _, face in gmsh.model.getEntities(2) if tips else ():
         y = gmsh.model.occ.getCenterOfMass(2, face)[1]
         if gmsh.model.getType(2, face) == "Plane" and len(gmsh.model.getBoundary([(2, face)])) == 1:
-            touching = [tag for tag, at in tips.items() if abs(at - y) <= 10.0 * tolerance]
+            touching = [tag for tag, tip in tips.items() if abs(tip - y) <= 10.0 * tolerance]
             gmsh.model.mesh.embed(0, touching, 2, face)
 
 
 def _slabs(segments: Sequence[Shape], planes: Iterable[float], tolerance: float) -> list[Frustum]:
-    """Segments cut at planes."""
+    """Return the segments cut at planes."""
     slabs = []
     start = segments[0].y0
     for s in segments:
@@ -123,7 +123,7 @@ def _slabs(segments: Sequence[Shape], planes: Iterable[float], tolerance: float)
 
 
 def _cuts(slab: Frustum, circles: Iterable[float], tolerance: float) -> list[Point]:
-    """(radius, y) of circles inside a slab, on its outer surface, ascending in y."""
+    """Return (radius, y) of circles inside a slab, on the outer surface, ascending in y."""
     inside = sorted(y for y in circles if slab.y0 + tolerance < y < slab.y1 - tolerance)
     return [(_radius_at(slab, "outer", y), y) for y in inside]
 
@@ -135,11 +135,10 @@ def _radius_at(slab: Frustum, surface: Surface, y: float) -> float:
 
 @dataclass(frozen=True)
 class _Row:
-    """Points (radius, y) of one end of a slab, from the bore outwards, and where a rim meets the
-    bore or the outer surface beside it.
-    """
+    """Points (radius, y) of one end of a slab."""
 
-    points: list[Point]
+    points: list[Point]  #: from the bore outwards
+    #: bore, outer: point at which a rim meets the bore or the outer surface
     bore: list[Point] = field(default_factory=list)
     outer: list[Point] = field(default_factory=list)
 
@@ -147,7 +146,9 @@ class _Row:
 def _rows_between(
     below: Frustum | None, above: Frustum | None, outline: Outline, tolerance: float
 ) -> tuple[_Row, _Row]:
-    """Points of the end of one slab and of the start of the next; None beyond an end face."""
+    """Return the points of the end of one slab and of the start of the next; None beyond an end
+    face.
+    """
     rounded = [c for c in outline.corners if abs(c.y - _place(below, above)) <= tolerance]
     if rounded:
         shared = _shared_face(below, above, rounded, tolerance) if below and above else []
@@ -156,21 +157,21 @@ def _rows_between(
             _rounded_row(above, 1, shared, rounded, tolerance),
         )
     ends = [
-        sorted(radii_of(slab, surface)[at] for surface in SURFACES) if slab else []
-        for slab, at in ((below, 1), (above, 0))
+        sorted(radii_of(slab, surface)[end] for surface in SURFACES) if slab else []
+        for slab, end in ((below, 1), (above, 0))
     ]
     y = _place(below, above)
     rows = []
-    for own, other in zip(ends, reversed(ends)):
-        between = {r for r in other if own and own[0] < r < own[1]}
-        rows.append(_Row([(r, y) for r in sorted({*own, *between})]))
+    for radii, neighbour in zip(ends, reversed(ends)):
+        between = {r for r in neighbour if radii and radii[0] < r < radii[1]}
+        rows.append(_Row([(r, y) for r in sorted({*radii, *between})]))
     return rows[0], rows[1]
 
 
 def _shared_face(
     below: Frustum, above: Frustum, rounded: Sequence[Corner], tolerance: float
 ) -> list[Point]:
-    """Ends of the face that two slabs share, in the bore and outside.
+    """Return the ends of the face that two slabs share, in the bore and outside.
 
     It runs from where one fillet meets its cylinder to where the other does, so that no sharp edge
     of a slab lies at a fillet. A surface without a step has its end as far along as the other.
@@ -181,16 +182,16 @@ def _shared_face(
         ("bore", "outer", max),
         ("outer", "bore", min),
     )
-    for surface, other, deeper in ways:
+    for surface, opposite, deeper in ways:
         before, after = radii_of(below, surface)[1], radii_of(above, surface)[0]
         if surface in roots:
             points.append(roots[surface].on_cylinder)
-        elif abs(before - after) > tolerance or other not in roots:
+        elif abs(before - after) > tolerance or opposite not in roots:
             points.append((deeper(before, after), below.y1))
         else:
-            beside = roots[other]
-            y = beside.on_cylinder[1]
-            points.append((_radius_at(above if beside.side > 0 else below, surface, y), y))
+            root = roots[opposite]
+            y = root.on_cylinder[1]
+            points.append((_radius_at(above if root.side > 0 else below, surface, y), y))
     return points
 
 
@@ -201,30 +202,32 @@ def _rounded_row(
     rounded: Sequence[Corner],
     tolerance: float,
 ) -> _Row:
-    """One end of a slab with fillets or chamfers: the face that it shares, and its faces beyond."""
+    """Return one end of a slab with fillets or chamfers: the face that it shares, and the faces
+    beyond.
+    """
     if slab is None:
         return _Row([])
-    y, at = (slab.y1, 1) if side < 0 else (slab.y0, 0)
+    y, end = (slab.y1, 1) if side < 0 else (slab.y0, 0)
     roots = {c.surface: [c.on_face] for c in rounded if c.root}
     rims = {c.surface: c for c in rounded if not c.root and c.side == side}
     edges = {
-        surface: rims[surface].on_face if surface in rims else (radii_of(slab, surface)[at], y)
+        surface: rims[surface].on_face if surface in rims else (radii_of(slab, surface)[end], y)
         for surface in SURFACES
     }
     points = list(shared)
-    if not shared or radii_of(slab, "outer")[at] > shared[1][0] + tolerance:
+    if not shared or radii_of(slab, "outer")[end] > shared[1][0] + tolerance:
         points = [*points, *roots.get("outer", []), edges["outer"]]
-    if not shared or radii_of(slab, "bore")[at] < shared[0][0] - tolerance:
+    if not shared or radii_of(slab, "bore")[end] < shared[0][0] - tolerance:
         points = [edges["bore"], *roots.get("bore", []), *points]
-    beside = {surface: [rim.on_cylinder] for surface, rim in rims.items()}
-    return _Row(points, beside.get("bore", []), beside.get("outer", []))
+    on_cylinders = {surface: [rim.on_cylinder] for surface, rim in rims.items()}
+    return _Row(points, on_cylinders.get("bore", []), on_cylinders.get("outer", []))
 
 
 def graded_corners(
     outline: Outline, planes: Iterable[float], circles: Sequence[float]
 ) -> list[Point]:
-    """Points (y, radius) of the meridian to grade the size of elements at, m: circles on the surface,
-    and where the outline turns.
+    """Return points (y, radius) of the meridian to grade the size of elements at, m: circles on the
+    surface, and where the outline turns.
 
     A fillet or chamfer leaves no corner, but for the two ends of a chamfer at a root.
     """
@@ -233,26 +236,26 @@ def graded_corners(
     corners = [(y, r) for slab in slabs for r, y in _cuts(slab, circles, tolerance)]
     on_end = [y for y in circles if not _near(y, [y for y, _ in corners], tolerance)]
     corners += _kinks(slabs, on_end, tolerance)
-    left = [
+    sharp = [
         (y, r)
         for y, r in corners
         if all(abs(y - c.y) > tolerance or abs(r - c.r) > tolerance for c in outline.corners)
     ]
     chamfered = [c for c in outline.corners if c.root and c.kind == "chamfer"]
-    return left + [(y, r) for c in chamfered for r, y in (c.on_face, c.on_cylinder)]
+    return sharp + [(y, r) for c in chamfered for r, y in (c.on_face, c.on_cylinder)]
 
 
 def _kinks(slabs: Sequence[Frustum], circles: Sequence[float], tolerance: float) -> list[Point]:
-    """(y, radius) where the outline turns, and where a circle falls on a slab end."""
-    found: list[Point] = []
+    """Return (y, radius) where the outline turns, and where a circle falls on a slab end."""
+    kinks: list[Point] = []
     for below, above in zip([None, *slabs], [*slabs, None]):
         y = _place(below, above)
         for surface in SURFACES:
             radii, slopes = set(), []
-            for slab, at in ((below, 1), (above, 0)):
+            for slab, end in ((below, 1), (above, 0)):
                 if slab:
                     ends = radii_of(slab, surface)
-                    radii.add(ends[at])
+                    radii.add(ends[end])
                     slopes.append((ends[1] - ends[0]) / (slab.y1 - slab.y0))
             turns = (
                 len(slopes) == 1
@@ -260,12 +263,12 @@ def _kinks(slabs: Sequence[Frustum], circles: Sequence[float], tolerance: float)
                 or abs(slopes[0] - slopes[1]) > STRAIGHT
             )
             if turns or (surface == "outer" and _near(y, circles, tolerance)):
-                found += [(y, r) for r in radii - {0.0}]
-    return found
+                kinks += [(y, r) for r in radii - {0.0}]
+    return kinks
 
 
 def _place(below: Frustum | None, above: Frustum | None) -> float:
-    """Place where one slab ends and the next begins."""
+    """Return the place where one slab ends and the next begins."""
     if below:
         return below.y1
     assert above is not None

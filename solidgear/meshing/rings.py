@@ -51,7 +51,9 @@ class Run(NamedTuple):
 
 
 def runs_of(bands: Bands, left: Radii, right: Radii) -> Iterator[Run]:
-    """All runs, band by band; radii of the boundaries are those at the two ends of every segment."""
+    """Yield all runs, band by band; radii of the boundaries are those at the two ends of every
+    segment.
+    """
     for band in range(min(b[0] for b in bands), max(b[1] for b in bands)):
         having = [k for k, b in enumerate(bands) if b[0] <= band < b[1]]
         first_of = {k: first_of_run(bands, band, k) for k in having}
@@ -66,8 +68,8 @@ def runs_of(bands: Bands, left: Radii, right: Radii) -> Iterator[Run]:
 def ring_lines(
     segments: Sequence[Segment], grading: Grading, run: Run, needs: Needs, thickness: float
 ) -> np.ndarray:
-    """Subdivision of a band, 0 to 1 outwards, graded towards the surfaces that carry singular
-    points; its thickness is in m, and segments are all of the shaft.
+    """Return the subdivision of a band, 0 to 1 outwards, graded towards the surfaces that carry
+    singular points; `thickness` is in m, and segments are all of the shaft.
     """
     inside, outside = (
         reduce(
@@ -83,12 +85,12 @@ def ring_lines(
         near, far = min(near, longest), min(far, longest)
         edge = min(1, grading.across), min(FREE_EDGE * thick, grading.reach * thickness)
         inside, outside = (need if need[0] else edge for need in (inside, outside))
-    layers = (0 if run.on_axis else inside[0], outside[0])
+    low, high = 0 if run.on_axis else inside[0], outside[0]
     reach = (inside[1], outside[1])
-    whole = not (run.on_axis and grading.core)
-    part = thickness if whole else thickness / 2
-    lines = graded(part, (near, far), grading.ratio, reach, grading.refinement, *layers)
-    lines = lines if whole else np.concatenate([[0.0], part + lines])
+    both_sides = not (run.on_axis and grading.core)
+    part = thickness if both_sides else thickness / 2
+    lines = graded(part, (near, far), grading.ratio, reach, grading.refinement, low, high)
+    lines = lines if both_sides else np.concatenate([[0.0], part + lines])
     return lines / thickness
 
 
@@ -96,13 +98,13 @@ def _outermost(segment) -> float:
     return max(segment.outer0, segment.outer1)
 
 
-def _finer(one: Need, other: Need, ratio: float) -> Need:
-    """Of two needs the one with more layers; of as many, the one that begins further out, unless the
+def _finer(a: Need, b: Need, ratio: float) -> Need:
+    """Return the need with more layers; of as many, the one that begins further out, unless the
     other begins more than a layer nearer.
     """
-    if one[0] != other[0]:
-        return max(one, other)
-    near, far = sorted((one, other))
+    if a[0] != b[0]:
+        return max(a, b)
+    near, far = sorted((a, b))
     return near if near[1] < ratio * far[1] else far
 
 
@@ -113,31 +115,31 @@ def needs_of(
     bands: Bands,
     corners: Mapping[tuple[int, Surface], int],
 ) -> Needs:
-    """Layers and reach (m) that a band boundary needs in a segment; `corners` are layers towards
-    those of the outline, by joint and surface.
+    """Return layers and reach (m) that a band boundary needs in a segment; `corners` are layers
+    towards those of the outline, by joint and surface.
     """
     segments = scene.segments
     needs: Needs = {}
 
     def add(boundary: int, segment: int, layers: int, reach: float) -> None:
         if layers:
-            known = needs.get((boundary, segment), (0, 0.0))
-            needs[boundary, segment] = _finer(known, (layers, reach), grading.ratio)
+            before = needs.get((boundary, segment), (0, 0.0))
+            needs[boundary, segment] = _finer(before, (layers, reach), grading.ratio)
 
     for (joint, surface), layers in corners.items():
         reach = grading.radial_reach * joint_length(segments, joint - 1)
-        (low, high), (other_low, other_high) = bands[joint - 1 : joint + 1]
+        (low, high), (next_low, next_high) = bands[joint - 1 : joint + 1]
         # A band boundary meets a shoulder where it is the surface of the smaller neighbour.
-        boundary = min(high, other_high) if surface == "outer" else max(low, other_low)
+        boundary = min(high, next_high) if surface == "outer" else max(low, next_low)
         for k in (joint - 1, joint):
             add(boundary, k, layers, reach)
     for station in scene.stations:
         ties = attachments or (station.attachment,)
-        held, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
+        is_rigid, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
         for i in segments_under(station, segments):
             edge = min(grading.edge, grading.across)
             reach = grading.radial_reach * corner_length(segments[i])
-            add(bands[i][1], i, (grading.across if held else edge) + narrow, reach)
+            add(bands[i][1], i, (grading.across if is_rigid else edge) + narrow, reach)
             if "section" in ties:  # whose plane ends in a ring of the bore as well
                 add(bands[i][0], i, edge, reach)
     return needs

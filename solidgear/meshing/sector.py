@@ -5,7 +5,7 @@ Segments of revolution are drawn as wedges, toothed ones as polyhedra whose sect
 so that all of their faces are planes. Both cut faces carry the same mesh (`setPeriodic` of gmsh),
 and their nodes are matched by place. Spiral teeth are the straight ones twisted about the axis:
 ``theta(y) = tan(beta) int dy / (r cos(delta))`` turns every section rigidly, so that cut faces stay
-each other's image and volumes what they were.
+each other's image and volumes stay the same.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ MATCH = 1e-9
 
 @dataclass(frozen=True)
 class SectorMesh:
-    """A meshed sector, or the half of one that is even about its middle."""
+    """A meshed sector, or the half of one that is even about the middle."""
 
     #: twisted as its teeth are; a half has its middle plane in x = 0, whatever ``turn`` is
     mesh: MeshTet2
@@ -59,13 +59,13 @@ class SectorMesh:
 
     @property
     def parts(self) -> int:
-        """Such meshes around the shaft."""
+        """Number of such meshes around the shaft."""
         return self.count * (2 if self.half else 1)
 
 
 def sectors_of(features: Iterable[Any]) -> int:
-    """Number of equal sectors of a shaft with cyclic features, the greatest common divisor of their
-    counts; 0 without any.
+    """Return the number of equal sectors of a shaft with cyclic features, the greatest common
+    divisor of their counts; 0 without any.
 
     Examples
     --------
@@ -89,17 +89,12 @@ def sector_mesh(
     refinement: float,
     count: int | None = None,
 ) -> SectorMesh:
-    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs through
-    its middle; there are as many around as the features say, unless told.
+    """Mesh one sector of a shaft with cyclic features, or half of one where a mirror plane runs
+    through its middle; without a `count` there are as many around as the features say.
 
     Sizes are those of :func:`solidgear.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
-    divides the sizes at features.
-
-    Raises
-    ------
-    MeshError
-        Features without a common sector, geometry that cannot be meshed, cut faces that do not
-        match, inverted elements, or a wrong volume.
+    divides the sizes at features. MeshError for features without a common sector, geometry that
+    cannot be meshed, cut faces that do not match, inverted elements, or a wrong volume.
     """
     count = count or sectors_of(features)
     reason = no_common_sector(features, count)
@@ -113,10 +108,11 @@ def sector_mesh(
     first = next((middle(teeth, count) for teeth in toothed.values()), plane or 0.0)
     twists = [(s, toothed[s.name]) for s in segments if s.name in toothed]
     with Session(gmsh):
-        own = draw_sector(gmsh, outline, toothed, planes, circles, count, half)
+        volumes = draw_sector(gmsh, outline, toothed, planes, circles, count, half)
         holes = [f for f in features if not f.toothed]
-        own = drill(gmsh, own, holes, segments, twists, count, first)
-        gmsh.model.occ.fragment(own[:1], own[1:]) if len(own) > 1 else None
+        volumes = drill(gmsh, volumes, holes, segments, twists, count, first)
+        if len(volumes) > 1:
+            gmsh.model.occ.fragment(volumes[:1], volumes[1:])
         gmsh.model.occ.synchronize()
         drawn = sum(gmsh.model.occ.getMass(3, v) for _, v in gmsh.model.getEntities(3))
         if not half:
@@ -124,53 +120,53 @@ def sector_mesh(
         corners = graded_corners(outline, planes, circles)
         formulas = size_formulas(outline, corners, size, graded_size, None, around)
         formulas += tooth_sizes(segments, features, refinement)
-        for f, here, hole in hole_sizes(segments, features, refinement):
+        for f, segment, hole in hole_sizes(segments, features, refinement):
             # those in the sector, and on either side of it
-            within = pi / count + 2 * pi / f.count
-            formulas.append(hole_size(hole, hole_places(f, here, twists, first, within)))
+            reach = pi / count + 2 * pi / f.count
+            formulas.append(hole_size(hole, hole_places(f, segment, twists, first, reach)))
         set_size(gmsh, formulas, size)
         filling = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     mesh = filling.mesh
     exact = volume_of_sector(outline, features, count) / (2 if half else 1)
     quality = check_filling(filling, volume=exact, rtol=lost_by_arcs(around))
-    segment = segment_of_elements(mesh, segments)
+    owner = segment_of_elements(mesh, segments)
     if half:
-        return SectorMesh(mesh, segment, count, mesh.p, quality, drawn, first, True)
-    # turned to where the features look
-    whole = _turned(mesh, lambda y: first + turn_at(y, twists))
-    quality = check_filling(replace(filling, mesh=whole))
-    return SectorMesh(whole, segment, count, mesh.p, quality, drawn, first)
+        return SectorMesh(mesh, owner, count, mesh.p, quality, drawn, first, half=True)
+    # turned to the direction of the features
+    twisted = _turned(mesh, lambda y: first + turn_at(y, twists))
+    quality = check_filling(replace(filling, mesh=twisted))
+    return SectorMesh(twisted, owner, count, mesh.p, quality, drawn, first)
 
 
 def tooth_sizes(
     segments: Iterable[Segment], features: Iterable[Any], refinement: float
 ) -> list[str]:
-    """Formulas of element size at teeth, as gmsh reads them."""
-    of = {s.name: s for s in segments}
-    return [tooth_size(f, of[f.segment], refinement) for f in features if f.toothed]
+    """Return formulas of element size at teeth, as gmsh reads them."""
+    by_name = {s.name: s for s in segments}
+    return [tooth_size(f, by_name[f.segment], refinement) for f in features if f.toothed]
 
 
 def hole_sizes(
     segments: Iterable[Segment], features: Iterable[Any], refinement: float
 ) -> list[tuple[Any, Any, Hole]]:
-    """Bolt circles, the segments that they are in, and their holes with element sizes."""
-    of = {s.name: s for s in segments}
-    found = [(f, of[f.segment]) for f in features if not f.toothed]
-    return [(f, here, hole_of(f, here, refinement)) for f, here in found]
+    """Return bolt circles, the segments that they are in, and their holes with element sizes."""
+    by_name = {s.name: s for s in segments}
+    bolts = [(f, by_name[f.segment]) for f in features if not f.toothed]
+    return [(f, segment, hole_of(f, segment, refinement)) for f, segment in bolts]
 
 
 def sizes_around(
     segments: Sequence[Segment], features: Iterable[Any], refinement: float
 ) -> list[str]:
-    """Formulas of element size at straight teeth and bolt circles of a whole shaft."""
+    """Return formulas of element size at straight teeth and bolt circles of a whole shaft."""
     holes = hole_sizes(segments, features, refinement)
     return tooth_sizes(segments, features, refinement) + [
-        hole_size(hole, hole_places(f, here, [], 0.0, pi + 1)) for f, here, hole in holes
+        hole_size(hole, hole_places(f, segment, [], 0.0, pi + 1)) for f, segment, hole in holes
     ]
 
 
 def volume_of_sector(outline: Outline[Segment], features: Iterable[Any], count: int) -> float:
-    """Closed form of the volume of one of so many sectors, m^3."""
+    """Return the volume of one of `count` sectors in closed form, m^3."""
     toothed, segments = {f.segment: f for f in features if f.toothed}, outline.segments
     total = volume_of(outline) - volume_of(Outline(segments))  # of fillets and chamfers
     for s in segments:
@@ -184,89 +180,91 @@ def volume_of_sector(outline: Outline[Segment], features: Iterable[Any], count: 
     return total / count
 
 
-def _turned(mesh: MeshTet2, by) -> MeshTet2:
-    """The mesh with every section turned about +y, by an angle that depends on y."""
+def _turned(mesh: MeshTet2, angle) -> MeshTet2:
+    """Return the mesh with every section turned about +y, by an angle that depends on y."""
     x, y, z = mesh.doflocs
-    c, s = np.cos(by(y)), np.sin(by(y))
+    c, s = np.cos(angle(y)), np.sin(angle(y))
     return with_nodes(mesh, np.stack([c * x + s * z, y, c * z - s * x]))
 
 
 def matched(nodes: np.ndarray, count: int, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Nodes on one cut face that a turn takes to those of the other, one for every one of `high`;
-    MeshError if one of them has no partner.
+    """Return the nodes on one cut face that a turn takes to those of the other, one for every one
+    of `high`; MeshError if one of them has no partner.
     """
     turned = rotation(1, 2 * pi / count)[:3, :3] @ nodes[:, low]
-    gap, at = cKDTree(turned.T).query(nodes[:, high].T)
-    if (
-        len(low) != len(high)
-        or gap.max(initial=0.0) > MATCH * np.ptp(nodes[1])
-        or len(np.unique(at)) != len(low)
-    ):
-        raise MeshError(
-            f"the cut faces of the sector carry different meshes, {gap.max(initial=0.0):.1e} m apart"
-        )
-    return low[at]
+    gap, nearest = cKDTree(turned.T).query(nodes[:, high].T)
+    widest = gap.max(initial=0.0)
+    paired = len(low) == len(high) and len(np.unique(nearest)) == len(low)
+    if not paired or widest > MATCH * np.ptp(nodes[1]):
+        raise MeshError(f"the cut faces of the sector carry different meshes, {widest:.1e} m apart")
+    return low[nearest]
 
 
-def cut_vertices(made: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices of the lower and of the higher cut face, without those on the axis, and these."""
-    used = np.unique(made.mesh.t)
-    x, _, z = made.straight[:, used]
-    near = np.hypot(x, z) < MATCH * np.ptp(made.straight[1])
+def cut_vertices(sector: SectorMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return vertices of the lower and of the higher cut face, without those on the axis, and
+    these.
+    """
+    used = np.unique(sector.mesh.t)
+    x, _, z = sector.straight[:, used]
+    near = np.hypot(x, z) < MATCH * np.ptp(sector.straight[1])
     # distance from the cut planes, whose normals the angle gives
-    c, s = cos(pi / made.count), sin(pi / made.count)
-    tolerance = MATCH * np.ptp(made.straight[1])
-    on = [np.abs(x * c - sign * z * s) < tolerance for sign in (-1, 1)]
-    return (*(used[side & ~near] for side in on), used[near])
+    c, s = cos(pi / sector.count), sin(pi / sector.count)
+    tolerance = MATCH * np.ptp(sector.straight[1])
+    on_faces = [np.abs(x * c - sign * z * s) < tolerance for sign in (-1, 1)]
+    return (*(used[side & ~near] for side in on_faces), used[near])
 
 
-def replicated(made: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
-    """The mesh of the whole shaft, sector by sector around the axis, and the segment of each
+def replicated(sector: SectorMesh) -> tuple[MeshTet2, np.ndarray]:
+    """Return the mesh of the whole shaft, sector by sector around the axis, and the segment of each
     element.
     """
-    mesh, count = made.mesh, made.count
+    mesh, count = sector.mesh, sector.count
     corners = np.unique(mesh.t)
-    low, high, axis = cut_vertices(made)
+    low, high, axis = cut_vertices(sector)
     master = matched(mesh.p, count, low, high)
-    own = np.setdiff1d(corners, np.r_[high, axis])
+    inner = np.setdiff1d(corners, np.r_[high, axis])
     place = np.zeros(mesh.p.shape[1], int)
-    place[own] = np.arange(len(own))
+    place[inner] = np.arange(len(inner))
     number = np.zeros((count, mesh.p.shape[1]), int)
-    number[:, own] = place[own] + len(own) * np.arange(count)[:, None]
+    number[:, inner] = place[inner] + len(inner) * np.arange(count)[:, None]
     number[:, high] = np.roll(number, -1, axis=0)[:, master]
-    number[:, axis] = len(own) * count + np.arange(len(axis))
-    total = len(own) * count + len(axis)
+    number[:, axis] = len(inner) * count + np.arange(len(axis))
+    total = len(inner) * count + len(axis)
     turns = [rotation(1, 2 * pi * k / count)[:3, :3] for k in range(count)]
-    return joined(mesh, turns, number, total), np.tile(made.segment, count)
+    return joined(mesh, turns, number, total), np.tile(sector.segment, count)
 
 
-def mirrored(made: SectorMesh) -> SectorMesh:
-    """The whole sector from its half, the elements and their images in the middle plane; a whole
-    one as it is.
+def mirrored(sector: SectorMesh) -> SectorMesh:
+    """Return the whole sector from half of it, the elements and their images in the middle plane; a
+    whole one as it is.
     """
-    if not made.half:
-        return made
-    mesh = made.mesh
+    if not sector.half:
+        return sector
+    mesh = sector.mesh
     used = np.unique(mesh.t)
-    off = used[np.abs(mesh.p[0, used]) > MATCH * np.ptp(mesh.p[1])]
+    beside_plane = used[np.abs(mesh.p[0, used]) > MATCH * np.ptp(mesh.p[1])]
     number = np.zeros((2, mesh.p.shape[1]), int)
     number[:, used] = np.arange(len(used))
-    number[1, off] = len(used) + np.arange(len(off))
-    whole = joined(mesh, [np.eye(3), np.diag([-1.0, 1.0, 1.0])], number, len(used) + len(off))
-    turned = _turned(whole, lambda y: made.turn)
-    segment = np.tile(made.segment, 2)
-    quality = replace(check_mesh(turned), straightened=made.quality.straightened)
-    return SectorMesh(turned, segment, made.count, whole.p, quality, 2 * made.drawn, made.turn)
+    number[1, beside_plane] = len(used) + np.arange(len(beside_plane))
+    both_halves = joined(
+        mesh, [np.eye(3), np.diag([-1.0, 1.0, 1.0])], number, len(used) + len(beside_plane)
+    )
+    turned = _turned(both_halves, lambda y: sector.turn)
+    segment = np.tile(sector.segment, 2)
+    quality = replace(check_mesh(turned), straightened=sector.quality.straightened)
+    return SectorMesh(
+        turned, segment, sector.count, both_halves.p, quality, 2 * sector.drawn, sector.turn
+    )
 
 
 def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total: int) -> MeshTet2:
-    """One mesh of copies of a mesh, turned or mirrored by orthogonal maps.
+    """Return one mesh of copies of a mesh, turned or mirrored by orthogonal maps.
 
-    `number` (copies, nv) says what the vertices of every copy are called, of a total of all copies;
+    `number` (copies, nv) are the numbers of the vertices of every copy, of a total of all copies;
     those that copies share come to lie on each other.
     """
     points, cells, ends, middles = np.zeros((3, total)), [], [], []
-    at = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
+    middle = mesh.doflocs[:, mesh.dofs.edge_dofs[0]]
     corners = np.unique(mesh.t)
     for name, turn in zip(number, maps):
         points[:, name[corners]] = turn @ mesh.p[:, corners]
@@ -274,5 +272,5 @@ def joined(mesh: MeshTet2, maps: Sequence[np.ndarray], number: np.ndarray, total
         t = mesh.t if np.linalg.det(turn) > 0 else mesh.t[[0, 2, 1, 3]]
         cells.append(name[t])
         ends.append(name[mesh.edges])
-        middles.append(turn @ at)
+        middles.append(turn @ middle)
     return ten_nodes(points, np.hstack(cells), np.hstack(ends), np.hstack(middles))

@@ -1,4 +1,4 @@
-"""One sector of a shaft drawn in OCC: wedges, toothed slabs, holes, and the pairs of its cut faces."""
+"""One sector of a shaft drawn in OCC: wedges, toothed slabs, holes, and the pairs of cut faces."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ from solidgear.scene.outline import Frustum, Outline
 
 
 def draw_sector(gmsh, outline: Outline, toothed, planes, circles, count: int, half: bool):
-    """Volumes of the sector, or of its half from the middle on: wedges of runs of plain segments,
-    and slabs of toothed ones. Volumes overlap where fillets stand on the faces of toothed segments.
+    """Draw the volumes of the sector, or of a half from the middle on: wedges of runs of plain
+    segments, and slabs of toothed ones. Volumes overlap where fillets stand on the faces of toothed
+    segments.
     """
     segments = outline.segments
     turn = (pi if half else 2 * pi) / count
@@ -30,50 +31,50 @@ def draw_sector(gmsh, outline: Outline, toothed, planes, circles, count: int, ha
     for i, s in enumerate(segments):
         if s.name in toothed:
             inside = [y for y in (*planes, *circles) if s.y0 < y < s.y1]
-            _toothed(gmsh, s, toothed[s.name], sorted(set(inside)), count, half)
+            _draw_teeth(gmsh, s, toothed[s.name], sorted(set(inside)), count, half)
         elif runs and runs[-1][-1] == i - 1:
             runs[-1].append(i)
         else:
             runs.append([i])
     for run in runs:
-        own = [segments[i] for i in run]
+        plain = [segments[i] for i in run]
         inside = [
-            [y for y in places if own[0].y0 <= y <= own[-1].y1] for places in (planes, circles)
+            [y for y in places if plain[0].y0 <= y <= plain[-1].y1] for places in (planes, circles)
         ]
         low, high = (_under_teeth(outline, toothed, joint) for joint in (run[0], run[-1] + 1))
         moved = [
             replace(c, owner=c.owner - run[0] + len(low)) for c in outline.corners if c.owner in run
         ]
-        drawn = Outline([*low, *own, *high], moved)
+        drawn = Outline([*low, *plain, *high], moved)
         draw_revolved(gmsh, drawn, inside[0], inside[1], start, turn)
     gmsh.model.occ.synchronize()
     return gmsh.model.getEntities(3)
 
 
 def draw_toothed(gmsh, outline: Outline, features, planes, circles) -> None:
-    """Volumes of a whole shaft with straight teeth and bolt circles: the half on one side of a mirror
-    plane of its teeth, its image, and holes. Volumes overlap as those of a sector do.
+    """Draw the volumes of a whole shaft with straight teeth and bolt circles: the half on one side
+    of a mirror plane of the teeth, the image, and holes. Volumes overlap as those of a sector do.
     """
     occ, toothed = gmsh.model.occ, {f.segment: f for f in features if f.toothed}
     first = next((middle(teeth, 1) for teeth in toothed.values()), 0.0)
     half = draw_sector(gmsh, outline, toothed, planes, circles, 1, True)
-    other = occ.copy(half)
-    occ.mirror(other, 1.0, 0.0, 0.0, 0.0)
+    image = occ.copy(half)
+    occ.mirror(image, 1.0, 0.0, 0.0, 0.0)
     holes = [f for f in features if not f.toothed]
-    own = drill(gmsh, [*half, *other], holes, outline.segments, [], 1, first)
-    occ.rotate(own, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, first)
+    volumes = drill(gmsh, [*half, *image], holes, outline.segments, [], 1, first)
+    occ.rotate(volumes, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, first)
     occ.synchronize()
 
 
 def _under_teeth(outline: Outline, toothed: Mapping[str, Any], joint: int) -> list[Frustum]:
-    """A short piece of a toothed segment below the roots of its teeth, where a fillet or chamfer
-    stands on its face: the wedge beside it has this face to be drawn to.
+    """Return a short piece of a toothed segment below the roots of its teeth, where a fillet or
+    chamfer stands on its face: the wedge beside it has this face to be drawn to.
     """
-    here = [c for c in outline.corners if c.root and c.joint == joint]
-    found = [c for c in here if outline.segments[c.face_owner].name in toothed]
-    if not found:
+    roots = [c for c in outline.corners if c.root and c.joint == joint]
+    corners = [c for c in roots if outline.segments[c.face_owner].name in toothed]
+    if not corners:
         return []
-    corner, s = found[0], outline.segments[found[0].face_owner]
+    corner, s = corners[0], outline.segments[corners[0].face_owner]
     ends = (s.outer0, s.inner0), (s.outer1, s.inner1)
     (outer, inner), (far_outer, far_inner) = ends[:: corner.side]
     share = min(corner.radial / s.length, 0.5)
@@ -84,12 +85,12 @@ def _under_teeth(outline: Outline, toothed: Mapping[str, Any], joint: int) -> li
         r * (1 + share * (far_outer / outer - 1)),
         inner + share * (far_inner - inner),
     )
-    low, high = (far, (corner.y, r, inner))[:: corner.side]
-    return [Frustum(*(v for pair in zip(low, high) for v in pair))]
+    (y0, outer0, inner0), (y1, outer1, inner1) = (far, (corner.y, r, inner))[:: corner.side]
+    return [Frustum(y0, y1, outer0, outer1, inner0, inner1)]
 
 
-def _toothed(gmsh, segment, teeth, cuts: list[float], count: int, half: bool) -> None:
-    """A toothed segment between the cut faces, as polyhedra from cut to cut, less its bore."""
+def _draw_teeth(gmsh, segment, teeth, cuts: list[float], count: int, half: bool) -> None:
+    """Draw a toothed segment between the cut faces, as polyhedra from cut to cut, less the bore."""
     occ = gmsh.model.occ
     angle, radius = (half_outline if half else teeth_outline)(teeth, count)
     places = [segment.y0, *cuts, segment.y1]
@@ -114,19 +115,23 @@ def _toothed(gmsh, segment, teeth, cuts: list[float], count: int, half: bool) ->
         solids.append((3, occ.addVolume([occ.addSurfaceLoop([low[2], *sides, high[2]])])))
     if segment.inner0 or segment.inner1:
         a, b, length = segment.inner0, segment.inner1, segment.length
-        place = (0.0, segment.y0, 0.0, 0.0, length, 0.0)
-        bore = occ.addCylinder(*place, a) if a == b else occ.addCone(*place, a, b)
+        if a == b:
+            bore = occ.addCylinder(0.0, segment.y0, 0.0, 0.0, length, 0.0, a)
+        else:
+            bore = occ.addCone(0.0, segment.y0, 0.0, 0.0, length, 0.0, a, b)
         occ.cut(solids, [(3, bore)])
 
 
 def drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
-    """Cut the holes that reach into the sector, also those that its borders halve."""
+    """Cut the holes that reach into the sector, also those that its borders halve; return the
+    volumes.
+    """
     occ, tools = gmsh.model.occ, []
     for f in holes:
-        here = next(s for s in segments if s.name == f.segment)
-        lo, hi = f.reach(here)
+        segment = next(s for s in segments if s.name == f.segment)
+        lo, hi = f.reach(segment)
         half = pi / count + 2 * f.diameter / f.circle
-        for x, z in hole_places(f, here, twists, first, half):
+        for x, z in hole_places(f, segment, twists, first, half):
             tools.append((3, occ.addCylinder(x, lo, z, 0.0, hi - lo, 0.0, f.diameter / 2)))
     if not tools:
         return volumes
@@ -136,7 +141,7 @@ def drill(gmsh, volumes, holes, segments, twists, count: int, first: float):
 
 
 def pair_faces(gmsh, count: int) -> None:
-    """Tell gmsh which cut faces carry the same mesh."""
+    """Pair in gmsh the cut faces that carry the same mesh."""
     half = pi / count
     low: dict[int, tuple[float, ...]] = {}
     high: dict[int, tuple[float, ...]] = {}
@@ -145,12 +150,12 @@ def pair_faces(gmsh, count: int) -> None:
         t, key = np.arctan2(x, z), (np.hypot(x, z), y, gmsh.model.occ.getMass(2, face))
         if abs(abs(t) - half) < 1e-7:
             (low if t < 0 else high)[face] = key
-    own = np.array(list(high.values())).reshape(-1, 3)
-    if len(own) != len(low):
+    high_keys = np.array(list(high.values())).reshape(-1, 3)
+    if len(high_keys) != len(low):
         raise MeshError("the two cut faces of the sector are not divided alike")
     pairs = []
     for face, place in low.items():
-        k = int(np.abs(own - place).max(axis=1).argmin())
+        k = int(np.abs(high_keys - place).max(axis=1).argmin())
         pairs.append((list(high)[k], face))
     if len({slave for slave, _ in pairs}) != len(low):
         raise MeshError("the two cut faces of the sector are not divided alike")

@@ -1,10 +1,10 @@
 """The axis about which most of a surface is round, wherever it lies.
 
-Normals of a surface of revolution meet its axis: with its direction d and moment m, and a normal n at x,
-``d . (x * n) + m . n = 0``, which is linear. Triangles have their normals to a part of their size;
-corners lie on the surface itself, and all corners of a triangle on a cylinder are as far from the
-axis. So normals find the axis roughly, and distances of corners to the last digits. Sides that miss it by
-more than others weigh less and less, in both.
+Normals of a surface of revolution meet its axis: with its direction d and moment m, and a normal n
+at x, ``d . (x * n) + m . n = 0``, which is linear. Triangles have their normals to a part of their
+size; corners lie on the surface itself, and all corners of a triangle on a cylinder are as far from
+the axis. So normals find the axis roughly, and distances of corners to the last digits. Sides that
+miss it by more than others weigh less and less, in both.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ ROUGH, FINE = 3e-2, 1e-9
 
 
 def shared_axis(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A point (3,) on the axis, m, and its direction (3,), of length one; of a surface that is round
-    about nothing, of some line.
+    """Return a point (3,) on the axis, m, and the direction (3,), of length one; of a surface that
+    is round about nothing, of some line.
 
     Examples
     --------
     >>> turn = 2 * np.pi * np.arange(24) / 24
     >>> ring = np.array([2 + np.cos(turn), 0 * turn, np.sin(turn)])
     >>> points = np.hstack([ring, ring + [[0], [3], [0]]])
-    >>> here, there = np.arange(24), (np.arange(24) + 1) % 24
-    >>> sides = np.hstack([[here, there, 24 + here], [there, 24 + there, 24 + here]])
+    >>> k, after = np.arange(24), (np.arange(24) + 1) % 24
+    >>> sides = np.hstack([[k, after, 24 + k], [after, 24 + after, 24 + k]])
     >>> foot, along = shared_axis(points, sides)
     >>> abs(along).round(9).tolist(), abs(foot[[0, 2]]).round(9).tolist()
     ([0.0, 1.0, 0.0], [2.0, 0.0])
@@ -40,7 +40,7 @@ def shared_axis(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, 
 
 
 def _rough(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """By the normals of triangles, with corners (3, 3, t)."""
+    """Return the axis by the normals of triangles, with corners (3, 3, t)."""
     a, b, c = corners.transpose(1, 0, 2)
     normal = np.cross((b - a).T, (c - a).T)
     area = np.linalg.norm(normal, axis=1)
@@ -53,13 +53,13 @@ def _rough(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         dd, dm, mm = gram[:3, :3], gram[:3, 3:], gram[3:, 3:]
         back = -np.linalg.pinv(mm, rcond=1e-12) @ dm.T
         along = np.linalg.eigh(dd + dm @ back)[1][:, 0]
-        off = rows @ np.concatenate([along, back @ along])
-        weight = area / (off**2 + ROUGH**2)
+        residual = rows @ np.concatenate([along, back @ along])
+        weight = area / (residual**2 + ROUGH**2)
     return np.cross(along, back @ along), along
 
 
 def _refined(corners, foot, along) -> tuple[np.ndarray, np.ndarray]:
-    """By the distances of corners from the axis."""
+    """Return the axis by the distances of corners from it."""
     a, b, c = corners.transpose(1, 0, 2)
     area = np.linalg.norm(np.cross((b - a).T, (c - a).T), axis=1)
     near = ROUGH
@@ -72,13 +72,15 @@ def _refined(corners, foot, along) -> tuple[np.ndarray, np.ndarray]:
         out = across / radius
         # of a shift along either side, and a tilt towards it
         slope = np.concatenate([-out, -out * height])
-        off = (radius - radius.mean(axis=0)).ravel()
+        residual = (radius - radius.mean(axis=0)).ravel()
         slope = (slope - slope.mean(axis=1, keepdims=True)).reshape(4, -1)
         # faces across the axis say nothing of it
         steep = np.ptp(height, axis=0) > 1e-6
         share = np.tile(area * steep, 3)
-        weight = share / (off**2 + near**2)
-        step = np.linalg.lstsq((slope * weight) @ slope.T, -(slope * weight) @ off, rcond=1e-12)[0]
+        weight = share / (residual**2 + near**2)
+        step = np.linalg.lstsq(
+            (slope * weight) @ slope.T, -(slope * weight) @ residual, rcond=1e-12
+        )[0]
         foot = foot + step[:2] @ side
         along = along + step[2:] @ side
         along /= np.linalg.norm(along)

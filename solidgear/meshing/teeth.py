@@ -14,8 +14,8 @@ from solidgear.scene.features.toothed import arc
 
 
 def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the section of one of so many sectors, from one cut face to the other: angles from
-    its middle, rad, and radii over the pitch radius.
+    """Return corners of the section of one of `count` sectors, from one cut face to the other:
+    angles from the middle, rad, and radii over the pitch radius.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Corners of the section of half a sector, from its middle to a cut face, as of
+    """Return corners of the section of half a sector, from the middle to a cut face, as of
     :func:`outline`.
 
     Examples
@@ -53,14 +53,14 @@ def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     (4, 0.0)
     """
     angle, radius = outline(teeth, count)
-    beyond = angle > 0.0
+    past_middle = angle > 0.0
     # a tip or a land: the plane meets the middle of a chord
-    k = int(np.argmax(beyond))
-    return np.r_[0.0, angle[beyond]], np.r_[radius[k] * cos(angle[k]), radius[beyond]]
+    k = int(np.argmax(past_middle))
+    return np.r_[0.0, angle[past_middle]], np.r_[radius[k] * cos(angle[k]), radius[past_middle]]
 
 
 def section_area(teeth: Any) -> float:
-    """Area of a toothed section of unit pitch radius, closed form.
+    """Return the area of a toothed section of unit pitch radius, closed form.
 
     Examples
     --------
@@ -70,12 +70,13 @@ def section_area(teeth: Any) -> float:
     True
     """
     angle, radius = outline(teeth, teeth.count)
-    each = radius[1:] * radius[:-1] * np.sin(np.diff(angle)) / 2
-    return float(teeth.count * each.sum())
+    triangles = radius[1:] * radius[:-1] * np.sin(np.diff(angle)) / 2
+    return float(teeth.count * triangles.sum())
 
 
 def section_polar(teeth: Any) -> float:
-    """Polar second moment of area of a toothed section of unit pitch radius, closed form.
+    """Return the polar second moment of area of a toothed section of unit pitch radius, closed
+    form.
 
     Examples
     --------
@@ -93,8 +94,8 @@ def section_polar(teeth: Any) -> float:
 
 
 def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
-    """Mass, kg, and polar inertia, kg m^2, that a toothed segment has beyond its cone; below zero
-    where the cone has more.
+    """Return mass, kg, and polar inertia, kg m^2, that a toothed segment has beyond the cone; below
+    zero where the cone has more.
     """
     square, _, _, fourth = integrals_along(segment.length, segment.outer0, segment.outer1)
     return (
@@ -104,8 +105,8 @@ def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
 
 
 def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
-    """Angle about +y, rad, by which spiral teeth on segments have turned the sections at places y,
-    m: zero at the start of the shaft, and constant outside the teeth.
+    """Return the angle about +y, rad, by which spiral teeth on segments have turned the sections at
+    places y, m: zero at the start of the shaft, and constant outside the teeth.
 
     Examples
     --------
@@ -130,8 +131,8 @@ def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
 
 
 def tooth_size(teeth: Any, segment: Any, refinement: float) -> str:
-    """Formula (in x, y, z, m) of the element edge at teeth: a part of their height in the section
-    that refinement divides, growing inwards.
+    """Return a formula (in x, y, z, m) of the element edge at teeth: a part of their height in the
+    section that refinement divides, growing inwards.
     """
     share = (teeth.tip - teeth.root) / (ACROSS * refinement)
     slope = (segment.outer1 - segment.outer0) / (segment.y1 - segment.y0)

@@ -30,7 +30,7 @@ _TET10 = 11  # gmsh's number for the ten-node tetrahedron
 class TetMesh:
     """A meshed shaft."""
 
-    mesh: MeshTet2  #: with mid-edge nodes on the true surface, but for what keeps its volume
+    mesh: MeshTet2  #: with mid-edge nodes so near to the true surface that its volume is kept
     segment: np.ndarray  #: index of the segment each element lies in
     quality: MeshQuality
 
@@ -46,43 +46,21 @@ def tetrahedra(
     around=16,
     progress=None,
 ):
-    """Mesh a shaft of revolution about y with curved ten-node tetrahedra.
+    """Mesh a shaft of revolution about y with curved ten-node tetrahedra; the same arrays for the
+    same input. MeshError for geometry that cannot be meshed, gmsh missing or failing, inverted
+    elements, or a wrong volume.
 
-    Parameters
-    ----------
-    outline : Outline
-        Of segments end to end along y, with fillets and chamfers.
-    planes : sequence of float
-        Positions y of cross-sections to be made of element faces [m].
-    circles : sequence of float
-        Positions y at which the outer surface is split along a circle (ends of seats) [m].
-    size : float
-        Target length of an element edge in the bulk [m]; gmsh keeps it below about a tenth of the
-        shaft's diagonal.
-    graded_size : float, optional
-        Target edge at `circles` and at every kink of the outline (shoulders, cone ends, corners)
-        [m]; None is uniform.
-    reach : float, optional
-        Distance over which the edge grows from `graded_size` to `size` [m]; the local radius when
-        None.
-    around : int
-        Least number of elements around a circle.
-    progress : callable, optional
-        Called as progress(fraction, message) between the stages.
-
-    Returns
-    -------
-    TetMesh
-        The same arrays for the same input.
-
-    Raises
-    ------
-    MeshError
-        Geometry that cannot be meshed, gmsh missing or failing, inverted elements, wrong volume.
+    `planes` are positions y of cross-sections to be made of element faces, `circles` those at which
+    the outer surface is split along a circle (ends of seats), m. `size` is the target length of an
+    element edge in the bulk, m, which gmsh keeps below about a tenth of the shaft's diagonal;
+    `graded_size` that at `circles` and at every kink of the outline (shoulders, cone ends,
+    corners), the same everywhere when None; `reach` the distance over which the edge grows from the
+    one to the other, m, the local radius when None. `around` is the least number of elements around
+    a circle; `progress` is called as progress(fraction, message) between the stages.
     """
     segments = outline.segments
     planes, circles = [float(y) for y in planes], [float(y) for y in circles]
-    _validate(segments, planes, circles, size, graded_size, reach, around)
+    _refuse_impossible(segments, planes, circles, size, graded_size, reach, around)
     gmsh = import_gmsh()
     report = progress or (lambda fraction, message: None)
 
@@ -106,37 +84,37 @@ def tetrahedra(
 
 
 def check_filling(filling: Filling, **limits: float) -> MeshQuality:
-    """Quality of a mesh as :func:`~solidgear.meshing.quality.check_mesh` says, with what its
-    straightened edges took.
+    """Return the quality of a mesh by :func:`~solidgear.meshing.quality.check_mesh`, with the error
+    of straightened edges.
     """
     worst = max(filling.straightened.values(), default=0.0)
     return replace(check_mesh(filling.mesh, **limits), straightened=worst)
 
 
 def lost_by_arcs(around: int) -> float:
-    """Share of its volume that a mesh may lack with so many elements around, four times what the arcs
-    lose by themselves: a lost part is far larger.
+    """Return the share of the volume that a mesh may lack with a number of elements around, four
+    times the loss of the arcs by themselves: a lost part is far larger.
     """
     return max(1e-3, 4.0 * (pi / around) ** 4 / 30.0)
 
 
 def segment_of_elements(mesh: MeshTet2, segments: Sequence[Shape]) -> np.ndarray:
-    """Segment that each element lies in: interfaces are planes of element faces, so the mean of its
-    corners decides.
+    """Return the segment that each element lies in: interfaces are planes of element faces, so the
+    mean of its corners decides.
     """
     y = mesh.p[1][mesh.t].mean(axis=0)
     return np.searchsorted([s.y1 for s in segments[:-1]], y)
 
 
 def filled(gmsh, refusal: str, report=lambda fraction, message: None) -> Filling:
-    """Curved tetrahedra in everything that is drawn in a model with its sizes; `refusal` is the
-    MeshError where it cannot be done, in which the mesher's own words take the place of ``{}``.
+    """Return curved tetrahedra in all drawn volumes of a model with sizes; `refusal` is the
+    MeshError where they cannot be made, in which the mesher's own words take the place of ``{}``.
     """
     try:
         for dimension, fraction in ((1, 0.05), (2, 0.1), (3, 0.3)):
             report(fraction, f"meshing dimension {dimension}")
             call(gmsh.model.mesh.generate, dimension)
-        _onto_cones(gmsh)
+        _move_onto_cones(gmsh)
         filling = to_skfem(gmsh)
         return relaxed(bisected(replace(filling, mesh=volume_preserved(filling.mesh))))
     except MeshError:
@@ -145,9 +123,9 @@ def filled(gmsh, refusal: str, report=lambda fraction, message: None) -> Filling
         raise MeshError(refusal.format(error)) from error
 
 
-def _onto_cones(gmsh):
-    """Nodes on shallow cones, which OCC turns into cylinders where their radius changes by less than a
-    tenth of a millimetre, moved to where their ends say that they are.
+def _move_onto_cones(gmsh):
+    """Move nodes on shallow cones, which OCC turns into cylinders where their radius changes by
+    less than a tenth of a millimetre, to the cone through the ends.
     """
     for _, face in gmsh.model.getEntities(2):
         if gmsh.model.getType(2, face) != "Cylinder":
@@ -167,7 +145,7 @@ def _onto_cones(gmsh):
             gmsh.model.mesh.setNode(tag, [share * a, b, share * c], [])
 
 
-def _validate(segments, planes, circles, size, graded_size, reach, around):
+def _refuse_impossible(segments, planes, circles, size, graded_size, reach, around):
     if not segments:
         raise MeshError("there is no segment to mesh: give at least one")
     for i, s in enumerate(segments):
@@ -176,11 +154,8 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
                 f"segment {i} ends at y = {s.y1:g} m, not after its start {s.y0:g} m: "
                 "order it along y"
             )
-        if not (
-            s.outer0 >= s.inner0 >= 0.0
-            and s.outer1 >= s.inner1 >= 0.0
-            and s.outer0 + s.outer1 > s.inner0 + s.inner1
-        ):
+        in_order = s.outer0 >= s.inner0 >= 0.0 and s.outer1 >= s.inner1 >= 0.0
+        if not (in_order and s.outer0 + s.outer1 > s.inner0 + s.inner1):
             raise MeshError(f"segment {i} has no wall everywhere: keep 0 <= inner < outer")
     tolerance = tolerance_of(segments)
     for i, (a, b) in enumerate(zip(segments, segments[1:])):
@@ -209,15 +184,16 @@ def _validate(segments, planes, circles, size, graded_size, reach, around):
 
 
 def to_skfem(gmsh) -> Filling:
-    """The gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they lie
-    between.
+    """Return the gmsh mesh as a scikit-fem one, mid-edge nodes matched by the pair of corners they
+    lie between.
     """
     types, volume, cells = [], [], []
     for _, tag in gmsh.model.getEntities(3):
         kinds, _, nodes = gmsh.model.mesh.getElements(3, tag)
         types += list(kinds)
-        cells += [own.reshape(-1, 10).astype(np.int64) for own in nodes if list(kinds) == [_TET10]]
-        volume += [np.full(len(own) // 10, tag) for own in nodes if list(kinds) == [_TET10]]
+        if list(kinds) == [_TET10]:
+            cells.append(nodes[0].reshape(-1, 10).astype(np.int64))
+            volume.append(np.full(len(nodes[0]) // 10, tag))
     if set(types) != {_TET10}:
         raise MeshError(
             "gmsh made no second-order tetrahedra: look for a gap in the meridian, "
@@ -230,16 +206,16 @@ def to_skfem(gmsh) -> Filling:
     corners, middles = nodes[:, :4].T, nodes[:, 4:].reshape(-1)
     ends = nodes[:, _mid_node_corners(gmsh)].reshape(-1, 2).T
     mesh = ten_nodes(position.T, corners, ends, position[middles].T)
-    within = np.zeros(len(position), bool)
-    within[gmsh.model.mesh.getNodes(3)[0]] = True
+    is_inner = np.zeros(len(position), bool)
+    is_inner[gmsh.model.mesh.getNodes(3)[0]] = True
     inside = np.zeros(mesh.edges.shape[1], bool)
-    inside[edge_places(mesh.edges, np.searchsorted(np.unique(corners), ends))] = within[middles]
+    inside[edge_places(mesh.edges, np.searchsorted(np.unique(corners), ends))] = is_inner[middles]
     return Filling(mesh, np.concatenate(volume), inside)
 
 
 def _mid_node_corners(gmsh):
-    """Local corners, shape (6, 2), between which each mid node lies; read from gmsh, whose order is
-    its own.
+    """Return the local corners (6, 2) between which each mid node lies, read from gmsh, which has
+    an order of its own.
     """
     reference = np.array(gmsh.model.mesh.getElementProperties(_TET10)[4]).reshape(10, 3)
     pairs = [(a, b) for a in range(4) for b in range(a + 1, 4)]

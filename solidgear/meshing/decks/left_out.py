@@ -1,5 +1,5 @@
-"""Masses, springs, rigid links, held nodes, beams and shells of a deck: nothing of them is solved, and
-one remark tells so.
+"""Masses, springs, rigid links, held nodes, beams and shells of a deck: none of them is solved, and
+one remark says so.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ MASS, SPRING, LINK, OTHER = "mass", "spring", "link", "other"
 
 
 class Sorts(NamedTuple):
-    """Patterns of names by the sort of what they carry."""
+    """Patterns of names, by sort."""
 
     mass: str = ""
     spring: str = ""
@@ -22,7 +22,7 @@ class Sorts(NamedTuple):
     other: str = ""
 
 
-#: by sort: what it is in a sentence, and how a scene says the same
+#: by sort: its noun in a sentence, and how a scene writes the same
 SORTS = {
     MASS: ("mass", "masses as [[mass]] in kg"),
     SPRING: ("spring", "springs as [[bearing]] with a stiffness"),
@@ -35,7 +35,7 @@ SORTS = {
 }
 #: kinds that a sentence names
 NAMED = 8
-#: how cards of Nastran begin, by sort
+#: names of cards of Nastran, by sort
 CARDS = Sorts(
     mass=r"CONM[12]|CMASS[1-4]|NSM[L1]?1?|NSMADD",
     spring=r"CBUSH[12]?D?|CELAS[1-4]|CDAMP[1-5]|CVISC|CGAP|CFAST|CWELD|CSEAM|DMIG|K2GG|M2GG",
@@ -70,48 +70,50 @@ DATASETS = r"754|755|756|757|791"
 
 
 @lru_cache(maxsize=4096)
-def sort_of(name: str, known: Sorts) -> str | None:
-    """The sort of a card, keyword or type of element; None for what carries nothing."""
-    pairs = zip(known._fields, known)
+def sort_of(name: str, patterns: Sorts) -> str | None:
+    """Return the sort of a card, keyword or type of element; None for one that carries nothing."""
+    pairs = zip(patterns._fields, patterns)
     return next((sort for sort, pattern in pairs if name and re.fullmatch(pattern, name)), None)
 
 
 @dataclass
 class LeftOut:
-    """Tally of what a deck carries beside its solid elements."""
+    """Tally of the parts of a deck beside solid elements."""
 
     counts: dict[tuple[str, str], int] = field(default_factory=dict)  #: by sort and name
-    #: in the unit of the deck, of those whose number it says
+    #: in the unit of the deck, where it gives a number
     masses: list[float] = field(default_factory=list)
-    at: tuple[float, ...] | None = None  #: of the first of these, in the unit of the file
+    place: tuple[float, ...] | None = None  #: of the first of these, in the unit of the file
 
     def add(self, sort: str, name: str, count: int = 1) -> None:
         """Count some of one name."""
         if count:
             self.counts[sort, name] = self.counts.get((sort, name), 0) + count
 
-    def weigh(self, masses: Iterable[float], at: Sequence[float] | None = None) -> None:
-        """Note masses, and where the first of them is."""
+    def weigh(self, masses: Iterable[float], place: Sequence[float] | None = None) -> None:
+        """Note masses, and the place of the first of them."""
         self.masses += masses
-        if self.at is None and at is not None:
-            self.at = tuple(at)
+        if self.place is None and place is not None:
+            self.place = tuple(place)
 
     def remark(self) -> str:
-        """One sentence on all of it; nothing where there is nothing."""
+        """Return one sentence on all of it; empty where the deck has nothing but solid elements."""
         if not self.counts:
             return ""
         names = [f"{count} {name}" for (_, name), count in self.counts.items()]
         if len(names) > NAMED:
             names = [*names[:NAMED], f"{len(names) - NAMED} kinds more"]
-        sorts = [sort for sort in SORTS if any(own == sort for own, _ in self.counts)]
+        sorts = [sort for sort in SORTS if any(kind == sort for kind, _ in self.counts)]
         ways = "; ".join(SORTS[sort][1] for sort in sorts)
         return f"left out, beside solid elements: {', '.join(names)}{self._weight()}; write {ways}"
 
     def _weight(self) -> str:
         if not self.masses:
             return ""
-        place = ""
-        if self.at is not None:
-            where = ", ".join(f"{value:.5g}" for value in self.at)
-            place = f", {'the first ' if len(self.masses) > 1 else ''}at ({where}) of the file"
-        return f" (mass {sum(self.masses):.6g} in the unit of the deck{place})"
+        location = ""
+        if self.place is not None:
+            coordinates = ", ".join(f"{value:.5g}" for value in self.place)
+            location = (
+                f", {'the first ' if len(self.masses) > 1 else ''}at ({coordinates}) of the file"
+            )
+        return f" (mass {sum(self.masses):.6g} in the unit of the deck{location})"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, told_short
+from solidgear.meshing.decks.deck import Deck, Lines, integer, text_of, wrong_node_count
 from solidgear.meshing.decks.left_out import CARDS, LINK, sort_of
 from solidgear.meshing.quality import MeshError
 from solidgear.scene.file_materials import FileMaterial
@@ -21,22 +21,22 @@ SOLIDS = {
 }
 #: edges of a brick: bottom, upright, top in Nastran; bottom, top, upright in VTK
 BRICK = (*range(12), *range(16, 20), *range(12, 16))
-#: how cards begin that need the nodes they name
+#: beginnings of cards that need the nodes they name
 NEEDY = ("C", "RBE", "RBAR", "RROD", "RSPLINE", "MPC", "SPOINT")
 
 
 class Card(NamedTuple):
-    """A card: its name, its fields after that, the line it begins in, and that line."""
+    """A card of a bulk data section."""
 
     name: str
-    fields: list[str]
-    line: int
-    text: str = ""
+    fields: list[str]  #: after the name
+    line: int  #: where it begins
+    text: str = ""  #: of that line
 
 
 def read(path: str) -> Deck:
-    """The mesh of a bulk data file; MeshError for one without ENDDATA, elements with too few nodes
-    or a number twice, and nodes in a system of coordinates of their own.
+    """Read the mesh of a bulk data file; MeshError for one without ENDDATA, elements with too few
+    nodes or a number twice, and nodes in a system of coordinates of their own.
     """
     lines = Lines()
     solids: dict[str, str] = {}
@@ -48,9 +48,9 @@ def read(path: str) -> Deck:
             lines.left_out.add(sort, card.name)
             masses += _mass(card)
         if card.name == "GRID":
-            _node(lines, card)
+            _add_node(lines, card)
         elif card.name in SOLIDS:
-            _solid(lines, card)
+            _add_solid(lines, card)
         elif card.name == "INCLUDE":
             raise MeshError(
                 f"line {card.line}: INCLUDE names another file{_quoted(card)}: put its lines in its "
@@ -61,8 +61,8 @@ def read(path: str) -> Deck:
         elif card.name == "MAT1":
             materials[card.fields[0]] = card
         elif card.name.startswith(NEEDY) and not card.name.startswith("CORD"):
-            named = [int(f) for f in card.fields if f.isdigit()]
-            lines.other(card.name, named[0] if named else 0, named[1:])
+            numbers = [int(f) for f in card.fields if f.isdigit()]
+            lines.add_other(card.name, numbers[0] if numbers else 0, numbers[1:])
     lines.left_out.weigh(
         (mass for mass, _ in masses), lines.place(masses[0][1]) if masses else None
     )
@@ -75,8 +75,10 @@ def read(path: str) -> Deck:
 
 
 def cards(text: str) -> Iterator[Card]:
-    """The cards of a bulk data section, lines that go on joined; MeshError without ENDDATA."""
-    # what comes before is for the solver; many programs write the bulk alone
+    """Yield the cards of a bulk data section, lines that go on joined; MeshError without
+    ENDDATA.
+    """
+    # the lines before it are for the solver; many programs write the bulk alone
     begins = re.compile(r"\s*BEGIN\s*BULK", re.I)
     inside = not any(begins.match(line) for line in text.splitlines())
     ended, card, number = False, None, 0
@@ -106,11 +108,13 @@ def cards(text: str) -> Iterator[Card]:
 
 
 def _fields(line: str) -> tuple[str, list[str]]:
-    """The first field of a line, and those of its data, padded so that what goes on follows."""
+    """Return the first field of a line, and those of data, padded so that the next line goes on
+    behind them.
+    """
     if "," in line[:10]:
-        first, *rest = (entry.strip() for entry in line.split(","))
+        first, *entries = (entry.strip() for entry in line.split(","))
         count = 4 if first.endswith("*") or first.startswith("*") else 8
-        fields = rest[:count]
+        fields = entries[:count]
     else:
         first = line[:8].strip()
         wide = 16 if "*" in first else 8
@@ -120,14 +124,14 @@ def _fields(line: str) -> tuple[str, list[str]]:
 
 
 def _number(text: str) -> float:
-    """A number as Nastran writes it: the E of an exponent may be left out."""
+    """Return a number as Nastran writes it: the E of an exponent may be left out."""
     plain = re.sub("[dD]", "e", text)
-    return float(
-        re.sub(r"(?<=[\d.])([+-]\d+)$", r"e\1", plain) if "e" not in plain.lower() else plain
-    )
+    if "e" not in plain.lower():
+        plain = re.sub(r"(?<=[\d.])([+-]\d+)$", r"e\1", plain)
+    return float(plain)
 
 
-def _node(lines: Lines, card: Card) -> None:
+def _add_node(lines: Lines, card: Card) -> None:
     number = integer(card.fields[0], card.line, "the number of a GRID")
     if card.fields[1] not in ("", "0"):
         raise MeshError(
@@ -136,18 +140,18 @@ def _node(lines: Lines, card: Card) -> None:
         )
     try:
         # a blank field is zero, a line that should go on is none
-        at = [_number(entry or "0.") for entry in card.fields[2:5]]
+        point = [_number(entry or "0.") for entry in card.fields[2:5]]
     except ValueError:
         raise MeshError(
             f"line {card.line}: GRID {number} has a coordinate that is missing or no number"
         ) from None
     if card.fields[6].strip("0"):
         lines.left_out.add(LINK, "GRID with held motions")
-    lines.node(number, card.line, at)
+    lines.add_node(number, card.line, point)
 
 
 def _plain(text: str) -> float | None:
-    """A number, None for a field that is blank or none."""
+    """Return a number, None for a field that is blank or none."""
     try:
         return _number(text) if text else None
     except ValueError:
@@ -155,7 +159,7 @@ def _plain(text: str) -> float | None:
 
 
 def _mass(card: Card) -> list[tuple[float, int]]:
-    """Mass and node of a card that puts one on a node."""
+    """Return mass and node of a card that puts one on a node."""
     places = {"CONM2": (3, 1), "CMASS2": (1, 2), "CMASS4": (1, 2)}.get(card.name)
     if places is None:
         return []
@@ -164,7 +168,7 @@ def _mass(card: Card) -> list[tuple[float, int]]:
 
 
 def _material(card: Card, group: str) -> FileMaterial:
-    """A MAT1, whose Poisson's ratio may follow from the shear modulus."""
+    """Return the material of a MAT1, whose Poisson's ratio may follow from the shear modulus."""
     young, shear, nu, density = map(_plain, card.fields[1:5])
     if nu is None and young and shear:
         nu = young / 2 / shear - 1
@@ -176,25 +180,25 @@ def _material(card: Card, group: str) -> FileMaterial:
 
 
 def _quoted(card: Card) -> str:
-    """The file that an INCLUDE names, where it stands in one line."""
-    named = re.search(r"['\"]([^'\"]+)", card.text)
-    return f" ({named[1].strip()})" if named else ""
+    """Return the file that an INCLUDE names, in brackets, where it stands in one line."""
+    name = re.search(r"['\"]([^'\"]+)", card.text)
+    return f" ({name[1].strip()})" if name else ""
 
 
-def _solid(lines: Lines, card: Card) -> None:
+def _add_solid(lines: Lines, card: Card) -> None:
     number = integer(card.fields[0], card.line, f"the number of a {card.name}")
     kinds = SOLIDS[card.name]
     entries = card.fields[2:]
     while entries and not entries[-1]:
         entries.pop()
     if len(entries) not in kinds or "" in entries:
-        has = sum(1 for entry in entries if entry)
-        raise told_short(number, card.line, card.name, has, " or ".join(map(str, kinds)))
+        count = sum(1 for entry in entries if entry)
+        raise wrong_node_count(number, card.line, card.name, count, " or ".join(map(str, kinds)))
     nodes = [integer(entry, card.line, f"a node of {card.name} {number}") for entry in entries]
     if len(nodes) == len(BRICK):
         nodes = [nodes[k] for k in BRICK]
-    lines.element(number, card.line, kinds[len(nodes)], nodes)
+    lines.add_element(number, card.line, kinds[len(nodes)], nodes)
     if card.fields[1]:
         name = str(integer(card.fields[1], card.line, f"the property of {card.name} {number}"))
         lines.sets.setdefault(name, []).append(number)
-        lines.telling.add(name)
+        lines.material_sets.add(name)

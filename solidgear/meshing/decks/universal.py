@@ -10,7 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from solidgear.meshing.decks.deck import Deck, Lines, coordinates, integer, text_of, told_short
+from solidgear.meshing.decks.deck import (
+    Deck,
+    Lines,
+    coordinates,
+    integer,
+    text_of,
+    wrong_node_count,
+)
 from solidgear.meshing.decks.left_out import DATASETS, DESCRIPTORS, LINK, OTHER, SORTS, sort_of
 from solidgear.meshing.quality import MeshError
 from solidgear.scene.universal_units import units_of
@@ -38,22 +45,22 @@ IS_ELEMENT = 8
 
 
 def read(path: str) -> Deck:
-    """The mesh of a universal file; MeshError for a dataset that does not end, elements with
+    """Read the mesh of a universal file; MeshError for a dataset that does not end, elements with
     another number of nodes than their kind has, or a number twice.
     """
-    lines, found = Lines(), set()
+    lines, datasets = Lines(), set()
     thin: list[tuple[int, list[int]]] = []
     for kind, data in _datasets(text_of(path)):
-        found.add(kind)
+        datasets.add(kind)
         if kind in NODES:
-            _nodes(lines, data)
+            _add_nodes(lines, data)
         elif kind in ELEMENTS:
-            thin += _elements(lines, data)
+            thin += _add_elements(lines, data)
         elif kind in GROUPS:
-            _groups(lines, data, GROUPS[kind])
+            _add_groups(lines, data, GROUPS[kind])
         elif re.fullmatch(DATASETS, kind):
             lines.left_out.add(LINK, f"dataset {kind} of restraints")
-    if not found & set(NODES):
+    if not datasets & set(NODES):
         raise MeshError("cannot be read as a universal file: it holds no dataset 2411 of nodes")
     solid = {node for element in lines.elements for node in element.nodes}
     for descriptor, nodes in thin:
@@ -64,7 +71,9 @@ def read(path: str) -> Deck:
 
 
 def unit_of(text: str) -> float | None:
-    """Metres in its unit of length, as dataset 164 says it; None without one."""
+    """Return the unit of length that dataset 164 of a universal file gives, in metres; None without
+    one.
+    """
     for kind, data in _datasets(text):
         if kind == "164" and data:
             entries = [entry for _, line in data[1:] for entry in line.split()]
@@ -81,7 +90,7 @@ Data = list[tuple[int, str]]
 
 
 def _datasets(text: str) -> Iterator[tuple[str, Data]]:
-    """Number of each dataset and its lines."""
+    """Yield each dataset: number and lines."""
     kind: str | None = None
     data: Data = []
     begun = 0
@@ -101,24 +110,24 @@ def _datasets(text: str) -> Iterator[tuple[str, Data]]:
         raise MeshError(f"is cut off: the dataset that begins in line {begun} does not end with -1")
 
 
-def _nodes(lines: Lines, data: Data) -> None:
-    for (line, head), (below, at) in _by(data, 2):
+def _add_nodes(lines: Lines, data: Data) -> None:
+    for (line, head), (below, entries) in _records(data, 2):
         number = integer((head.split() or [""])[0], line, "the number of a node")
-        place = coordinates(at.split(), below, number)
+        place = coordinates(entries.split(), below, number)
         if len(place) != 3:
             raise MeshError(f"line {below}: node {number} has a coordinate that is no number")
-        lines.node(number, line, place)
+        lines.add_node(number, line, place)
 
 
-def _by(data: Data, count: int) -> Iterator[tuple[tuple[int, str], ...]]:
+def _records(data: Data, count: int) -> Iterator[tuple[tuple[int, str], ...]]:
     if len(data) % count:
         raise MeshError(f"line {data[-1][0]}: a record is cut off")
     for k in range(0, len(data), count):
         yield tuple(data[k : k + count])
 
 
-def _elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
-    """Take the elements of a dataset; kind and nodes of those along lines and on faces."""
+def _add_elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
+    """Add the elements of a dataset; return kind and nodes of those along lines and on faces."""
     k = 0
     thin: list[tuple[int, list[int]]] = []
     while k < len(data):
@@ -127,9 +136,8 @@ def _elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
         if len(row) < 6:
             raise MeshError(f"line {line}: an element has {len(row)} entries where 6 are wanted")
         # dataset 780 has the number of a table before each of property and material
-        number, descriptor, prop, material, wanted = (
-            (*row[:4], row[5]) if len(row) < 8 else (row[0], row[1], row[3], row[5], row[7])
-        )
+        columns = (0, 1, 2, 3, 5) if len(row) < 8 else (0, 1, 3, 5, 7)
+        number, descriptor, prop, material, wanted = (row[k] for k in columns)
         k += 1 + (descriptor in BEAMS)
         nodes: list[int] = []
         while k < len(data) and len(nodes) < wanted:
@@ -137,7 +145,7 @@ def _elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
             nodes += [integer(e, place, f"a node of element {number}") for e in text.split()]
             k += 1
         if descriptor not in SOLIDS:
-            lines.other(f"kind {descriptor}", number, nodes)
+            lines.add_other(f"kind {descriptor}", number, nodes)
             sort = sort_of(str(descriptor), DESCRIPTORS)
             if sort is not None:
                 lines.left_out.add(sort, f"{SORTS[sort][0]} of kind {descriptor}")
@@ -146,16 +154,18 @@ def _elements(lines: Lines, data: Data) -> list[tuple[int, list[int]]]:
             continue
         kind, order = SOLIDS[descriptor]
         if len(nodes) != len(order) or wanted != len(order):
-            raise told_short(number, line, f"{descriptor} ({kind})", len(nodes), str(len(order)))
-        lines.element(number, line, kind, [nodes[place] for place in order])
+            raise wrong_node_count(
+                number, line, f"{descriptor} ({kind})", len(nodes), str(len(order))
+            )
+        lines.add_element(number, line, kind, [nodes[place] for place in order])
         lines.sets.setdefault(str(material), []).append(number)
-        lines.telling.add(str(material))
+        lines.material_sets.add(str(material))
         lines.sets.setdefault(f"property:{prop}", []).append(number)
     return thin
 
 
-def _groups(lines: Lines, data: Data, step: int) -> None:
-    """Permanent groups: a line that ends with their size, a name, and members."""
+def _add_groups(lines: Lines, data: Data, step: int) -> None:
+    """Add permanent groups: a line that ends with their size, a name, and members."""
     k = 0
     while k + 1 < len(data):
         line, head = data[k]
@@ -170,5 +180,5 @@ def _groups(lines: Lines, data: Data, step: int) -> None:
         members = [number for kind, number in zip(kinds, numbers) if kind == IS_ELEMENT]
         if members:
             lines.sets.setdefault(name, []).extend(members)
-            lines.telling.add(name)
+            lines.material_sets.add(name)
             lines.listed += [(name, number, line) for number in members]

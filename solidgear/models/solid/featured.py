@@ -12,7 +12,7 @@ import numpy as np
 
 from solidgear.body import Block, Body
 from solidgear.kernel.room import assemblable
-from solidgear.meshing.featured import FeaturedMesh, featured_mesh, without
+from solidgear.meshing.featured import FeaturedMesh, featured_mesh, submesh
 from solidgear.meshing.quality import check_mesh
 from solidgear.models.kinds import CYCLIC
 from solidgear.models.solid.block import Facets, body_of, free_block, mesh_facts
@@ -46,7 +46,7 @@ def featured_body(
     MeshError for inverted elements.
     """
     keep = np.ones(len(made.cut), bool) if plain else ~made.cut
-    mesh = made.mesh if plain else without(made.mesh, keep)
+    mesh = made.mesh if plain else submesh(made.mesh, keep)
     quality = replace(check_mesh(mesh), straightened=made.quality.straightened)
     solid = _isoparametric(mesh, "tet10", made.segment[keep])
     facets = _facets(solid, scene)

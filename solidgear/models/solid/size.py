@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.elements import SOLVED_AS
 from solidgear.kernel.room import assemblable
-from solidgear.meshing.featured import without
+from solidgear.meshing.featured import submesh
 from solidgear.meshing.hexahedra import straight_hexahedra
 from solidgear.models.kinds import BODIES, CUTS, CYCLIC
 from solidgear.models.size import Size, coupled, of_mesh
@@ -71,7 +71,7 @@ def solid_size(
 
 def cut_size(made: Any) -> Size:
     """Of a :class:`~solidgear.meshing.featured.FeaturedMesh` without what is cut out of it."""
-    mesh = without(made.mesh, ~made.cut)
+    mesh = submesh(made.mesh, ~made.cut)
     if made.plane is None:
         return of_mesh(mesh, basis_of("tet10"))
     both = of_mesh(mesh, basis_of("tet10"), parts=2)

@@ -161,7 +161,7 @@ class Places:
 
     def placed(self, frame: Frame) -> np.ndarray:
         """(p, 3) points in the scene."""
-        return frame.placing.of(self.points.T / (self.length or 1.0)).T
+        return frame.placing.to_scene(self.points.T / (self.length or 1.0)).T
 
     def _along(self, frame: Frame) -> tuple[float, Frame, bool] | None:
         """The place along the axis where the points lie on the surface of a body of revolution, the

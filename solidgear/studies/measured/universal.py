@@ -46,7 +46,7 @@ class Shapes:
 
     def placed(self, placing: Placing) -> Shapes:
         """The same in the frame of a scene."""
-        points = placing.of(self.points.T / (self.length or 1.0)).T
+        points = placing.to_scene(self.points.T / (self.length or 1.0)).T
         return replace(
             self, points=points, values=self.values @ np.array(placing.turn).T, length=1.0
         )
@@ -76,7 +76,7 @@ class Responses:
         """The same in the frame of a scene."""
         numbers = list(self.places)
         points = np.reshape([self.places[number] for number in numbers], (-1, 3))
-        moved = placing.of(points.T / (self.length or 1.0)).T.tolist()
+        moved = placing.to_scene(points.T / (self.length or 1.0)).T.tolist()
         turn = np.array(placing.turn)
 
         def turned(end: tuple[int, int]) -> tuple[int, int]:
