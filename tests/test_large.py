@@ -10,7 +10,7 @@ import scipy.sparse as sp
 import solidgear as sg
 from solidgear.factoring import Factoring
 from solidgear.machine.memory import NoRoom
-from solidgear.models.size import of_body
+from solidgear.models.size import size_of_body
 from solidgear.solve import single
 from solidgear.solve.backends import missing
 from solidgear.solve.factor import FactorError, factorise
@@ -243,11 +243,11 @@ def test_a_refusal_offers_what_fits(scene, options, wanted, no, monkeypatch):
 def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
     given = {"element": "tet10", "refinement": 0.5}
     message, free = refused("pinion_overhung", monkeypatch, 0.7, **given)
-    room = free + of_body(sg.build(scene_of("pinion_overhung"), "solid", **given)).matrices_mb
+    room = free + size_of_body(sg.build(scene_of("pinion_overhung"), "solid", **given)).matrices_mb
     refinement = float(message.split("--set refinement=")[1].split()[0])
     body = sg.build(scene_of("pinion_overhung"), "solid", **{**given, "refinement": refinement})
     assert f"{body.size} unknowns" in message
-    assert 0.5 * room < needed_mb(body, body.factoring) + of_body(body).matrices_mb < room
+    assert 0.5 * room < needed_mb(body, body.factoring) + size_of_body(body).matrices_mb < room
 
 
 @pytest.mark.long

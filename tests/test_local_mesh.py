@@ -155,7 +155,7 @@ def test_statics_is_that_of_the_whole_mesh_whatever_is_kept(gear, patched):
     )
     for kept in (2, 6):
         part = with_waves(
-            sg.rubin(body, 8), body, scene.port.name, np.zeros(3), patch.axes, {2: row}, kept=kept
+            sg.rubin(body, 8), body, scene.port.name, np.zeros(3), patch.axes, {2: row}, count=kept
         )
         assert local_compliance(part, TEETH, LINE) == pytest.approx(exact, rel=1e-9)
 

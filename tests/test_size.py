@@ -14,7 +14,7 @@ from solidgear.ladder.registry import LADDER
 from solidgear.machine import memory
 from solidgear.machine.memory import NoRoom
 from solidgear.meshing.element_size import rough_cells
-from solidgear.models.size import of_body
+from solidgear.models.size import size_of_body
 from solidgear.solve.backends import missing
 from solidgear.solve.shifted import factors, needed_mb
 
@@ -60,7 +60,7 @@ def test_unknowns_are_those_of_the_body(scene, model, options):
     assert size.unknowns == body.size
     # entries of nodes on mirror planes and cut faces, where they are eliminated: up to a third of
     # those of coarse meshes
-    held = of_body(body).entries
+    held = size_of_body(body).entries
     assert held <= size.entries < 1.6 * held
     whole = model == "solid" and len(body.blocks) == 1
     assert not whole or size.entries == held
@@ -93,7 +93,7 @@ def test_small_elements_at_edges_make_many():
 def test_the_law_is_near_the_analysis(scene, options):
     """0.75 to 1.2 of it on ten bodies of 15,000 to 146,000 unknowns."""
     body = sg.build(SCENES[scene], "solid", **options)
-    told = of_body(body).factors_mb
+    told = size_of_body(body).factors_mb
     assert 0.65 < told / needed_mb(body, body.factoring) < 1.4
 
 

@@ -253,8 +253,8 @@ MUTATIONS = (
         "the axis of a sector moves against the turn",
         "solidgear/models/sector/cyclic.py",
         "_across",
-        "one if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one.conj()",
-        "one.conj() if np.allclose(turn @ one, np.exp(-1j * angle) * one) else one",
+        "motion if np.allclose(turn @ motion, np.exp(-1j * angle) * motion) else motion.conj()",
+        "motion.conj() if np.allclose(turn @ motion, np.exp(-1j * angle) * motion) else motion",
         "tests/test_sector.py::test_a_node_on_the_axis",
     ),
     Mutation(
@@ -396,7 +396,7 @@ MUTATIONS = (
     Mutation(
         "axis condition of bending dropped",
         "solidgear/models/harmonic/families.py",
-        "Family.held",
+        "Family.zero_on_axis",
         "(1, 2)",
         "(2,)",
         "tests/test_harmonic.py::test_bending_wave_of_a_cylinder_between_sliding_ends",

@@ -99,7 +99,7 @@ class _Loaded:
         """
         space, c = self.space, self.family.count
         scalar, component = cell.unknowns // c, cell.unknowns % c
-        keep = ~(space.on_axis[scalar] & np.isin(component, self.family.held))
+        keep = ~(space.on_axis[scalar] & np.isin(component, self.family.zero_on_axis))
         tied = {i: on_seat[scalar] for i, on_seat in space.tied.items() if on_seat[scalar].any()}
         for on_seat in tied.values():
             keep = keep & ~on_seat

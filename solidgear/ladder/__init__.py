@@ -1,4 +1,4 @@
-"""One model a file; ``build`` picks one from the ladder by name."""
+"""One model a file; ``build`` builds the free body of one by its name."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
     from solidgear.body import Body
     from solidgear.scene.shaft import Shaft
 
-#: what to use instead, where there is nothing
+#: advice where no model fits
 NO_MODEL = "no model holds all that the scene has"
 
 
 def way_out(scene: Any) -> str:
-    """Words to write into a scene that no model holds so that some do, and what is lost by them;
-    `NO_MODEL` alone where smearing its teeth does not help.
+    """Return advice for a scene that no model holds: smear its teeth, with the loss by that;
+    `NO_MODEL` alone where smearing does not help.
     """
     from solidgear.scene.shaft import feature_labels
 
@@ -63,11 +63,10 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     Raises
     ------
     SolidgearError
-        For an unknown model, an option it does not have or cannot use
-        (the options of its model).
+        For an unknown model, or an option it does not have or cannot use.
     NoRoom
-        For a mesh or matrices that will not fit into memory. Whether factors do is found out when
-        they are first asked for.
+        For a mesh or matrices that will not fit into memory. Factors are checked when they are
+        first needed.
 
     Examples
     --------
@@ -92,11 +91,11 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
         use = f"use {' or '.join(fit)}" if fit else way_out(scene)
         raise SolidgearError(f"{unfit}; {use}")
     options = model.checked(model.given(scene, options))
-    own, factoring = model.split(options)
-    model.builder()  # large libraries are no part of what the body takes
+    builder_options, factoring = model.split(options)
+    model.builder()  # large libraries do not count as memory of the body
     begin()
     try:
-        body = model.build(scene, **own)
+        body = model.build(scene, **builder_options)
     except NoRoom as error:
         raise refusal(scene, fidelity, options, None, error) from None
     except MemoryError:

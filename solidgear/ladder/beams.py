@@ -1,4 +1,4 @@
-"""Beams: solved once, without an error bar of their own."""
+"""Beams: solved once, without an error bar."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Timoshenko(Model):
         return beam
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Few elements and the usual number."""
+        """Return few elements and the usual number."""
         return [(BEAM, self.heading, [{"elements": 1}, {}])]
 
 

@@ -32,7 +32,7 @@ CORRECTED: tuple[dict[str, Any], ...] = (
 
 
 class Corrected(Volume):
-    """The harmonic solid of the plain part, with what features change in 3D."""
+    """The harmonic solid of the plain part, corrected by the change that features cause in 3D."""
 
     name = "corrected"
     title = "corrected harmonic solid"
@@ -59,16 +59,16 @@ class Corrected(Volume):
         return corrected_size(scene, options["refinement"], options["attachments"])
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
-        """Of one of its 3D solids, roughly."""
+        """Estimate the unknowns of one of its 3D solids."""
         from solidgear.models.corrected_mesh import plan_of
         from solidgear.models.solid.plan import tetrahedra_of
 
-        given = self.defaults() | self.given(scene, options)
-        plan = plan_of(scene, given["refinement"], given["attachments"])
-        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, given["refinement"], edges=True)
+        full_options = self.defaults() | self.given(scene, options)
+        plan = plan_of(scene, full_options["refinement"], full_options["attachments"])
+        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"], edges=True)
 
     def meshes(self, options: Options) -> Sequence:
-        """The mesh that was asked for and a coarser one, or a list."""
+        """Return the mesh that was asked for and a coarser one, or the usual list."""
         if set(options) - set(FREE):
             finest = {**CORRECTED[1], **options}
             coarser = {**finest, "refinement": finest["refinement"] / 1.4}
@@ -76,7 +76,7 @@ class Corrected(Volume):
         return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Its meshes, for a scene with such features."""
+        """Return its meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []
         return [("solid", self.title, [dict(x) for x in CORRECTED[: None if full else 3]])]

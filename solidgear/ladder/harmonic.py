@@ -1,4 +1,4 @@
-"""The harmonic solid: its bars come from each mesh by itself."""
+"""The harmonic solid: its error bars come from each mesh by itself."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class Harmonic(Model):
         return harmonic
 
     def meshes(self, options: Options) -> Sequence:
-        """The mesh that was asked for, or those that follow its bars
+        """Return the mesh that was asked for, or the start of refinement by error bars
         (:mod:`solidgear.bounds.refining`).
         """
         return Sequence((dict(options),), bool(set(options) - set(FREE)), False)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Refinement at order 2 and rising orders, each on uniform and on graded meshes."""
+        """Return refinement at order 2 and rising orders, each on uniform and on graded meshes."""
         flat = {"layers": 0, "edge_layers": 0, "size": scene.outline.least_radius}
         graded = {"layers": 3, "edge_layers": 1}
         orders = levels((1, 2, 3, 4, 5, 6), (7, 8), full)

@@ -1,9 +1,10 @@
 """Meshes that a solid is solved on, coarse to fine, until its error bar meets a target.
 
-Every level raises all that limits it at once: the order of the harmonic elements (or the size of 3D
-ones) and the layers towards shoulders and seat ends.  Errors then shrink by a nearly constant
-factor from level to level, which is what a bar can be made of; raising one alone runs into what
-the other leaves (two levels that differ only in layers are one mesh on a shaft without shoulders).
+Every level refines at once all that limits accuracy: the order of the harmonic elements (or the size
+of 3D ones) and the layers towards shoulders and seat ends.  Errors then shrink by a nearly constant
+factor from level to level, from which an error bar can be made; refining one alone runs into the
+error that the other leaves (two levels that differ only in layers are one mesh on a shaft without
+shoulders).
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from solidgear.models.options import FACTORING_OPTIONS
 Options = dict[str, Any]
 
 
-#: a usual mesh of the harmonic solid, good to some 1e-3: where no bar is asked for
+#: a usual mesh of the harmonic solid, good to some 1e-3: where no error bar is asked for
 HARMONIC: Options = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}
-# What leaves the choice of meshes to the program although it is given.
+#: options that leave the choice of meshes to the program
 FREE = ("element", "around", "ovalising", "attachments", "material_port", *FACTORING_OPTIONS)
 #: error of the cells around a hexahedral mesh that bends as a whole: with this power of their size
 ORDER_AROUND = 4
@@ -33,13 +34,12 @@ class Sequence:
     """Meshes of one solid, coarse to fine."""
 
     levels: tuple[Options, ...]  #: builder options of each
-    #: all are solved, the last being the one that was asked for; otherwise the program climbs until
-    #: a bar is met
+    #: all are solved, the last being the one that was asked for; otherwise the program refines until
+    #: the error bar meets its target
     fixed: bool
-    #: inner, outer: whether every level adds layers towards singular points (see
-    #: :mod:`solidgear.judge.bars`)
+    #: every level adds layers towards singular points (see :mod:`solidgear.judge.bars`)
     layered: bool
-    turned: Options | None = None
+    turned: Options | None = None  #: coarsest level with another number of cells around
 
     @property
     def left_around(self) -> float:
@@ -53,13 +53,13 @@ class Sequence:
 
 
 def fixed_refinements(options: Mapping[str, Any]) -> Sequence:
-    """The mesh that was asked for, and two coarser ones by plain refinement."""
-    given = options.get("refinement", 1.0)
+    """Return the mesh that was asked for, and two coarser ones by plain refinement."""
+    refinement = options.get("refinement", 1.0)
     return Sequence(
-        tuple({**options, "refinement": given * s} for s in (0.4, 0.65, 1.0)), True, False
+        tuple({**options, "refinement": refinement * s} for s in (0.4, 0.65, 1.0)), True, False
     )
 
 
 def levels(quick: tuple, more: tuple, full: bool) -> tuple:
-    """Levels of a chart, quick or full."""
+    """Return the levels of a chart, quick or full."""
     return quick + more if full else quick

@@ -1,4 +1,4 @@
-"""A model of the ladder: everything the program must know of one that it does not know of all."""
+"""A model of the ladder: name, options, builder and limits of one model, and the ladder of all."""
 
 from __future__ import annotations
 
@@ -24,121 +24,115 @@ Series = tuple[str, str, list[dict[str, Any]]]
 
 
 def features_of(scene: Any) -> tuple[Any, ...]:
-    """Features of a scene that are not smeared; see :func:`solidgear.scene.shaft.resolved`, which
-    is imported here, for the ladder is read by every command.
-    """
-    from solidgear.scene.shaft import resolved
+    """Return the features of a scene that are not smeared."""
+    from solidgear.scene.shaft import resolved  # start-up: every command reads the ladder
 
     return resolved(scene)
 
 
 class Model:
-    """One model of the ladder; a subclass fills in what is not as usual."""
+    """One model of the ladder; a subclass overrides what differs from these defaults."""
 
-    name: ClassVar[str]  #: what scenes, commands and records call it
+    name: ClassVar[str]  #: in scenes, commands and records
     title: ClassVar[str]  #: in a sentence, such as ``harmonic solid``
-    heading: ClassVar[str]  #: at the head of a narrow column; the title unless told otherwise
-    #: ``lumped`` (rests on another model's body), ``beam`` or ``solid``. Solids judge the others.
+    heading: ClassVar[str]  #: at the head of a narrow column
+    #: ``lumped`` (rests on the body of another model), ``beam`` or ``solid``; solids judge the others
     family: ClassVar[str]
-    #: what it solves, in a sentence: ``Trust the ...: exact 3D elasticity ...``
+    #: in a sentence: ``Trust the ...: exact 3D elasticity ...``
     theory: ClassVar[str] = ""
-    #: colour, marker: in charts
-    colour: ClassVar[str] = "#777777"
-    marker: ClassVar[str] = "P"
+    colour: ClassVar[str] = "#777777"  #: in charts
+    marker: ClassVar[str] = "P"  #: in charts
     options: ClassVar[Mapping[str, Option]] = {}  #: of the builder, with their limits
-    preset: ClassVar[Options] = {}  #: options that make this model of a builder that several share
-    coarser: ClassVar[str] = "use a coarser mesh"  #: what to change where it is too large
-    #: sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that its body holds,
-    #: one of them at a time; a body of revolution holds none
+    preset: ClassVar[Options] = {}  #: options of a builder that several models share
+    coarser: ClassVar[str] = "use a coarser mesh"  #: advice where it is too large
+    #: sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that it can model, one
+    #: of them at a time; a body of revolution none
     holds: ClassVar[tuple[str, ...]] = ()
-    #: sorts of these that it holds beside each other
+    #: sorts of these that it can model together
     together: ClassVar[frozenset[str]] = frozenset()
-    #: whether it is made for the features that it holds, and for nothing else
+    #: whether it is made for these features alone
     for_features: ClassVar[bool] = False
-    #: whether every mesh tells its own error by local problems: its displacements are admissible on
-    #: the exact geometry, integrated exactly. Such a body is too stiff, so that compliances come
-    #: from below, stiffnesses and frequencies from above.
+    #: whether local problems give the error of every mesh: displacements are admissible on the
+    #: exact geometry, integrated exactly. Such a body is too stiff, so that compliances come from
+    #: below, stiffnesses and frequencies from above.
     bounded: ClassVar[bool] = False
     #: error bars are wanted below the tolerance asked for divided by this
     share: ClassVar[float] = 1.0
-    #: whether its mesh carries the mean motion of any section; otherwise it is not compared like
-    #: for like
+    #: whether its mesh has the mean motion of any section, so that it is compared with equal seats
     section_ties: ClassVar[bool] = True
-    #: closure of mass and inertia that it owes to the closed form
+    #: relative tolerance of mass and inertia against the closed form
     mass_tolerance: ClassVar[float] = 1e-9
     most_seats: ClassVar[int] = 12  #: seats that one body carries in a sweep
-    #: of an error bar over its meshes, where it is not that of meshes with layers or of plain
-    #: refinement
+    #: safety of error bars over its meshes, where it differs from that of meshes with layers or of
+    #: plain refinement
     safety: ClassVar[Safety | None] = None
-    #: what its body is, where a feature does not fit it
+    #: nature of its body, in refusals of a feature
     _nature: ClassVar[str] = "of revolution"
 
     def builder(self) -> Callable[..., Body]:
-        """``builder(scene, **options)`` gives the free body; it is imported here, for the ladder is
-        read by every command and builders bring large libraries.
-        """
+        """Import and return the builder: ``builder(scene, **options)`` gives the free body."""
         raise NotImplementedError(f"the {self.title} has no body of its own")
 
     def build(self, scene: Any, **options: Any) -> Body:
-        """The free body of a scene, by options of the builder within their limits."""
+        """Build the free body of a scene, by options of the builder within their limits."""
         return self.builder()(scene, **{**self.preset, **options})
 
     def size(self, scene: Any, options: Options) -> Size:
-        """Unknowns and entries of its matrices, counted on the mesh."""
+        """Count the unknowns and matrix entries on the mesh."""
         return self._size(scene, self.defaults() | self.checked(self.given(scene, options)))
 
     def _size(self, scene: Any, options: dict[str, Any]) -> Size:
-        """With all options given; of a body that is cheap it is counted there."""
-        from solidgear.models.size import of_body
+        """Count with all options given; a cheap body is built and counted."""
+        from solidgear.models.size import size_of_body
 
-        return of_body(self.builder()(scene, **self.split(options)[0]))
+        return size_of_body(self.builder()(scene, **self.split(options)[0]))
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
-        """Unknowns of tetrahedra to within a factor of three or so, without meshing; none unless told
-        otherwise.
+        """Estimate the unknowns of tetrahedra to within a factor of about three, without meshing; 0
+        for models without tetrahedra.
         """
         return 0.0
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """True where an option ``half`` makes it smaller."""
+        """Return True where an option ``half`` makes the body smaller."""
         return False
 
     def meshes(self, options: Options) -> Sequence:
-        """Its coarser and finer relatives by the options that were asked for; of solids."""
+        """Return the meshes of a solid, coarse to fine, by the options that were asked for."""
         raise NotImplementedError(f"the {self.title} is solved once")
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
-        """Meshes for a scene, coarse to fine."""
+        """Return the meshes for a scene, coarse to fine."""
         return self.meshes({**self.preset, **self.given(scene, options)})
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Lines of a chart of error against cost, with more levels when full; its one usual mesh unless told
-        otherwise.
+        """Return lines of a chart of error against cost, with more levels when full; the usual mesh
+        alone by default.
         """
         return [(self.family, self.heading, [{}])]
 
     def limits(self, scene: Any) -> str:
-        """Reason why a scene whose features are of sorts that it holds does not fit it all the same,
-        or nothing; asked of scenes with features of `CYCLIC` only.
+        """Return the reason why this model cannot solve the scene, although it supports its
+        features; empty if it can. Called for scenes with features of `CYCLIC` only.
         """
         return ""
 
     def unfit(self, scene: Any) -> str:
-        """Reason why it does not model a scene, or nothing."""
+        """Return the reason why it does not model a scene; empty if it does."""
         from solidgear.scene.features import FEATURES
         from solidgear.scene.shaft import feature_labels
 
-        features, every = features_of(scene), getattr(scene, "features", ())
-        if self.for_features and not any(f.sort in self.holds for f in every):
-            held = sorted(kind for kind, one in FEATURES.items() if one.sort in self.holds)
+        features, with_smeared = features_of(scene), getattr(scene, "features", ())
+        if self.for_features and not any(f.sort in self.holds for f in with_smeared):
+            kinds = sorted(kind for kind, cls in FEATURES.items() if cls.sort in self.holds)
             return (
                 f"the {self.title} is made for features, and the scene has none of: "
-                f"{listed(kind.replace('_', ' ') for kind in held)}"
+                f"{listed(kind.replace('_', ' ') for kind in kinds)}"
             )
         sorts = {f.sort for f in features}
-        held_here = {f.sort for f in every} if self.for_features and not sorts else sorts
+        modelled = {f.sort for f in with_smeared} if self.for_features and not sorts else sorts
         if (len(sorts) < 2 or sorts <= self.together) and sorts <= set(self.holds):
-            return self.limits(scene) if CYCLIC in held_here else ""
+            return self.limits(scene) if CYCLIC in modelled else ""
         if not self.holds and all(f.round for f in features):
             return ""
         if BODIES in sorts and BODIES not in self.holds:
@@ -154,50 +148,46 @@ class Model:
         return unfit if strange else f"{unfit}, which no mesh holds together"
 
     def concerns(self, scene: Any) -> bool:
-        """True where it is among the models that one asks of a scene without naming any."""
+        """Return True where it is among the models solved for a scene when none is named."""
         sorts = {f.sort for f in features_of(scene)}
         return not self.for_features or not sorts.isdisjoint(self.holds)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
-        """Options for the builder of a scene: those asked for over those that its features ask for."""
+        """Return options for the builder of a scene: those asked for over those that its features
+        need.
+        """
         return dict(options)
 
     def checked(self, options: Options) -> dict[str, Any]:
-        """Options for the builder within their limits; see
+        """Return options for the builder within their limits; see
         :func:`solidgear.models.options.checked`.
         """
         return checked(self.name, options, self.options)
 
     def defaults(self) -> dict[str, Any]:
-        """Every option of the builder with the value it has unless told otherwise."""
+        """Return every option of the builder with its default."""
         from inspect import signature
 
         parameters = signature(self.builder()).parameters.values()
-        own = {p.name: p.default for p in parameters if p.default is not p.empty}
-        usual = {k: v for k, v in asdict(Factoring()).items() if k in self.options}
-        return own | dict(self.preset) | usual
+        defaults = {p.name: p.default for p in parameters if p.default is not p.empty}
+        factoring = {k: v for k, v in asdict(Factoring()).items() if k in self.options}
+        return defaults | dict(self.preset) | factoring
 
     def split(self, options: Options) -> tuple[dict[str, Any], Factoring]:
-        """Options that the builder takes, apart from those that say how matrices are factored."""
-        own = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
+        """Return the options that the builder takes, and those of factoring."""
+        builder_options = {k: v for k, v in options.items() if k not in FACTORING_OPTIONS}
         factoring = Factoring(**{k: v for k, v in options.items() if k in FACTORING_OPTIONS})
-        if factoring.engine != "own" and (factoring.precision, factoring.out_of_core) != (
-            "double",
-            False,
-        ):
+        in_core_double = factoring.precision == "double" and not factoring.out_of_core
+        if factoring.engine != "own" and not in_core_double:
             raise SolidgearError(
                 f"{self.name}: engine = {factoring.engine} factors in double precision and in memory; "
                 "leave out precision and out_of_core"
             )
-        return own, factoring
+        return builder_options, factoring
 
 
 class Ladder:
     """Models by name, cheapest first.
-
-    Parameters
-    ----------
-    models : Model
 
     Examples
     --------
@@ -228,31 +218,29 @@ class Ladder:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All models."""
+        """Names of all models."""
         return tuple(m.name for m in self.models)
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """Models that build a body of their own."""
+        """Names of the models that build a body."""
         return tuple(m.name for m in self.models if m.family != LUMPED)
 
     def fit(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own, without models that are made for features of kinds that a
-        scene does not have.
+        """Return the models with a body, without those made for features that a scene does not
+        have.
         """
         return tuple(n for n in self.bodies if self[n].concerns(scene))
 
     def holding(self, scene: Any) -> tuple[str, ...]:
-        """Those with a body of their own that model all of a scene."""
+        """Return the models with a body that model all of a scene."""
         return tuple(n for n in self.bodies if not self[n].unfit(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:
-        """Models from the one that judges best to the one that judges worst: solids, the cheaper
-        first, then beams, the better first.
-        """
+        """Models from best to worst judge: solids, the cheaper first, then beams, the better first."""
         return (*self.of(SOLID), *reversed(self.of(BEAM)))
 
     def of(self, *families: str) -> tuple[str, ...]:
-        """Models of some families."""
+        """Return the models of some families."""
         return tuple(m.name for m in self.models if m.family in families)

@@ -23,11 +23,13 @@ if TYPE_CHECKING:
 
 #: models whose memory goes into the factor of a 3D mesh
 LARGE = ("solid", "sector")
-#: a mesh with less of this refinement answers for nothing
+#: a mesh of less refinement is useless
 COARSEST = 0.1
-#: share of the memory that a coarser mesh may fill, for the law is good to a tenth between meshes of one
-#: scene; what is aimed at; and meshes that are tried for it
-FILLED, AIM, TRIED = 0.85, 0.75, 4
+#: share of the memory that a coarser mesh may fill (the law is good to a tenth between meshes of one
+#: scene), and the share aimed at
+FILLED, AIM = 0.85, 0.75
+#: meshes that are tried for it
+TRIED = 4
 #: refinements are offered in such steps
 STEP = 0.05
 #: memory goes with the power 4/3 of unknowns, and these with the cube of the refinement
@@ -36,29 +38,31 @@ BY_REFINEMENT = 4
 
 @dataclass(frozen=True)
 class Remedy:
-    """One way out."""
+    """A model, mesh or factor that takes less memory."""
 
-    words: str  #: what to ask for
-    mb: float  #: what it would take, about
-    note: str = ""  #: what there is to be known of it
+    words: str  #: options to use
+    mb: float  #: approximate memory
+    note: str = ""  #: remark in brackets
 
     @property
     def text(self) -> str:
-        """In a list."""
+        """Entry in a list."""
         return f"{self.words} (about {self.mb:.0f} MB{', ' if self.note else ''}{self.note})"
 
 
 def refusal(
     scene: Shaft, name: str, options: Mapping[str, Any], body: Body | None, error: NoRoom
 ) -> NoRoom:
-    """A refusal of the mesh, the matrices or the factors of a model with the ways out, those that fit first."""
+    """Return the refusal of the mesh, the matrices or the factors of a model with remedies, those
+    that fit first.
+    """
     model = LADDER[name]
     if name not in LARGE:
         return error.of_model(name, model.coarser)
     try:
         with anew():
-            found = _Remedies(scene, model, model.given(scene, options), body, error)
-            remedies = offered([*found.all()], found.room)
+            finder = _Remedies(scene, model, model.given(scene, options), body, error)
+            remedies = offered([*finder.all()], finder.room)
     except (MemoryError, ImportError):
         remedies = ""  # where memory has run out, nothing can be counted any more
     return error.of_model(name, f"{model.coarser}{remedies}")
@@ -66,7 +70,7 @@ def refusal(
 
 @dataclass(frozen=True)
 class _Remedies:
-    """Ways out of one refusal, those first that cost least accuracy and work."""
+    """Remedies for one refusal, in order of the accuracy and work they cost."""
 
     scene: Any
     model: Model
@@ -75,26 +79,26 @@ class _Remedies:
     error: NoRoom
 
     @cached_property
-    def _now(self) -> Size | None:
-        from solidgear.models.size import of_body
+    def _size(self) -> Size | None:
+        from solidgear.models.size import size_of_body
 
-        return None if self.body is None else of_body(self.body)
+        return None if self.body is None else size_of_body(self.body)
 
     @property
-    def _held(self) -> float:
-        """MB of matrices, which another mesh or model would not have beside its own."""
-        return 0.0 if self._now is None else self._now.matrices_mb
+    def _matrices_mb(self) -> float:
+        """Memory of the matrices, which another mesh or model would not need beside its own."""
+        return 0.0 if self._size is None else self._size.matrices_mb
 
     @property
     def room(self) -> float:
-        """MB for matrices and factors."""
-        free, here = self.error.free_mb, available_mb()
-        if not math.isfinite(free) and here is not None:
-            free = here
-        return free + self._held
+        """Memory for matrices and factors, MB."""
+        free, available = self.error.free_mb, available_mb()
+        if not math.isfinite(free) and available is not None:
+            free = available
+        return free + self._matrices_mb
 
     def all(self) -> Iterator[Remedy]:
-        """Yield every one, fitting or not."""
+        """Yield every remedy, fitting or not."""
         yield from self.half()
         yield from self.other_models()
         yield from self.coarser()
@@ -102,61 +106,63 @@ class _Remedies:
             yield from self.other_factors(self.body)
 
     def _sized(self, model: Model, options: dict) -> tuple[int, float] | None:
-        """Unknowns and memory (MB) of a mesh that is made and counted; that of factors is as much off
-        the law as what was refused.
+        """Return unknowns and memory (MB) of a mesh that is made and counted; factors of the
+        refused model deviate from the law as they did there.
         """
         try:
             size = model.size(self.scene, options)
         except SolidgearError:
             return None
-        off = 1.0
-        if model is self.model and self._now is not None:
-            off = self.error.need_mb / self._now.factors_mb
-        return size.unknowns, size.matrices_mb + off * size.factors_mb
+        factor = 1.0
+        if model is self.model and self._size is not None:
+            factor = self.error.need_mb / self._size.factors_mb
+        return size.unknowns, size.matrices_mb + factor * size.factors_mb
 
     def half(self) -> Iterator[Remedy]:
-        """A half of it, where there is a mirror plane that was not used."""
+        """Yield half of the body, where there is a mirror plane that was not used."""
         if self.options.get("half", True) or not self.model.can_halve(self.scene, self.options):
             return
-        found = self._sized(self.model, {**self.options, "half": True})
-        what = "half a sector" if self.model.name == "sector" else "two half models"
-        if found is not None:
-            yield Remedy("--set half=true", found[1], what)
+        sized = self._sized(self.model, {**self.options, "half": True})
+        note = "half a sector" if self.model.name == "sector" else "two half models"
+        if sized is not None:
+            yield Remedy("--set half=true", sized[1], note)
 
     def other_models(self) -> Iterator[Remedy]:
-        """Other models of the same scene."""
-        for other in (LADDER[name] for name in ("sector", "corrected", "harmonic")):
-            if other is self.model or other.unfit(self.scene):
+        """Yield other models of the same scene."""
+        for model in (LADDER[name] for name in ("sector", "corrected", "harmonic")):
+            if model is self.model or model.unfit(self.scene):
                 continue
-            found = self._sized(other, {})
-            if found is not None:
-                note = f"the {other.title}, {found[0]} unknowns"
-                yield Remedy(f"-f {other.name}", found[1], note)
+            sized = self._sized(model, {})
+            if sized is not None:
+                note = f"the {model.title}, {sized[0]} unknowns"
+                yield Remedy(f"-f {model.name}", sized[1], note)
 
     def coarser(self) -> Iterator[Remedy]:
-        """A mesh of the same kind that fits."""
+        """Yield a mesh of the same kind that fits."""
         if getattr(getattr(self.scene, "body", None), "one_mesh", False):
-            return  # a mesh that is given
+            return  # a mesh file is the only mesh
         refinement = float(self.options.get("refinement", 1.0))
-        mb = self.error.need_mb + self._held
+        mb = self.error.need_mb + self._matrices_mb
         for _ in range(TRIED):
-            known = math.isfinite(self.room) and math.isfinite(mb)
-            # of what cannot even be numbered, half the refinement is tried, and so on
-            share = (AIM * self.room / mb) ** (1 / BY_REFINEMENT) if known else 0.5
+            sizes_known = math.isfinite(self.room) and math.isfinite(mb)
+            # where sizes are unknown, half the refinement is tried, and so on
+            share = (AIM * self.room / mb) ** (1 / BY_REFINEMENT) if sizes_known else 0.5
             refinement = round(STEP * int(min(refinement * share, refinement - STEP / 2) / STEP), 2)
             if refinement < COARSEST:
                 return
-            found = self._sized(self.model, {**self.options, "refinement": refinement})
-            if found is None:
+            sized = self._sized(self.model, {**self.options, "refinement": refinement})
+            if sized is None:
                 return
-            unknowns, mb = found
+            unknowns, mb = sized
             if mb <= FILLED * self.room:
                 note = f"{unknowns} unknowns, with a wider error bar"
                 yield Remedy(f"--set refinement={refinement:g}", mb, note)
                 return
 
     def other_factors(self, body: Body) -> Iterator[Remedy]:
-        """Factors of the same matrices that take less, by their own analysis, and by other programs."""
+        """Yield factors of the same matrices that take less, by their own analysis, and by other
+        programs.
+        """
         from solidgear.solve.shifted import needed_mb
 
         single, files = {"precision": "single"}, {"out_of_core": True}
@@ -171,20 +177,20 @@ class _Remedies:
                 continue  # no back end here makes it
             # a factor in double precision may fall into pieces by mirror planes, others do not
             if mb < self.error.need_mb:
-                yield Remedy(words, self._held + mb, note)
+                yield Remedy(words, self._matrices_mb + mb, note)
         if body.factoring.engine == "own":
             note = "MUMPS in PETSc on two ranks of this machine; SOLIDGEAR_MPIRUN names others"
             mb = needed_mb(body, Factoring(engine="petsc"))
-            yield Remedy("--engine petsc", self._held + mb, note)
+            yield Remedy("--engine petsc", self._matrices_mb + mb, note)
 
 
 def offered(remedies: list[Remedy], free: float) -> str:
-    """Those that fit in a list, and those that do not."""
+    """Return the remedies that fit as a numbered list, and then those that do not."""
     fit = [remedy.text for remedy in remedies if remedy.mb <= free]
     large = [remedy.text for remedy in remedies if remedy.mb > free]
     text = ""
     if fit:
-        text = "; ways that fit: " + "; ".join(f"{k}. {one}" for k, one in enumerate(fit, 1))
+        text = "; ways that fit: " + "; ".join(f"{k}. {remedy}" for k, remedy in enumerate(fit, 1))
     if large:
         text += f"; too large as well: {'; '.join(large)}"
     return text

@@ -50,27 +50,31 @@ class Sector(Volume):
         return sector_size(scene, **self.split(options)[0])
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
-        """Of half a sector, and all that is solved on it, roughly."""
+        """Estimate the unknowns of all that is solved on half a sector."""
         from solidgear.models.sector.body import rough_sector
 
-        given = self.defaults() | self.given(scene, options)
-        sizes = {n: given[n] for n in ("size", "graded_size", "refinement", "count")}
-        return PER_TETRAHEDRON * OF_A_HALF * rough_sector(scene, self.wanted(scene, given), **sizes)
+        full_options = self.defaults() | self.given(scene, options)
+        sizes = {n: full_options[n] for n in ("size", "graded_size", "refinement", "count")}
+        return (
+            PER_TETRAHEDRON
+            * OF_A_HALF
+            * rough_sector(scene, self.wanted(scene, full_options), **sizes)
+        )
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """True where the middle of a sector can lie in a mirror plane of all features."""
+        """Return True where the middle of a sector can lie in a mirror plane of all features."""
         from solidgear.models.sector.body import halved, sectors_around
 
         return halved(scene, sectors_around(scene, options))
 
     def meshes(self, options: Options) -> Sequence:
-        """Plain refinement."""
+        """Return meshes of plain refinement."""
         if set(options) - set(FREE):
             return fixed_refinements(options)
         return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Its meshes, for a scene with such features."""
+        """Return its meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []
         return [("tetrahedra", self.title, [dict(x) for x in SECTOR[: 4 if full else 3]])]

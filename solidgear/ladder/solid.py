@@ -43,13 +43,13 @@ AROUND = 8
 
 
 class _Steps(NamedTuple):
-    """Refinements of a quick chart, and those that a full one has on top."""
+    """Refinements of a quick chart, and further ones of a full chart."""
 
     quick: tuple[float, ...]
     more: tuple[float, ...]
 
 
-#: element -> refinements of uniform and of graded meshes
+#: refinements of uniform and of graded meshes, by element
 _CHARTED = {
     "tet4": (_Steps((1.0, 1.8, 2.6), (3.4, 4.4)), _Steps((0.5, 0.8, 1.25), (1.8, 2.4))),
     "tet10": (_Steps((0.7, 1.3, 1.8), (2.4, 3.0)), _Steps((0.4, 0.6, 0.9), (1.2, 1.6))),
@@ -84,32 +84,32 @@ class Solid(Volume):
         return solid_size(scene, **self.split(options)[0])
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
-        """Of tetrahedra, roughly."""
+        """Estimate the unknowns of tetrahedra."""
         from solidgear.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
-        given = self.defaults() | self.given(scene, options)
-        if not given["element"].startswith("tet"):
+        full_options = self.defaults() | self.given(scene, options)
+        if not full_options["element"].startswith("tet"):
             return 0.0
-        sizes = {n: given[n] for n in ("size", "graded_size", "refinement", "around")}
-        plan = tetrahedra_plan(scene, self.wanted(scene, given), **sizes)
-        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, given["refinement"])
+        sizes = {n: full_options[n] for n in ("size", "graded_size", "refinement", "around")}
+        plan = tetrahedra_plan(scene, self.wanted(scene, full_options), **sizes)
+        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"])
 
     def can_halve(self, scene: Any, options: Options) -> bool:
-        """True where all that is cut out of a shaft has one mirror plane."""
+        """Return True where all cuts of a shaft have one mirror plane."""
         from solidgear.meshing.cuts import mirror_plane
 
         cuts = features_of(scene)
         return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
 
     def concerns(self, scene: Any) -> bool:
-        """Not where its mesh is made of copies of a sector's: no second opinion, and solved only
-        where it is asked for by name.
+        """Return False where its mesh would be copies of a sector: that is no second opinion, and
+        solved only when named.
         """
         return {CYCLIC} != {f.sort for f in features_of(scene)}
 
     def limits(self, scene: Any) -> str:
-        """Reason why the features of a scene have no sector, or cannot be cut beside each other, or
-        nothing.
+        """Return the reason why features of a scene have no sector, or cannot be cut beside each
+        other; empty if they can.
         """
         if CUTS not in {f.sort for f in features_of(scene)}:
             return super().limits(scene)
@@ -118,28 +118,30 @@ class Solid(Volume):
         return not_together(scene)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
-        """Tetrahedra in a scene that is more than its segments, with features, fillets or chamfers,
-        or from a file, and hexahedra in a block, which has no arcs: layered hexahedra converge too slowly beside fillets for error bars.
+        """Return options with tetrahedra for features, fillets, chamfers or a part from a file,
+        beside which layered hexahedra converge too slowly for error bars; and hexahedra for a
+        block.
         """
         features = features_of(scene)
         if "block" in {getattr(f, "kind", "") for f in features}:
             return {"element": "hex27", **options}
-        special = features or scene.outline.corners
-        return {**({"element": "tet10"} if special else {}), **options}
+        if features or scene.outline.corners:
+            return {"element": "tet10", **options}
+        return dict(options)
 
     def meshes_of(self, scene: Any, options: Options) -> Sequence:
-        """The meshes of files, or a list."""
-        given = {**self.preset, **self.given(scene, options)}
+        """Return the meshes of files, or the usual list."""
+        full_options = {**self.preset, **self.given(scene, options)}
         body = getattr(scene, "body", None)
         if body is not None and body.one_mesh:
             if not body.coarser:
-                return Sequence((given,), True, False)
-            levels = ({**given, "coarser": k} for k in range(len(body.coarser), -1, -1))
+                return Sequence((full_options,), True, False)
+            levels = ({**full_options, "coarser": k} for k in range(len(body.coarser), -1, -1))
             return Sequence(tuple(levels), True, False)
-        return self.meshes(given)
+        return self.meshes(full_options)
 
     def meshes(self, options: Options) -> Sequence:
-        """Meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
+        """Return meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
         element = self.checked({"element": options.get("element", "hex20")})["element"]
         second = ELEMENTS[element].order == 2
         layered = second and element.startswith("hex")
@@ -149,13 +151,13 @@ class Solid(Volume):
             return fixed_refinements(options)
         if layered:
             around = {"around": AROUND, **options}
-            own = tuple({**level, **around} for level in HEXAHEDRA)
-            return Sequence(own, False, True, _turned(own[0]))
-        known = TETRAHEDRA if second else LINEAR
-        return Sequence(tuple({**level, **options} for level in known), False, False)
+            hexahedra = tuple({**level, **around} for level in HEXAHEDRA)
+            return Sequence(hexahedra, False, True, _turned(hexahedra[0]))
+        tetrahedra = TETRAHEDRA if second else LINEAR
+        return Sequence(tuple({**level, **options} for level in tetrahedra), False, False)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Every element type, on uniform and on graded meshes."""
+        """Return every element type, on uniform and on graded meshes."""
         from solidgear.models.solid.plan import usual_size
 
         size = usual_size(scene)

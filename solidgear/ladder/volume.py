@@ -11,20 +11,22 @@ PER_TETRAHEDRON = 4.0
 
 
 class Volume(Model):
-    """A 3D mesh: not of one sort with the others in its ties, and closed to what arcs lose."""
+    """A model on a 3D mesh: without section ties, its volume off by arcs between nodes."""
 
     family = SOLID
     section_ties = False
     mass_tolerance = 1e-3
 
     def wanted(self, scene: Any, options: Options) -> list[tuple[Any, str]]:
-        """Stations with their attachments."""
+        """Return the stations with their attachments."""
         from solidgear.scene.attached import attached_stations
 
         return [*attached_stations(scene.stations, options["attachments"])]
 
     def limits(self, scene: Any) -> str:
-        """Reason why the features of a scene have no sector that can be meshed, or nothing."""
+        """Return the reason why the features of a scene have no sector that can be meshed; empty if
+        they have.
+        """
         from solidgear.models.sector.body import no_sector
 
         return no_sector(scene)

@@ -1,4 +1,4 @@
-r"""Defect correction: the harmonic solid of the plain part, and what features change by two 3D
+r"""Defect correction: the harmonic solid of the plain part, and the change by features from two 3D
 solids on one mesh.
 
 A 3D mesh errs at seat ends and shoulders, and by nearly as much with a feature as without. With
@@ -6,7 +6,7 @@ A 3D mesh errs at seat ends and shoulders, and by nearly as much with a feature 
 
     X = X_harmonic + (X_with - X_without)
 
-keeps of the 3D error only what the feature changes of it (Stetter 1978, Numer. Math. 29, 425). The
+keeps only the part of the 3D error that the feature changes (Stetter 1978, Numer. Math. 29, 425). The
 harmonic solid errs by 1e-5 to 1e-4, so that a few thousand 3D unknowns give a keyed shaft to 1e-3.
 
 The numbers corrected are: the rigid mass matrix; the flexibility of the lowest free modes and
@@ -14,8 +14,8 @@ their port motions, modes turned so that those with the feature are most like th
 these most like the harmonic ones; and the residual flexibility of the ports, such that all of the
 flexibility is corrected. (The residual mass stays that of the plain part.) No more modes are kept
 than leave it positive. They make a small body with the same ports:
-bearings, masses and systems are put on it as on any other. What it leaves out of the harmonic solid
-is what the modes above the last one kept do that mu_0 and mu_1 do not hold, as in any superelement.
+bearings, masses and systems are put on it as on any other. It leaves out the dynamics of higher
+harmonic modes beyond mu_0 and mu_1, as any superelement does.
 """
 
 from __future__ import annotations
@@ -45,17 +45,17 @@ from solidgear.scene.attached import attached_stations
 KEPT = 16
 #: share of them that is solved in 3D besides, where others lie between
 SPARE = 0.6
-#: free modes of the plain part on both meshes are the same where sections hold this much of one in
-#: the others, and frequencies differ by less
+#: free modes of the plain part on both meshes are the same where sections of one hold this share of
+#: the other, and frequencies differ by less
 ALIKE, SAME = 0.9, 0.1
-#: and with the features, which change it, this much: those found had 0.75 and more, those that were
-#: not there, and had another put in their place, below 0.05
+#: share with the features, which change a mode: modes recognised had 0.75 and more, modes that were
+#: missing, and had another in their place, below 0.05
 STILL = 0.5
-#: share of the largest flexibility of a port that is none
+#: flexibility below this share of the largest one of a port counts as none
 NOTHING = 1e-9
 #: eigenvalues nearer than this, relative, are those of a pair
 TWIN = 1e-6
-#: fewest of them that are worth a body
+#: fewest modes that are worth a body
 FEWEST = 2
 Families = list[tuple[str, tuple[int, ...]]]
 
@@ -71,16 +71,12 @@ def corrected(
     modes: int = KEPT,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
-    """Free body of a scene with features, by defect correction: two blocks where features have a mirror
-    plane, one where there is none; options as in
+    """Build the free body of a scene with features, by defect correction: two blocks where features have
+    a mirror plane, one where there is none; options as in
     :data:`~solidgear.models.options.CORRECTED_OPTIONS`, of which the first four are those of the
-    harmonic solid, ``refinement`` that of the 3D mesh that both 3D solids share.
+    harmonic solid, and ``refinement`` that of the 3D mesh of both 3D solids.
 
-    Raises
-    ------
-    SolidgearError
-        A rigid seat across a feature, modes of both meshes that cannot be told apart, or what a
-        builder raises.
+    Refused: a rigid seat across a feature, and modes of both meshes that cannot be matched.
     """
     plain = scene.plain
     base = harmonic(
@@ -91,20 +87,20 @@ def corrected(
         relative_size=harmonic_size,
         attachments=attachments,
     )
-    wanted = [*attached_stations(scene.stations, attachments)]
-    made = meshed_cuts(scene, refinement, attachments)
-    without = featured_body(scene, wanted, made, refinement, plain=True)
-    with_ = featured_body(scene, wanted, made, refinement)
+    ties = [*attached_stations(scene.stations, attachments)]
+    cut_mesh = meshed_cuts(scene, refinement, attachments)
+    without = featured_body(scene, ties, cut_mesh, refinement, plain=True)
+    with_ = featured_body(scene, ties, cut_mesh, refinement)
     exact = modal(base, modes)
     solved = modes + math.ceil(SPARE * modes)
     before, after = modal(without, solved), modal(with_, solved)
-    families = _families(made.plane)
+    families = _families(cut_mesh.plane)
     exact = _recognised(exact, before, after, families)
     numbers = _corrected(exact, before, after, families)
     while not _positive_enough(numbers.static) and exact.motions.shape[1] > FEWEST:
         exact = exact.first(_fewer(exact))
         numbers = _corrected(exact, before, after, families)
-    blocks = _blocks(numbers, base, exact, made.plane)
+    blocks = tuple(_block(numbers, base, exact, name, family) for name, family in families)
     return Body(
         "corrected",
         blocks,
@@ -119,13 +115,13 @@ def corrected(
             "solid_unknowns": with_.size,
             "volume": with_.mesh["volume"],
         },
-        _Drawing(base.geometry, _shares(base, made.plane)) if base.geometry else None,
+        _Drawing(base.geometry, _shares(base, families)) if base.geometry else None,
     )
 
 
 @dataclass
 class _Numbers:
-    """Corrected numbers of the ports."""
+    """Corrected numbers of the ports, as in :class:`~solidgear.models.modal.Modal`."""
 
     rigid_mass: np.ndarray
     value: np.ndarray
@@ -135,41 +131,45 @@ class _Numbers:
 
 
 def _corrected(exact: Modal, before: Modal, after: Modal, families: Families) -> _Numbers:
-    # modes of the plain shaft on the 3D mesh that stand for the harmonic ones, then those with the
-    # feature that stand for these
-    turn = _alike(before, exact, exact.sections, families)
+    # modes of the plain shaft on the 3D mesh that match the harmonic ones, then those with the
+    # feature that match these
+    """Return the numbers of the harmonic solid, corrected by the change from the 3D solid without
+    features to that with features.
+    """
+    turn = _matched(before, exact, exact.sections, families)
     plain = turn.T @ before.value @ turn, before.motions @ turn
-    again = _alike(after, exact, before.sections @ turn, families)
-    cut = again.T @ after.value @ again, after.motions @ again
-    # of modes the flexibility, as of all: what a mesh lacks at seats and shoulders is a part of it by
-    # itself, and what a feature adds is another, so that neither is scaled by the other
-    soft, softer, own = (np.linalg.inv(v) for v in (plain[0], cut[0], exact.value))
-    value = np.linalg.inv(own + (softer - soft))
+    cut_turn = _matched(after, exact, before.sections @ turn, families)
+    cut = cut_turn.T @ after.value @ cut_turn, after.motions @ cut_turn
+    # of modes the flexibility, as of all: the error of a mesh at seats and shoulders is one part of
+    # it, and the change by a feature is another, so that neither is scaled by the other
+    soft, softer, harmonic_flexibility = (np.linalg.inv(v) for v in (plain[0], cut[0], exact.value))
+    value = np.linalg.inv(harmonic_flexibility + (softer - soft))
     motions = exact.motions + (cut[1] - plain[1])
-    whole = exact.static + (after.static - before.static)
-    static = whole - motions @ np.linalg.solve(value, motions.T)
+    flexibility = exact.static + (after.static - before.static)
+    static = flexibility - motions @ np.linalg.solve(value, motions.T)
     inert = exact.residual(np.eye(len(value)))[1]
-    # what a feature changes of mu_1 is a small part of a small part, and the difference of two
-    # meshes would be that of large numbers: it is left as it is
+    # the change of mu_1 by a feature is a small part of a small part, and the difference of two
+    # meshes would be that of large numbers: mu_1 is left as it is
     mass = exact.rigid_mass + (after.rigid_mass - before.rigid_mass)
     return _Numbers(mass, (value + value.T) / 2, motions, static, inert)
 
 
-def _alike(found: Modal, exact: Modal, sections: np.ndarray, families: Families) -> np.ndarray:
-    """The turn of modes that makes them most like others, which stand for the harmonic ones and
-    move ``sections``. None stands for one of another family: what one of them gives up, no block
-    of the other could hold.
+def _matched(meshed: Modal, exact: Modal, sections: np.ndarray, families: Families) -> np.ndarray:
+    """Return the turn (k, l) of modes that makes them most like others, which match the harmonic
+    ones and move ``sections``; only modes of one family match, for no block of another could hold a
+    part of them.
     """
-    turn = np.zeros((found.motions.shape[1], exact.motions.shape[1]))
-    for _, own in families:
-        mine, theirs = found.within(own), exact.within(own)
-        at = np.ix_(mine, theirs)
-        turn[at] = alike_turn(found.sections[:, mine], sections[:, theirs], exact.gram)
+    turn = np.zeros((meshed.motions.shape[1], exact.motions.shape[1]))
+    for _, components in families:
+        rows, columns = meshed.within(components), exact.within(components)
+        turn[np.ix_(rows, columns)] = alike_turn(
+            meshed.sections[:, rows], sections[:, columns], exact.gram
+        )
     return turn
 
 
 def _positive_enough(static: np.ndarray) -> bool:
-    """True where no load meets a flexibility that is clearly negative."""
+    """Return True where no load meets a flexibility that is clearly negative."""
     size = np.sqrt(np.maximum(np.diag(static), 0.0))
     size = np.where(size > 0, size, 1.0)
     w = np.linalg.eigvalsh(static / np.outer(size, size))
@@ -177,35 +177,38 @@ def _positive_enough(static: np.ndarray) -> bool:
 
 
 def _fewer(exact: Modal) -> int:
-    """Number of modes without the highest, or without the highest pair."""
+    """Return the number of modes without the highest, or without the highest pair."""
     value = np.diag(exact.value)
     return len(value) - (2 if value[-1] < value[-2] * (1 + TWIN) else 1)
 
 
 def _recognised(exact: Modal, before: Modal, after: Modal, families: Families) -> Modal:
-    """The lowest of the harmonic modes, as far as each is found among those of the 3D mesh, its
-    frequency (not its square, which is what modes hold) nearly the same, and no more of any family
-    than both 3D solids have: on a stub, many of theirs move no sections and stand for none.
+    """Return the lowest harmonic modes, as far as each is recognised among those of the 3D mesh by
+    its shape and frequency, and no more of a family than both 3D solids have: on a stub, many of
+    theirs move no sections and match none.
     """
     count = 0
     value = np.diag(exact.value)
     for k in range(1, len(value) + 1):
         if k < len(value) and value[k] < value[k - 1] * (1 + TWIN):
             continue  # a pair is turned as one, and not cut in two
-        own = exact.first(k)
-        if any(
-            len(own.within(f)) > min(len(m.within(f)) for m in (before, after)) for _, f in families
-        ):
+        lowest = exact.first(k)
+        counts = [
+            (len(lowest.within(f)), len(before.within(f)), len(after.within(f)))
+            for _, f in families
+        ]
+        if any(n > min(n_before, n_after) for n, n_before, n_after in counts):
             break
-        turn = _alike(before, own, own.sections, families)
-        theirs = np.diag(turn.T @ before.value @ turn)
-        apart = np.abs(np.sqrt(theirs / np.diag(own.value)) - 1)
+        turn = _matched(before, lowest, lowest.sections, families)
+        meshed_value = np.diag(turn.T @ before.value @ turn)
+        # of the frequency, and not of its square, which the values are
+        difference = np.abs(np.sqrt(meshed_value / np.diag(lowest.value)) - 1)
         plain = before.sections @ turn
-        cut = after.sections @ _alike(after, own, plain, families)
+        cut = after.sections @ _matched(after, lowest, plain, families)
         if (
-            (_shared(plain, own.sections, own.gram) < ALIKE).any()
-            or (apart > SAME).any()
-            or (_shared(cut, plain, own.gram) < STILL).any()
+            (_shared(plain, lowest.sections, lowest.gram) < ALIKE).any()
+            or (difference > SAME).any()
+            or (_shared(cut, plain, lowest.gram) < STILL).any()
         ):
             break
         count = k
@@ -217,57 +220,53 @@ def _recognised(exact: Modal, before: Modal, after: Modal, families: Families) -
     return exact.first(count)
 
 
-def _shared(found: np.ndarray, wanted: np.ndarray, gram: np.ndarray) -> np.ndarray:
-    """Share of each of some modes that the one that stands for it has, by what sections do."""
-    each = "ik,ij,jk->k"
-    return np.einsum(each, found, gram, wanted) / np.einsum(each, wanted, gram, wanted)
+def _shared(partners: np.ndarray, modes: np.ndarray, gram: np.ndarray) -> np.ndarray:
+    """Return the share of each mode that its partner has, by the motions of sections."""
+    by_mode = "ik,ij,jk->k"
+    return np.einsum(by_mode, partners, gram, modes) / np.einsum(by_mode, modes, gram, modes)
 
 
 def _families(plane: int | None) -> Families:
-    """Groups that modes cannot mix: names of blocks, and port components of each."""
+    """Return the groups that modes cannot mix: names of blocks, and port components of each."""
     return [("full", tuple(range(6)))] if plane is None else list(PARTS[plane])
 
 
-def _shares(base: Body, plane: int | None) -> dict[str, list[Block]]:
-    """Blocks of the harmonic solid that move in each block of the corrected one."""
+def _shares(base: Body, families: Families) -> dict[str, list[Block]]:
+    """Return the blocks of the harmonic solid that move in each block of the corrected one."""
     return {
-        name: [b for b in base.blocks if set(b.components) <= set(own)]
-        for name, own in _families(plane)
+        name: [b for b in base.blocks if set(b.components) <= set(components)]
+        for name, components in families
     }
 
 
-def _blocks(numbers: _Numbers, base: Body, exact: Modal, plane: int | None) -> tuple[Block, ...]:
-    """Blocks in rigid motions, modes and attachment fields."""
-    return tuple(_block(numbers, base, exact, name, own) for name, own in _families(plane))
-
-
-def _block(numbers: _Numbers, base: Body, exact: Modal, name: str, own) -> Block:
-    components = list(own)
-    members = [k for k, b in enumerate(base.blocks) if set(b.components) <= set(own)]
-    mine = [i for i, v in enumerate(exact.vectors) if next(iter(v)) in members]
+def _block(numbers: _Numbers, base: Body, exact: Modal, name: str, family) -> Block:
+    """Build the block of a family in rigid motions, modes and attachment fields."""
+    components = list(family)
+    members = [k for k, b in enumerate(base.blocks) if set(b.components) <= set(family)]
+    places = [i for i, v in enumerate(exact.vectors) if next(iter(v)) in members]
     rows = np.array([6 * p + c for p in range(len(base.ports)) for c in components], int)
     static, inert = (m[np.ix_(rows, rows)] for m in (numbers.static, numbers.inert))
     fields, stiff = _attachment_fields(static)
-    shapes = _shapes(base, exact, members, mine, components, rows, fields)
+    shapes = _shapes(base, exact, members, places, components, rows, fields)
     mass = sla.block_diag(
         numbers.rigid_mass[components][:, components],
-        np.eye(len(mine)),
+        np.eye(len(places)),
         _positive(fields.T @ inert @ fields),
     )
     stiffness = sla.block_diag(
-        np.zeros((len(components),) * 2), numbers.value[mine][:, mine], stiff
+        np.zeros((len(components),) * 2), numbers.value[places][:, places], stiff
     )
     ports = np.hstack(
         [
             base.rigid_ports[rows][:, components],
-            numbers.motions[rows][:, mine],
+            numbers.motions[rows][:, places],
             static @ fields,
         ]
     )
     rigid = np.eye(len(mass))[:, : len(components)]
     return Block(
         name,
-        tuple(own),
+        tuple(family),
         sp.csr_matrix(stiffness),
         sp.csr_matrix(mass),
         rigid,
@@ -280,8 +279,8 @@ def _block(numbers: _Numbers, base: Body, exact: Modal, name: str, own) -> Block
 
 
 def _attachment_fields(static: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Combinations of port loads whose fields have unit energy, and their stiffness; loads under
-    which the ports do not give are left out.
+    """Return combinations of port loads whose fields have unit energy, and their stiffness; loads
+    under which the ports do not give are left out.
     """
     size = np.sqrt(np.maximum(np.diag(static), 0.0))
     size = np.where(size > 0, size, 1.0)
@@ -292,46 +291,46 @@ def _attachment_fields(static: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _positive(matrix: np.ndarray) -> np.ndarray:
-    """The nearest matrix that is clearly positive definite."""
+    """Return the nearest matrix that is clearly positive definite."""
     w, v = np.linalg.eigh((matrix + matrix.T) / 2)
     return (v * np.maximum(w, 1e-6 * w.max())) @ v.T
 
 
-def _shapes(base, exact: Modal, members, mine, components, rows, fields) -> dict[int, np.ndarray]:
-    """Unknowns of the harmonic blocks from those of the corrected one."""
+def _shapes(base, exact: Modal, members, places, components, rows, fields) -> dict[int, np.ndarray]:
+    """Return the unknowns of the harmonic blocks by those of the corrected one, by block."""
     out = {}
     for k in members:
         block = base.blocks[k]
         rigid = np.zeros((block.size, len(components)))
         for i, c in enumerate(block.components):
             rigid[:, components.index(c)] = block.rigid[:, i]
-        modes = np.zeros((block.size, len(mine)))
-        for i, m in enumerate(mine):
+        modes = np.zeros((block.size, len(places)))
+        for i, m in enumerate(places):
             if k in exact.vectors[m]:
                 modes[:, i] = exact.vectors[m][k]
-        own = base.rows(block)
-        place = [int(np.flatnonzero(rows == r)[0]) for r in own]
-        attached = exact.without_modes(exact.fields[k], k, own)
+        block_rows = base.rows(block)
+        place = [int(np.flatnonzero(rows == r)[0]) for r in block_rows]
+        attached = exact.without_modes(exact.fields[k], k, block_rows)
         out[k] = np.hstack([rigid, modes, attached @ fields[place]])
     return out
 
 
 def _sections(base: Body, members, shapes) -> Sections:
-    """Section motions of the plain shaft in the unknowns of the corrected block."""
+    """Return the section motions of the plain shaft in the unknowns of the corrected block."""
 
     def sections(stations):
         parts = {k: base.blocks[k].section_loads(stations) for k in members}
-        own = sorted({c for k in members for c in base.blocks[k].components})
+        components = sorted({c for k in members for c in base.blocks[k].components})
         place = {
             6 * s + c: i
-            for i, (s, c) in enumerate((s, c) for s in range(len(stations)) for c in own)
+            for i, (s, c) in enumerate((s, c) for s in range(len(stations)) for c in components)
         }
         width = next(iter(shapes.values())).shape[1]
         loads, gram = np.zeros((width, len(place))), np.zeros((len(place),) * 2)
         for k, (load, block_gram, columns) in parts.items():
-            at = [place[int(c)] for c in columns]
-            loads[:, at] += shapes[k].T @ load
-            gram[np.ix_(at, at)] += block_gram
+            entries = [place[int(c)] for c in columns]
+            loads[:, entries] += shapes[k].T @ load
+            gram[np.ix_(entries, entries)] += block_gram
         return loads, gram
 
     return sections
@@ -339,22 +338,22 @@ def _sections(base: Body, members, shapes) -> Sections:
 
 @dataclass(frozen=True, eq=False)
 class _Drawing:
-    """Pictures on the plain shaft, which moves as the corrected body does."""
+    """Drawing on the plain shaft, which moves as the corrected body does."""
 
     plain: Drawing
     members: dict[str, list[Block]]
 
     def surface(self, moved: Mapping[str, Any]) -> Surface:
-        """The plain shaft, moved."""
+        """Return the plain shaft, moved."""
         parts: dict[str, np.ndarray] = {}
         for name, vector in moved.items():
             start = 0
             for block in self.members.get(name, []):
-                own = vector[start : start + block.size]
-                parts[block.name] = own if block.expand is None else block.expand @ own
+                part = vector[start : start + block.size]
+                parts[block.name] = part if block.expand is None else block.expand @ part
                 start += block.size
         return self.plain.surface(parts)
 
     def volume(self) -> Volume | None:
-        """No mesh of a volume."""
+        """Return None: there is no mesh of a volume."""
         return None

@@ -16,18 +16,18 @@ GRADED = 2.0
 
 
 def sizes(scene) -> dict[str, float]:
-    """Element edges away from everything, and at seat ends and shoulders, m, of the 3D mesh at
-    refinement 1.
+    """Return element edges away from singular places, and at seat ends and shoulders, m, of the 3D mesh
+    at refinement 1.
 
-    What a mesh lacks at seat ends and shoulders drops out of the difference, but for what a feature
-    close to them changes there; what it lacks at the edges of features does not.
+    The mesh error at seat ends and shoulders drops out of the difference, except for its change by a
+    feature close to them; that at the edges of features does not.
     """
     size = usual_size(scene)
     return {"size": size, "graded_size": size / GRADED}
 
 
 def plan_of(scene, refinement: float, attachments: tuple[str, ...] | None) -> dict:
-    """Planes, circles and sizes of the mesh; parameters as for
+    """Return planes, circles and sizes of the mesh; parameters as for
     :func:`solidgear.models.corrected.corrected`.
     """
     wanted = [*attached_stations(scene.stations, attachments)]
@@ -35,7 +35,7 @@ def plan_of(scene, refinement: float, attachments: tuple[str, ...] | None) -> di
 
 
 def meshed_cuts(scene, refinement: float, attachments: tuple[str, ...] | None) -> FeaturedMesh:
-    """The mesh; parameters as for :func:`plan_of`."""
+    """Make the mesh; parameters as for :func:`plan_of`."""
     plan = plan_of(scene, refinement, attachments)
     return meshed(scene, plan, refinement, True, edges=True)
 

@@ -1,4 +1,4 @@
-"""Numbers within limits, or one sentence: single ones, and sizes of cells."""
+"""Checks of numbers against limits, and of sizes of cells, each refused in one sentence."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from solidgear.models.options import is_number, within
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
 
-Given = TypeVar("Given")
+Value = TypeVar("Value")
 #: lines of cells along the shaft, or across it; a mesh of so many has billions of unknowns in 3D
 MOST_LINES = 20_000
 
@@ -18,15 +18,15 @@ MOST_LINES = 20_000
 def number(
     model: str,
     name: str,
-    value: Given,
+    value: Value,
     *,
     above: float | None = None,
     least: float | None = None,
     below: float | None = None,
     whole: bool = False,
-) -> Given:
-    """A number within limits, of which only `least` may be met, or one sentence (SolidgearError)
-    that names the option of the builder; None, its default, is passed through.
+) -> Value:
+    """Return a number within limits, of which only `least` may be met, or refuse it by the option of
+    the builder; None, its default, is passed through.
     """
     if value is None or is_number(value, whole) and within(value, above, least, below):
         return value
@@ -42,8 +42,8 @@ def number(
 
 
 def countable(model: str, scene: Shaft, size: float, refinement: float) -> float:
-    """A size of cells, m, where nothing asks for smaller ones, of which a mesh can be laid out at
-    all, or one sentence (SolidgearError).
+    """Return a size of cells, m, away from singular places, or refuse one of which no mesh can be
+    laid out.
     """
     extent = max(scene.length, scene.outline.largest_radius)
     lines = extent / size * refinement

@@ -1,12 +1,12 @@
-"""A free body seen from its ports: rigid motions, lowest free modes, and what else ports feel.
+"""A free body seen from its ports: rigid motions, lowest free modes, and residual flexibility.
 
 Rubin's representation (1975, AIAA J. 13, 996): with U the free elastic modes, G the rows of the
 ports and H the inverse of K without rigid motions and without U, a body is
 
     u = R a + U q + H G' f,    rigid mass, lambda, G U,    mu_0 = G H G',    mu_1 = G H M H G',
 
-numbers of the ports alone, whatever mesh they came from. Two meshes of one part have nearly the same
-ones, so that those of one can be corrected by the difference of two others.
+numbers of the ports alone, on any mesh. Two meshes of one part have nearly the same numbers, so that
+those of one can be corrected by the difference of two others.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from solidgear.solve.statics import of_twin, port_fields
 
 #: stations by whose motions modes of two meshes are recognised
 STATIONS = 25
-#: share of a mode that sections must hold to be one of a shaft: what ovalises is left to mu_0
+#: share of a mode that sections must hold to be one of a shaft: ovalising is left to mu_0
 SHAFT = 0.5
 
 
@@ -37,16 +37,15 @@ class Modal:
     motions: np.ndarray  #: (6 p, k) G U
     sections: np.ndarray  #: (6 s, k) motions of sections in every mode
     gram: np.ndarray  #: (6 s, 6 s) mass matrix of sections
-    #: static, inert: (6 p, 6 p) mu_0 and mu_1 before any mode is taken out of H
-    static: np.ndarray
-    inert: np.ndarray
+    static: np.ndarray  #: (6 p, 6 p) mu_0 before any mode is taken out of H
+    inert: np.ndarray  #: (6 p, 6 p) mu_1 likewise
     vectors: list[dict[int, np.ndarray]]  #: the modes on the mesh
     moves: list[tuple[int, ...]]  #: port components of the block that each mode is of
     #: ``H G'`` on the mesh likewise, by block, columns of that block's port components
     fields: dict[int, np.ndarray]
 
     def residual(self, turn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """mu_0 and mu_1, (6 p, 6 p) each, with some orthonormal combinations (k, l) of the modes
+        """Return mu_0 and mu_1, (6 p, 6 p) each, with orthonormal combinations (k, l) of the modes
         taken out.
         """
         motions, value = self.motions @ turn, turn.T @ self.value @ turn
@@ -54,7 +53,7 @@ class Modal:
         return self.static - motions @ reached, self.inert - reached.T @ reached
 
     def without_modes(self, fields: np.ndarray, index: int, rows: np.ndarray) -> np.ndarray:
-        """Fields (n, q) of unit loads on some port components of a block, the modes taken out."""
+        """Return fields (n, q) of unit loads on port components of a block, the modes taken out."""
         for i, vector in enumerate(self.vectors):
             if index in vector:
                 reached = self.motions[rows, i] / self.value[i, i]
@@ -62,7 +61,7 @@ class Modal:
         return fields
 
     def first(self, count: int) -> Modal:
-        """The same with its lowest modes only."""
+        """Return the same with its lowest modes only."""
         return replace(
             self,
             value=self.value[:count, :count],
@@ -72,16 +71,18 @@ class Modal:
             moves=self.moves[:count],
         )
 
-    def within(self, own: tuple[int, ...]) -> np.ndarray:
-        """Places of the modes that move in some port components and in no others."""
-        return np.array([k for k, moved in enumerate(self.moves) if set(moved) <= set(own)], int)
+    def within(self, components: tuple[int, ...]) -> np.ndarray:
+        """Return the places of the modes that move in these port components and in no others."""
+        return np.array(
+            [k for k, moved in enumerate(self.moves) if set(moved) <= set(components)], int
+        )
 
 
 def modal(body: Body, count: int) -> Modal:
-    """Port numbers of a free body with its ``count`` lowest modes, twins counted twice."""
-    found = modes(body, (), n=count, ovalising=False, stations=STATIONS)
+    """Compute the port numbers of a free body with its ``count`` lowest modes, twins counted twice."""
+    mode_set = modes(body, (), n=count, ovalising=False, stations=STATIONS)
     vectors, values, moved = [], [], []
-    for mode in found.modes:
+    for mode in mode_set.modes:
         if mode.frequency_hz == 0.0 or mode.captured < SHAFT:
             continue
         for vector, motion in zip(mode.vectors, mode.motions):
@@ -92,21 +93,21 @@ def modal(body: Body, count: int) -> Modal:
     sections = np.array(moved).T
     static, inert, fields = _static(body)
     return Modal(
-        body.mass_matrix(),
-        np.diag(values),
-        motions.reshape(6 * len(body.ports), len(vectors)),
-        sections.reshape(6 * STATIONS, len(vectors)),
-        found.gram,
-        static,
-        inert,
-        vectors,
-        [body.blocks[next(iter(vector))].components for vector in vectors],
-        fields,
+        rigid_mass=body.mass_matrix(),
+        value=np.diag(values),
+        motions=motions.reshape(6 * len(body.ports), len(vectors)),
+        sections=sections.reshape(6 * STATIONS, len(vectors)),
+        gram=mode_set.gram,
+        static=static,
+        inert=inert,
+        vectors=vectors,
+        moves=[body.blocks[next(iter(vector))].components for vector in vectors],
+        fields=fields,
     )
 
 
 def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
-    """mu_0, mu_1 and the fields of unit port loads, rigid motions taken out."""
+    """Return mu_0, mu_1 and the fields of unit port loads, rigid motions taken out."""
     n = 6 * len(body.ports)
     static, inert = np.zeros((2, n, n))
     fields: dict[int, np.ndarray] = {}
@@ -125,22 +126,13 @@ def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
     return (static + static.T) / 2, (inert + inert.T) / 2, fields
 
 
-def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.ndarray:
-    """The rotation of some modes that makes them most like others, by what sections do.
+def alike_turn(sections: np.ndarray, reference: np.ndarray, gram: np.ndarray) -> np.ndarray:
+    """Return the rotation (k, l) of modes that makes them most like others, by their section motions
+    (6 s, k) and (6 s, l), with orthonormal columns (k >= l).
 
-    Parameters
-    ----------
-    sections : (6 s, k) ndarray
-    other : (6 s, l) ndarray
-    gram : (6 s, 6 s) ndarray
-
-    Returns
-    -------
-    (k, l) ndarray
-        With orthonormal columns (k >= l). Every one of the others is given a mode of its own, by
-        the squared cosine between them; these are turned among themselves so that ``sections @
-        turn`` is nearest to ``other`` (the orthogonal Procrustes problem). Modes that stand for
-        none take no part: the span stays one of modes.
+    Every one of the others is given a mode, by the squared cosine between them; these are turned among
+    themselves so that ``sections @ turn`` is nearest to ``reference`` (the orthogonal Procrustes
+    problem). Modes without a partner take no part: the span stays one of modes.
 
     Examples
     --------
@@ -148,10 +140,10 @@ def alike_turn(sections: np.ndarray, other: np.ndarray, gram: np.ndarray) -> np.
     array([[ 0., -1.],
            [-1.,  0.]])
     """
-    product = sections.T @ gram @ other
-    size, wanted = (np.einsum("ik,ij,jk->k", s, gram, s) for s in (sections, other))
-    # of 1 and more, for a zero in a sparse matrix is a pair that may not be
-    cosines = sp.csr_matrix(1.0 + product.T**2 / np.outer(wanted, size))
+    product = sections.T @ gram @ reference
+    size, reference_size = (np.einsum("ik,ij,jk->k", s, gram, s) for s in (sections, reference))
+    # from 1 on, for a zero in a sparse matrix is a pair that is not allowed
+    cosines = sp.csr_matrix(1.0 + product.T**2 / np.outer(reference_size, size))
     _, chosen = min_weight_full_bipartite_matching(cosines, maximize=True)
     u, _, vt = np.linalg.svd(product[chosen])
     turn = np.zeros(product.shape)

@@ -1,4 +1,4 @@
-"""Builder options come from people: what there is, within which limits and why."""
+"""Options of the builders: what they mean, their limits and why, and their checks."""
 
 from __future__ import annotations
 
@@ -19,15 +19,13 @@ class Option:
 
     meaning: str
     kind: str = "number"
-    #: least, most: limits that may be met
-    least: float | None = None
-    most: float | None = None
-    #: above, below: limits that may not
-    above: float | None = None
-    below: float | None = None
+    least: float | None = None  #: limit that may be met
+    most: float | None = None  #: limit that may be met
+    above: float | None = None  #: limit that may not be met
+    below: float | None = None  #: limit that may not be met
     why: str = ""  #: the reason for the limits
     choices: tuple[str, ...] = ()
-    optional: bool = False  #: whether None may be given, for the builder's own choice
+    optional: bool = False  #: None may be given, for the choice of the builder
 
 
 #: ways of tying a station to the shaft
@@ -221,22 +219,23 @@ SOLID_OPTIONS = {
 }
 
 
-def checked(model: str, options: Mapping[str, Any], known: Mapping[str, Option]) -> dict[str, Any]:
-    """Options of a builder by name, within the limits of those that are known, lists as tuples;
-    those left out keep its default. SolidgearError for a name that it does not know, or a value
-    that it cannot use.
+def checked(
+    model: str, options: Mapping[str, Any], available: Mapping[str, Option]
+) -> dict[str, Any]:
+    """Return options of a builder by name, within the limits of those it has, lists as tuples;
+    refuse an unknown name and an unusable value.
     """
     out = {}
     for name, value in options.items():
-        if name not in known:
+        if name not in available:
             raise SolidgearError(
-                f"{model}: there is no such option as {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
+                f"{model}: there is no such option as {show(name, 40)}{nearest(name, available)}; "
+                f"there are {listed(available)}"
             )
-        out[name] = (
-            value
-            if value is None and known[name].optional
-            else _USABLE[known[name].kind](model, name, value, known[name])
-        )
+        option = available[name]
+        out[name] = None
+        if value is not None or not option.optional:
+            out[name] = _USABLE[option.kind](model, name, value, option)
     thick_enough(model, out)
     return out
 
@@ -257,7 +256,7 @@ def thick_enough(model: str, options: Mapping[str, Any]) -> None:
 
 
 def limits(option: Option) -> str:
-    """Between what a number must lie, and why."""
+    """Return the limits of a number, and why, in words."""
     if option.least is not None and option.most is not None:
         words = f"between {option.least:g} and {option.most:g}"
     else:
@@ -274,18 +273,17 @@ def limits(option: Option) -> str:
 
 
 def _usable_number(model: str, name: str, value: Any, option: Option) -> Any:
-    whole = option.kind == "whole"
-    if is_number(value, whole) and within(
+    integer = option.kind == "whole"
+    if is_number(value, integer) and within(
         value, option.above, option.least, option.below, option.most
     ):
         return value
-    hint = (
-        "; decimals take a point"
-        if isinstance(value, tuple) and len(value) == 2 and all(is_number(v) for v in value)
-        else ""
-    )
+    hint = ""
+    if isinstance(value, tuple) and len(value) == 2 and all(is_number(v) for v in value):
+        hint = "; decimals take a point"
+    kind = "whole number" if integer else "number"
     raise SolidgearError(
-        f"{model}: {name} {show(value)} is not usable; give a {'whole ' if whole else ''}number {limits(option)}{hint}"
+        f"{model}: {name} {show(value)} is not usable; give a {kind} {limits(option)}{hint}"
     )
 
 
@@ -332,7 +330,7 @@ def _usable_several(model: str, name: str, value: Any, option: Option) -> tuple[
 
 
 def _usable_places(model: str, name: str, value: Any, option: Option) -> tuple[tuple, ...]:
-    """Places as y and r, m, and with limits a whole number behind them."""
+    """Return places as y and r, m, and with limits a whole number behind them."""
     size = 2 + (option.most is not None)
     single = not isinstance(value, (tuple, list)) or any(map(is_number, value))
     values = tuple(tuple(v) if isinstance(v, list) else v for v in ((value,) if single else value))
@@ -358,7 +356,7 @@ _USABLE = {
 
 
 def is_number(value: Any, whole: bool = False) -> bool:
-    """True for a finite number, and a whole one if asked."""
+    """Return True for a finite number, and a whole one if asked."""
     return (
         isinstance(value, Integral if whole else Real)
         and not isinstance(value, bool)
@@ -367,7 +365,7 @@ def is_number(value: Any, whole: bool = False) -> bool:
 
 
 def within(value, above=None, least=None, below=None, most=None) -> bool:
-    """True where a number meets its limits; ``least`` and ``most`` may be met."""
+    """Return True where a number meets its limits; ``least`` and ``most`` may be met."""
     return (
         (above is None or value > above)
         and (least is None or value >= least)

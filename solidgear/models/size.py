@@ -22,8 +22,8 @@ class Size:
 
     unknowns: int  #: of all blocks, twins counted twice: the ``size`` of the body
     matrices: tuple[tuple[int, int], ...]  #: rows and entries of every matrix that is factored
-    entries: int  #: that are held
-    planar: bool = False  #: whether they come from a 1D or 2D mesh
+    entries: int  #: in all matrices
+    planar: bool = False  #: from a 1D or 2D mesh
 
     @property
     def backend(self) -> str:
@@ -32,7 +32,7 @@ class Size:
 
     @property
     def factors_mb(self) -> float:
-        """Memory of all factors together, about; the law of
+        """Approximate memory of all factors together, by the law of
         :mod:`solidgear.solve.backends.memory_law`.
         """
         return sum(law(self.backend, *matrix, self.planar) for matrix in self.matrices)
@@ -44,31 +44,30 @@ class Size:
 
     @property
     def mb(self) -> float:
-        """Memory of matrices and factors, about."""
+        """Approximate memory of matrices and factors."""
         return self.matrices_mb + self.factors_mb
 
 
-def of_body(body: Body) -> Size:
-    """Of a body that is there.
+def size_of_body(body: Body) -> Size:
+    """Count a body.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
-    >>> size = of_body(sg.build(sg.Scene.from_parts([rod]), "timoshenko", elements=4))
+    >>> size = size_of_body(sg.build(sg.Scene.from_parts([rod]), "timoshenko", elements=4))
     >>> size.unknowns, len(size.matrices)  # both planes of bending have one matrix
     (46, 3)
     """
-    own = {id(b.stiffness): b for b in body.blocks}.values()
-    matrices = tuple((b.size, b.stiffness.nnz) for b in own)
-    entries = sum(n for _, n in matrices)
-    in_pieces = [m for b in own for m in pieces(b.size, b.stiffness.nnz, bool(b.reflections))]
-    return Size(body.size, tuple(in_pieces), entries, all(b.planar for b in own))
+    blocks = {id(b.stiffness): b for b in body.blocks}.values()
+    entries = sum(b.stiffness.nnz for b in blocks)
+    matrices = [m for b in blocks for m in pieces(b.size, b.stiffness.nnz, bool(b.reflections))]
+    return Size(body.size, tuple(matrices), entries, all(b.planar for b in blocks))
 
 
-def of_mesh(mesh: Mesh, kind: Element, parts: int = 1, mirrors: bool = False) -> Size:
-    """Of the 3D solid of a mesh by one of its elements, of several blocks of the same mesh and with a
-    matrix that is factored in pieces, if so.
+def size_of_mesh(mesh: Mesh, kind: Element, parts: int = 1, mirrors: bool = False) -> Size:
+    """Count the 3D solid of a mesh by one of its elements, of several blocks of the same mesh and
+    with a matrix that is factored in pieces by mirror planes.
     """
     counts = tuple(map(int, (mesh.nvertices, mesh.nedges, mesh.nfacets, mesh.nelements)))
     nodes, pairs = coupled(kind, counts)
@@ -77,8 +76,8 @@ def of_mesh(mesh: Mesh, kind: Element, parts: int = 1, mirrors: bool = False) ->
 
 
 def coupled(kind: Element, counts: tuple[int, ...]) -> tuple[int, int]:
-    """Nodes of a mesh of vertices, edges, faces and cells, and ordered pairs of them that share a
-    cell: each pair counts at the smallest of these that has both.
+    """Return the nodes of a mesh of vertices, edges, faces and cells, and the ordered pairs of them that
+    share a cell: each pair counts at the smallest of these that has both.
 
     Examples
     --------
@@ -89,25 +88,25 @@ def coupled(kind: Element, counts: tuple[int, ...]) -> tuple[int, int]:
     ((10, 100), (14, 164))
     """
     cell, face = kind.refdom, kind.refdom.brefdom
-    # what an edge, a face and a cell have of each
-    has = (
+    # vertices, edges, faces and cells of a vertex, an edge, a face and a cell
+    parts = (
         (1,),
         (2, 1),
         (face.nnodes, face.nfacets, 1),
         (cell.nnodes, cell.nedges, cell.nfacets, 1),
     )
-    on = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
-    alone: list[int] = []
-    for own in has:
-        inside = sum(n * k for n, k in zip(own, on))
-        alone.append(inside**2 - sum(n * k for n, k in zip(own, alone)))
+    dofs = kind.nodal_dofs, kind.edge_dofs, kind.facet_dofs, kind.interior_dofs
+    new_pairs: list[int] = []
+    for counts_of_part in parts:
+        inside = sum(n * k for n, k in zip(counts_of_part, dofs))
+        new_pairs.append(inside**2 - sum(n * k for n, k in zip(counts_of_part, new_pairs)))
     assemblable(counts[3], inside)
-    nodes, pairs = (sum(n * k for n, k in zip(counts, of)) for of in (on, alone))
+    nodes, pairs = (sum(n * k for n, k in zip(counts, numbers)) for numbers in (dofs, new_pairs))
     return nodes, pairs
 
 
 def pieces(unknowns: int, entries: int, mirrors: bool) -> list[tuple[int, int]]:
-    """Matrices that one is factored as: two mirror planes and the one between them leave three of a
-    quarter (:mod:`solidgear.solve.symmetry`).
+    """Return the rows and entries of the matrices that one is factored as: two mirror planes and
+    the one between them leave three of a quarter (:mod:`solidgear.solve.symmetry`).
     """
     return [(unknowns // 4, entries // 4)] * 3 if mirrors else [(unknowns, entries)]

@@ -1,8 +1,8 @@
 """Rough estimate of the lowest eigenvalue of a free shaft.
 
 The shaft is cut into slices: bending, stretch and twist of the chain of slices are solved as small
-banded eigenproblems over the true distribution of stiffness and mass, and what sticks out of it
-(flanges, thin discs) is judged as a plate that overhangs.  The least of all is within about a
+banded eigenproblems over the true distribution of stiffness and mass, and
+overhanging parts (flanges, thin discs) are taken as plates.  The least of all is within about a
 factor of three of the lowest elastic eigenvalue of the harmonic solid's own families on every shaft
 tried.
 """
@@ -23,8 +23,8 @@ LEVELS = 60  # radii at which overhangs are looked for
 
 
 def elastic_scale(scene: Shaft) -> float:
-    """Lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and overhanging
-    plates: it places spectral shifts, where a factor of ten is harmless.
+    """Estimate the lowest elastic eigenvalue of the free shaft, rad^2/s^2, by a chain of slices and
+    overhanging plates: it places spectral shifts, where a factor of ten is harmless.
     """
     chain = _Chain(scene.segments)
     return min(
@@ -50,19 +50,19 @@ class _Chain:
         owner = np.searchsorted(ends, middle) - 1
         first = np.searchsorted(edges, grid[:-1])
 
-        def of(name):
+        def values(name):
             return np.array([getattr(s, name) for s in segments])[owner]
 
         modulus, shear, density = np.array(
             [(s.material.E, s.material.shear_modulus, s.material.density) for s in segments]
         )[owner].T
-        t = (middle - of("y0")) / (of("y1") - of("y0"))
-        outer = of("outer0") + t * (of("outer1") - of("outer0"))
-        inner = of("inner0") + t * (of("inner1") - of("inner0"))
+        t = (middle - values("y0")) / (values("y1") - values("y0"))
+        outer = values("outer0") + t * (values("outer1") - values("outer0"))
+        inner = values("inner0") + t * (values("inner1") - values("inner0"))
         area, second = np.pi * (outer**2 - inner**2), np.pi / 4 * (outer**4 - inner**4)
 
-        def summed(values):
-            return np.add.reduceat(values * piece, first)
+        def summed(per_length):
+            return np.add.reduceat(per_length * piece, first)
 
         self.length = summed(1.0)
         self.mass = summed(density * area)
@@ -75,15 +75,15 @@ class _Chain:
         self.shear = 1 / summed(1 / (0.6 * shear * area))
 
     def rod(self, stiffness, inertia) -> float:
-        """Lowest elastic eigenvalue of inertias joined by springs in a row, each half of two
-        slices.
+        """Return the lowest elastic eigenvalue of inertias joined by springs in a row, each half of
+        two slices.
         """
         between = 2 / (1 / stiffness[1:] + 1 / stiffness[:-1])
         return _second_tridiagonal(between, inertia)
 
     def bending(self) -> float:
-        """Lowest elastic eigenvalue of rigid slices joined by springs in bending and shear at their
-        borders.
+        """Return the lowest elastic eigenvalue of rigid slices joined by springs in bending and
+        shear at their borders.
         """
         n = len(self.mass)
         bend = 2 / (1 / self.bend[1:] + 1 / self.bend[:-1])
@@ -94,7 +94,7 @@ class _Chain:
         turn = np.zeros((n - 1, 4))
         turn[:, 1], turn[:, 3] = -1.0, 1.0
         gap = np.column_stack([-np.ones(n - 1), -left, np.ones(n - 1), -right])
-        each = (
+        joints = (
             bend[:, None, None] * turn[:, :, None] * turn[:, None]
             + shear[:, None, None] * gap[:, :, None] * gap[:, None]
         )
@@ -102,7 +102,7 @@ class _Chain:
         band = np.zeros((4, 2 * n))
         for i in range(4):
             for j in range(i + 1):
-                np.add.at(band[i - j], 2 * np.arange(n - 1) + j, each[:, i, j])
+                np.add.at(band[i - j], 2 * np.arange(n - 1) + j, joints[:, i, j])
         for k in range(4):
             band[k, : 2 * n - k] /= size[: 2 * n - k] * size[k:]
         values = sla.eig_banded(
@@ -112,14 +112,14 @@ class _Chain:
 
 
 def _second_tridiagonal(between, inertia) -> float:
-    """Second eigenvalue of a free chain; the first one is its rigid motion."""
+    """Return the second eigenvalue of a free chain; the first one is its rigid motion."""
     main = (np.append(between, 0.0) + np.append(0.0, between)) / inertia
-    off = -between / np.sqrt(inertia[1:] * inertia[:-1])
-    return float(sla.eigvalsh_tridiagonal(main, off, select="i", select_range=(1, 1))[0])
+    off_diagonal = -between / np.sqrt(inertia[1:] * inertia[:-1])
+    return float(sla.eigvalsh_tridiagonal(main, off_diagonal, select="i", select_range=(1, 1))[0])
 
 
 def _flanges(segments):
-    """Eigenvalues of what overhangs a thinner neighbour: plates clamped at its radius, of the
+    """Yield eigenvalues of parts that overhang a thinner neighbour: plates clamped at its radius, of the
     quickest material there.
 
     A strip of length b and thickness h: bending ``12.4 E h^2 / (12 rho b^4)``, shear ``(pi / 2 b)^2
@@ -140,9 +140,8 @@ def _flanges(segments):
 def overhangs(
     parts: Sequence[tuple[float, float, float]], *bases: float
 ) -> Iterator[tuple[float, list[tuple[float, float, float]]]]:
-    """Neighbours that together reach beyond a radius, of parts (radius, length, E / rho) along the
-    shaft: yields (that radius, list of parts) for every radius that a part ends at, and for
-    ``bases``.
+    """Yield (radius, parts) of neighbours that together reach beyond a radius, of parts (radius,
+    length, E / rho) along the shaft, for every radius that a part ends at, and for ``bases``.
     """
     levels = sorted({*bases, *(part[0] for part in parts)})
     levels = levels[:: 1 + len(levels) // LEVELS] + levels[-1:]
@@ -151,7 +150,7 @@ def overhangs(
 
 
 def _runs(parts, base: float):
-    """Neighbouring parts that reach beyond a radius."""
+    """Yield the runs of neighbouring parts that reach beyond a radius."""
     run = []
     for part in parts:
         if part[0] > base + 1e-9 * abs(base):

@@ -1,3 +1,3 @@
-"""Lumped-parameter synthesis: stiffness at the lumped point, effective mass and inertia, and what
-they are worth.
+"""Lumped-parameter synthesis: stiffness at the lumped point, effective mass and inertia, and their
+error.
 """

@@ -45,9 +45,9 @@ from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.modes import modes
 from solidgear.solve.shifted import factors
 
-#: Stiffness of the springs that hold ports fast in a first step, over that of the body there.
+#: stiffness of the springs that hold ports fast in a first step, over that of the body there
 FAST = 1e6
-#: Ports whose compliances, scaled to a unit diagonal, have a direction below this move as one.
+#: ports whose compliances, scaled to a unit diagonal, have a direction below this move together
 TOGETHER = 1e-11
 
 
@@ -86,19 +86,15 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
     if n < 1:
         raise SolidgearError(f"craig_bampton: n = {n} is not a number of modes; ask for 1 or more")
     chosen = chosen_ports(body, ports)
-    at = list(chosen.values())
-    if not at:
+    indices = list(chosen.values())
+    if not indices:
         raise SolidgearError("craig_bampton: there is no port to hold fast; choose one or more")
-    rows = np.concatenate([6 * p + np.arange(6) for p in at])
+    rows = np.concatenate([6 * p + np.arange(6) for p in indices])
     springs = np.diag(FAST / ease(body)[rows])
-    attachments = tuple(body.ports[p].attachment for p in at)
-    fixed = modes(
-        body,
-        Supports(tuple(chosen), springs, attachments),
-        n=min(n + 1, body.size),
-        ovalising=False,
-    )
-    shapes, cut = lowest_shapes(fixed, n)
+    attachments = tuple(body.ports[p].attachment for p in indices)
+    supports = Supports(tuple(chosen), springs, attachments)
+    fixed_modes = modes(body, supports, n=min(n + 1, body.size), ovalising=False)
+    shapes, cut = lowest_shapes(fixed_modes, n)
     blocks: dict[int, ReducedMotions] = {}
     for index, block in enumerate(body.blocks):
         if not block.components:
@@ -106,19 +102,21 @@ def craig_bampton(body: Body, n: int = 30, ports: PortChoice | None = None) -> S
         if block.mirror is not None:
             twin = blocks[block.mirror[0]]
             blocks[index] = reduced_motions(
-                block, index, at, twin.value, twin.shapes, twin.truncation
+                block, index, indices, twin.value, twin.shapes, twin.truncation
             )
             continue
-        # The last of a coarse body are those of the springs, not of the fixed body.
-        most = block.size - len(at) * len(block.components)
-        own = [v[index] for v in shapes if index in v][: max(most, 0)]
-        value, basis, truncation = _basis(body, block, factors(body)[index].solve, own, cut, at)
-        blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
+        # The last of a coarse body are modes of the springs, not of the fixed body.
+        most = block.size - len(indices) * len(block.components)
+        fixed = [v[index] for v in shapes if index in v][: max(most, 0)]
+        value, basis, truncation = _basis(
+            body, block, factors(body)[index].solve, fixed, cut, indices
+        )
+        blocks[index] = reduced_motions(block, index, indices, value, basis, truncation)
     return assemble("craig_bampton", body, chosen, blocks.values())
 
 
 def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float, ports: list[int]):
-    """Eigenvalues, mass-normalised shapes and truncation of one block."""
+    """Return eigenvalues, mass-normalised shapes and truncation of one block."""
     g = block.ports[port_rows(block, ports)].toarray()
     free = free_shapes(block, [])
     r = free.shapes
@@ -129,21 +127,21 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
 
     attachment = field(g.T)
     size = np.sqrt(ease(body)[body.rows(block)[port_rows(block, ports)]])
-    held = _Held(g @ attachment, g @ r, size, [body.ports[p].name for p in ports])
+    port_loads = _PortLoads(g @ attachment, g @ r, size, [body.ports[p].name for p in ports])
 
     def still(loads):
-        # H0: what loads do while the ports are held.
+        # H0: displacements by loads while the ports are held
         moved = field(loads)
-        reaction, swing = held.solve(-g @ moved, -r.T @ loads)
+        reaction, swing = port_loads.solve(-g @ moved, -r.T @ loads)
         return moved + attachment @ reaction + r @ swing
 
     # Springs still give a little: a step of inverse iteration on ports held for good.
     heavy_modes = block.mass @ (np.column_stack(fixed) if fixed else np.zeros((block.size, 0)))
     phi = still(heavy_modes)
     energy = heavy_modes.T @ phi
-    balanced = attachment @ held.balanced
+    balanced = attachment @ port_loads.balanced
     elastic = np.hstack([balanced, phi])
-    stiffness = sla.block_diag(held.stiffness, (energy + energy.T) / 2)
+    stiffness = sla.block_diag(port_loads.stiffness, (energy + energy.T) / 2)
     carried = heavy.T @ elastic
     elastic = elastic - r @ carried
     mass = elastic.T @ (block.mass @ elastic)
@@ -152,23 +150,23 @@ def _basis(body: Body, block: Block, solve, fixed: list[np.ndarray], cut: float,
     turn = z @ (turn[:, ::-1] / np.sqrt(theta[::-1]))
     shapes = np.hstack([r, elastic @ turn])
 
-    # Inertia forces of rigid motions and constraint modes, on what fixed ports leave free.
+    # Inertia forces of rigid motions and constraint modes, on the motions that fixed ports leave free.
     loads = np.hstack([heavy, block.mass @ balanced])
     by_modes = phi.T @ loads
     q = loads.T @ still(loads) - by_modes.T @ np.linalg.solve(energy, by_modes)
-    whole = np.zeros((shapes.shape[1], loads.shape[1]))
+    transform = np.zeros((shapes.shape[1], loads.shape[1]))
     count = r.shape[1]
-    whole[:count, :count] = np.eye(count)
-    whole[count:, :count] = -(carried @ turn).T
-    whole[count:, count:] = turn[: balanced.shape[1]].T
-    defect = whole @ ((q + q.T) / 2) @ whole.T
+    transform[:count, :count] = np.eye(count)
+    transform[count:, :count] = -(carried @ turn).T
+    transform[count:, count:] = turn[: balanced.shape[1]].T
+    defect = transform @ ((q + q.T) / 2) @ transform.T
     return np.r_[np.zeros(count), 1 / theta[::-1]], shapes, Truncation(cut, defect)
 
 
-class _Held:
-    """Loads on the ports of a free block that move them as told, ``F f + P a = motion`` and ``P'f =
+class _PortLoads:
+    """Loads on the ports of a free block that give them a motion, ``F f + P a = motion`` and ``P'f =
     resultant``: loads f move the ports by the flexibility F (q, q), and the block swings by a along the
-    rigid motions P (q, r) of the ports, which are alike in units of `size` (q,).
+    rigid motions P (q, r) of the ports, which have equal size in units of `size` (q,).
 
     Attributes
     ----------
@@ -182,8 +180,8 @@ class _Held:
         self._size = size
         scaled = flexibility / np.outer(size, size)
         self._swing = swing / size[:, None]
-        left = np.linalg.svd(self._swing)[0]
-        self._q = left[:, swing.shape[1] :]
+        u = np.linalg.svd(self._swing)[0]
+        self._q = u[:, swing.shape[1] :]
         inner = self._q.T @ ((scaled + scaled.T) / 2) @ self._q
         least = np.linalg.eigvalsh(inner)[0] if len(inner) else 1.0
         if least < TOGETHER:
@@ -195,12 +193,12 @@ class _Held:
         self.stiffness = inner
 
     def solve(self, motion: np.ndarray, resultant: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """f and a."""
+        """Solve for f and a."""
         motion = motion / self._size[:, None]
         # f = f0 + N g with P'f0 = resultant, and N' of the first equation gives g.
         load = np.linalg.pinv(self._swing.T) @ resultant
         if self._inner is not None:
-            left = self._q.T @ (motion - self._scaled @ load)
-            load = load + self._q @ sla.cho_solve(self._inner, left)
+            residual = self._q.T @ (motion - self._scaled @ load)
+            load = load + self._q @ sla.cho_solve(self._inner, residual)
         swing = np.linalg.lstsq(self._swing, motion - self._scaled @ load, rcond=None)[0]
         return load / self._size[:, None], swing

@@ -24,7 +24,7 @@ discriminant ``(A + B - 1)^2 - 4 C^2``.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,15 +33,15 @@ import scipy.linalg as sla
 from solidgear.body import Body, as_supports
 from solidgear.machine.threads import pinned
 from solidgear.reduction.lumped_point import LumpedPoint, lumped_point
-from solidgear.reduction.receptance import modal_receptance
 from solidgear.solve.modes import ModeSet
+from solidgear.solve.statics import condense
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
 METHODS = ("old", "thesis", "mode-matched", "guyan")
-# v' K_a v / w1^2 this close to 1 counts as a static shape: the quadratic's double root then is real
-# to rounding.
+#: v' K_a v / w1^2 this close to 1 counts as a static shape: the double root of the quadratic then is
+#: real to rounding
 STATIC_SHAPE = 1e-9
 
 
@@ -52,17 +52,16 @@ class Synthesis:
     method: str  #: ``old``, ``thesis``, ``mode-matched`` or ``guyan``
     #: (2, 2) on (z, thx): kg, kg m, kg m^2.  None when the method has no answer.
     mass: np.ndarray | None
-    feasible: bool  #: whether there is a real mass matrix, positive definite
-    #: whether the frequency below is the first of the lumped model (a mode-matched pair can place
-    #: it second)
+    feasible: bool  #: there is a real mass matrix, positive definite
+    #: the frequency below is the first of the lumped model (a mode-matched pair can place it second)
     first: bool
     frequency_hz: float | None  #: first natural frequency of the lumped model
-    frequency_error: float | None  #: against the body's first bending, relative
-    slope_error: float | None  #: of phi / z at the lumped point against the body's mode, relative
-    #: ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against the mode's
-    #: own
+    frequency_error: float | None  #: against first bending of the body, relative
+    slope_error: float | None  #: of phi / z at the lumped point against the mode, relative
+    #: ``v' D v - 1``: kinetic energy of the lumped mass moving with the mode, against that of the
+    #: mode
     kinetic_error: float | None
-    #: the receptance z/F_z at the lumped point stays within 5 per cent of the body's up to here
+    #: the receptance z/F_z at the lumped point is within 5 per cent of that of the body up to here
     valid_to_hz: float | None
     verdict: str  #: in a sentence
     numbers: dict = field(default_factory=dict)  #: discriminant, roots and the like
@@ -71,8 +70,9 @@ class Synthesis:
 def effective_masses(
     point: LumpedPoint, receptance: Callable[[float], float] | None = None
 ) -> dict[str, Synthesis]:
-    """All four lumped models of a first bending mode, in the order of ``METHODS``; the band of
-    validity needs ``receptance(omega)`` of the full body, z per unit F_z at the lumped point, m/N.
+    """Compute all four lumped models of a first bending mode, in the order of ``METHODS``; the
+    range of validity needs ``receptance(omega)`` of the full body, z per unit F_z at the lumped
+    point, m/N.
     """
     out = {}
     out["old"] = _judge(
@@ -85,11 +85,9 @@ def effective_masses(
     out["thesis"] = _thesis(point, receptance)
     matched = point.stiffness @ point.motion / (point.omega**2 * point.motion)
     coupling = point.stiffness[0, 1] * point.motion[0] * point.motion[1]
-    text = (
-        "keeps first frequency and slope ratio exactly"
-        if np.all(matched > 0)
-        else "a negative entry: no physical mass"
-    )
+    text = "a negative entry: no physical mass"
+    if np.all(matched > 0):
+        text = "keeps first frequency and slope ratio exactly"
     if np.all(matched > 0) and coupling > 0:
         text = "keeps the frequency and the slope ratio, but as the second mode of the lumped model"
     out["mode-matched"] = _judge(point, "mode-matched", np.diag(matched), receptance, text)
@@ -104,7 +102,7 @@ def effective_masses(
 
 
 def _thesis(point: LumpedPoint, receptance) -> Synthesis:
-    """Equations 52 and 53; see the module docstring for why they usually have no solution."""
+    """Solve equations 52 and 53; see the module docstring for why they usually have no solution."""
     k, (z, phi), w2 = point.stiffness, point.motion, point.omega**2
     a, b, c = k[0, 0] * z * z / w2, k[1, 1] * phi * phi / w2, k[0, 1] * z * phi / w2
     discriminant = (a + b - 1) ** 2 - 4 * c * c
@@ -145,43 +143,53 @@ def _thesis(point: LumpedPoint, receptance) -> Synthesis:
 
 
 def _none(method, verdict, numbers) -> Synthesis:
-    return Synthesis(method, None, False, False, None, None, None, None, None, verdict, numbers)
+    return Synthesis(
+        method=method,
+        mass=None,
+        feasible=False,
+        first=False,
+        frequency_hz=None,
+        frequency_error=None,
+        slope_error=None,
+        kinetic_error=None,
+        valid_to_hz=None,
+        verdict=verdict,
+        numbers=numbers,
+    )
 
 
 def _judge(point: LumpedPoint, method, mass, receptance, verdict, numbers=None) -> Synthesis:
-    """Solve a lumped model and hold it against the body it came from."""
+    """Solve a lumped model and compare it with the body it came from."""
     k, v = point.stiffness, point.motion
     numbers = dict(numbers or {})
     kinetic = float(v @ mass @ v) - 1
     if np.linalg.eigvalsh(mass)[0] <= 0:
-        return Synthesis(
-            method, mass, False, False, None, None, None, kinetic, None, verdict, numbers
-        )
+        return replace(_none(method, verdict, numbers), mass=mass, kinetic_error=kinetic)
     w2, shapes = sla.eigh(k, mass)
-    own = np.argmin(np.abs(np.sqrt(w2) / point.omega - 1))
+    nearest = np.argmin(np.abs(np.sqrt(w2) / point.omega - 1))
     shape = shapes[:, 0]
     frequency = np.sqrt(w2[0]) / (2 * np.pi)
     slope = (shape[1] / shape[0]) / (v[1] / v[0]) - 1 if shape[0] and v[0] and v[1] else None
     valid = _valid_to(k, mass, receptance, point.omega) if receptance else None
-    first = method != "mode-matched" or own == 0
+    first = method != "mode-matched" or nearest == 0
     return Synthesis(
-        method,
-        mass,
-        True,
-        bool(first),
-        float(frequency),
-        float(np.sqrt(w2[0]) / point.omega - 1),
-        None if slope is None else float(slope),
-        kinetic,
-        valid,
-        verdict,
-        numbers,
+        method=method,
+        mass=mass,
+        feasible=True,
+        first=bool(first),
+        frequency_hz=float(frequency),
+        frequency_error=float(np.sqrt(w2[0]) / point.omega - 1),
+        slope_error=None if slope is None else float(slope),
+        kinetic_error=kinetic,
+        valid_to_hz=valid,
+        verdict=verdict,
+        numbers=numbers,
     )
 
 
 def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
-    """Highest frequency (Hz) below which the lumped receptance stays within the tolerance, looked
-    for up to 1.5 times the first mode.
+    """Return the highest frequency (Hz) below which the lumped receptance stays within the
+    tolerance, searched up to 1.5 times the first mode.
     """
     last = 0.0
     # Half steps, so that no point falls on the resonance itself.
@@ -195,26 +203,11 @@ def _valid_to(k, mass, receptance, omega, tolerance: float = 0.05) -> float:
 
 @pinned
 def synthesise(
-    body: Body, supports: Holding, port: str, found: ModeSet | None = None
+    body: Body, supports: Holding, port: str, mode_set: ModeSet | None = None
 ) -> tuple[LumpedPoint, dict[str, Synthesis]]:
-    """Lumped point and all four lumped models of a body, judged against the body itself.
-
-    Parameters
-    ----------
-    supports : Scene, Supports or iterable of bearings
-    found : ModeSet, optional
-        Solved if not given.
-
-    Returns
-    -------
-    point : LumpedPoint
-    models : dict of str to Synthesis
-        In the order of ``METHODS``.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`lumped_point`.
+    """Compute the lumped point and all four lumped models of a body, judged against the body itself, in
+    the order of ``METHODS``; modes are solved if not given, and refusals are those of
+    :func:`lumped_point`.
 
     Examples
     --------
@@ -224,7 +217,43 @@ def synthesise(
     >>> models["guyan"].feasible, point.static_share < 1
     (True, True)
     """
-    point, found = lumped_point(body, supports, port, found)
-    return point, effective_masses(
-        point, modal_receptance(body, as_supports(supports), port, found)
-    )
+    point, mode_set = lumped_point(body, supports, port, mode_set)
+    receptance = modal_receptance(body, as_supports(supports), port, mode_set)
+    return point, effective_masses(point, receptance)
+
+
+def modal_receptance(
+    body: Body, supports: Holding, port: str, mode_set: ModeSet
+) -> Callable[[float], float]:
+    """Return the receptance z/F_z (m/N) at a port of a body on its supports, as a function of the
+    frequency in rad/s: modal superposition, with the static remainder.
+
+    The static part of the modes left out is exact, so the error is of the order of (omega /
+    omega_left_out)^4.
+
+    Examples
+    --------
+    At rest it is the static compliance:
+
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/shaft_stepped.toml")
+    >>> body = sg.build(scene, "euler")
+    >>> receptance = modal_receptance(body, scene, "port", sg.modes(body, scene, n=4))
+    >>> static = sg.condense(body, scene, "port").compliance[2, 2]
+    >>> bool(np.isclose(receptance(0.0), static))
+    True
+    """
+    index = body.port_index(port)
+    static = condense(body, supports, port).compliance[2, 2]
+    pairs = []
+    for mode in (*mode_set.modes, *mode_set.beyond):
+        if mode.frequency_hz > 0:
+            w2 = (2 * np.pi * mode.frequency_hz) ** 2
+            pairs += [(w2, body.port_motions(v)[6 * index + 2] ** 2) for v in mode.vectors]
+    w2, strength = np.array(pairs).T
+
+    def receptance(omega: float) -> float:
+        # 1 / (w_i^2 - w^2) - 1 / w_i^2, the dynamic surplus of each mode
+        return float(static + (strength * omega**2 / (w2 * (w2 - omega**2))).sum())
+
+    return receptance

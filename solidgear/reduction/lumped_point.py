@@ -24,13 +24,12 @@ PLANE = (2, 3)  # z and thx
 class LumpedPoint:
     """Constants of a body that the synthesis of lumped models needs."""
 
-    stiffness: np.ndarray  #: (2, 2) static, on (z, thx), everything else free to follow
+    stiffness: np.ndarray  #: (2, 2) static, on (z, thx), all other motions free
     #: (2,) (z, phi) of the lumped point in the first bending mode of unit modal mass
     motion: np.ndarray
     omega: float  #: rad/s
-    #: total_mass, total_inertia: of the body, the inertia transverse and about the lumped point
-    total_mass: float
-    total_inertia: float
+    total_mass: float  #: of the body, kg
+    total_inertia: float  #: of the body, transverse and about the lumped point, kg m^2
     guyan: np.ndarray  #: (2, 2) mass condensed on the static shapes
 
     @property
@@ -40,13 +39,11 @@ class LumpedPoint:
 
 
 def lumped_point(
-    body: Body, supports: Holding, port: str, found: ModeSet | None = None
+    body: Body, supports: Holding, port: str, mode_set: ModeSet | None = None
 ) -> tuple[LumpedPoint, ModeSet]:
-    """Static stiffness, first bending motion and condensed mass of a body at its lumped point, with the
-    modes, which are solved if they are not given or have no first bending.
-
-    SolidgearError without a first bending mode or a static stiffness at the port (a body that nothing
-    holds).
+    """Compute static stiffness, first bending motion and condensed mass of a body at its lumped
+    point, with the modes, which are solved if they are not given or have no first bending; refuse a
+    body without a first bending mode or static stiffness at the port.
     """
     supports = as_supports(supports)
     condensed = condense(body, supports, port)
@@ -62,9 +59,10 @@ def lumped_point(
             f"the stiffness at port {port!r} is indefinite in bending: {k.tolist()}; "
             "check the bearings"
         )
-    found = found if found is not None and found.named("bending 1") else modes(body, supports, 12)
+    if mode_set is None or not mode_set.named("bending 1"):
+        mode_set = modes(body, supports, 12)
     index = body.port_index(port)
-    mode, motion = _first_in_plane(body, found, index)
+    mode, motion = _first_in_plane(body, mode_set, index)
     if mode is None:
         raise SolidgearError(
             f"no bending mode in the z plane among the first 12 of the {body.fidelity} body; "
@@ -73,25 +71,26 @@ def lumped_point(
     inertia = body.mass_matrix() + supports.rigid_mass(body)
     y = body.ports[index].y
     about = inertia[3, 3] - 2 * y * inertia[2, 3] + y * y * inertia[2, 2]
-    return LumpedPoint(
-        k,
-        motion,
-        2 * np.pi * mode.frequency_hz,
-        float(inertia[2, 2]),
-        float(about),
-        _guyan(body, supports, index, c),
-    ), found
+    point = LumpedPoint(
+        stiffness=k,
+        motion=motion,
+        omega=2 * np.pi * mode.frequency_hz,
+        total_mass=float(inertia[2, 2]),
+        total_inertia=float(about),
+        guyan=_guyan(body, supports, index, c),
+    )
+    return point, mode_set
 
 
-def _first_in_plane(body: Body, found: ModeSet, index: int):
-    """First bending mode that moves the port in the z plane, and its (z, thx) there: unequal
-    bearings may put one of the x plane before it.
+def _first_in_plane(body: Body, mode_set: ModeSet, index: int):
+    """Return the first bending mode that moves the port in the z plane, and its (z, thx) there:
+    unequal bearings may put one of the x plane before it.
     """
-    for mode in (*found.modes, *found.beyond):
+    for mode in (*mode_set.modes, *mode_set.beyond):
         if mode.family != "bending" or mode.frequency_hz == 0:
             continue
         motions = np.array([body.port_motions(v)[6 * index :][:6] for v in mode.vectors])
-        size = np.array([1.0, body.length])  # a rotation counts by what it moves at the other end
+        size = np.array([1.0, body.length])  # a rotation counts by the motion at the other end
         z, x = (np.linalg.norm(motions[:, c] * size) for c in (list(PLANE), [0, 5]))
         if z >= 0.5 * x:
             return mode, _in_plane(motions)
@@ -99,20 +98,20 @@ def _first_in_plane(body: Body, found: ModeSet, index: int):
 
 
 def _in_plane(motions: np.ndarray) -> np.ndarray:
-    """(z, thx) of the combination of a pair that moves in the z plane."""
+    """Return (z, thx) of the combination of a pair that moves in the z plane."""
     if len(motions) == 1:
         return motions[0][list(PLANE)]
     # The pair spans both planes: take the unit combination without motion in the x plane.
     scale = np.abs(motions).max(axis=0)
-    other = motions[:, [0, 5]] / np.where(scale[[0, 5]] > 0, scale[[0, 5]], 1.0)
-    u, _, _ = np.linalg.svd(other)
+    x_plane = motions[:, [0, 5]] / np.where(scale[[0, 5]] > 0, scale[[0, 5]], 1.0)
+    u, _, _ = np.linalg.svd(x_plane)
     mix = u[:, -1]
     motion = mix @ motions[:, list(PLANE)]
     return motion if motion[0] >= 0 else -motion
 
 
 def _static_shapes(body: Body, supports, index: int):
-    """Group of the z plane and its displacements under unit (F_z, M_x) at a port."""
+    """Return the group of the z plane and its displacements under unit (F_z, M_x) at a port."""
     spring, _ = decoupled(body, supports, 1e-6)
     for group in groups(body, supports, spring):
         if any(2 in body.blocks[b].components for b in group):
@@ -133,8 +132,8 @@ def _static_shapes(body: Body, supports, index: int):
 
 
 def _guyan(body: Body, supports, index: int, compliance: np.ndarray) -> np.ndarray:
-    """Mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere (Guyan
-    1965).
+    """Compute the mass on the static shapes of unit (z, phi) at the lumped point, no load elsewhere
+    (Guyan 1965).
     """
     supported, fields = _static_shapes(body, supports, index)
     shapes = fields @ np.linalg.inv(compliance)

@@ -1,4 +1,4 @@
-"""A free body reduced once to its lowest free modes and to moments of what is left at its seats.
+"""A free body reduced once to its lowest free modes and to residual moments of its seats.
 
 Notation: ``A = K + sigma M`` (the operator every body is factored with), G the motions of the
 ports, U the rigid motions and the lowest free modes, and H the inverse of A with U taken out of it.
@@ -46,7 +46,7 @@ class ReducedBlock:
     turn: np.ndarray  #: (r, c) coordinates in U of unit rigid motions about the origin
     theta: np.ndarray  #: (u,) ``1 / (lambda + sigma)`` of the shapes in U, rigid ones first, s^2
     motions: np.ndarray  #: (c * p, u) port motions of the shapes in U
-    moments: np.ndarray  #: (2 J + 3, c * p, c * p) mu_0 .. mu_(2J+2); empty when U is all there is.
+    moments: np.ndarray  #: (2 J + 3, c * p, c * p) mu_0 .. mu_(2J+2); empty when U is complete
     cut: float  #: least theta that is not in U: the largest of ``A^-1 M`` on its complement, s^2
     #: of the shapes in U; the last entry is that of the block itself, or empty
     families: tuple[str, ...]
@@ -58,8 +58,8 @@ class ReducedBlock:
         return max(0, (len(self.moments) - 1) // 2)
 
     def mirrored(self, index: int, block: Block) -> ReducedBlock:
-        """The same in the other bending plane."""
-        assert block.mirror is not None  # asked of blocks that repeat another only
+        """Return the same in the other bending plane."""
+        assert block.mirror is not None  # called for blocks that repeat another only
         signs = np.array(block.mirror[1])
         sign = np.tile(signs, len(self.motions) // len(signs))
         return replace(
@@ -74,15 +74,15 @@ class ReducedBlock:
 
 @dataclass(frozen=True)
 class Reduced:
-    """Everything the variants of a sweep need of a body; small, and independent of it."""
+    """Data of a body that the variants of a sweep need; small, and independent of the body."""
 
     blocks: tuple[ReducedBlock, ...]
     #: the ports with their static flexibility, and the components of the blocks: enough for
     #: :func:`solidgear.solve.statics.condense`
     frame: Body
     shift: float  #: sigma, rad^2/s^2
-    round: bool  #: whether symmetry promises pairs
-    level: int  #: how often the basis was enlarged
+    round: bool  #: symmetry promises pairs
+    level: int  #: number of times the basis was enlarged
 
     @property
     def size(self) -> int:
@@ -96,7 +96,7 @@ class FreeShapes:
 
     shapes: np.ndarray  #: (n, r + k)
     value: np.ndarray  #: (r + k,) eigenvalues, ascending, rad^2/s^2; exactly 0 for the r rigid ones
-    order: np.ndarray  #: (k,) place of each elastic shape among those that were given
+    order: np.ndarray  #: (k,) place of each elastic shape in the input
     #: (r, r) cholesky factor of the rigid mass matrix: unit rigid motions are ``shapes[:, :r] @
     #: lower.T``
     lower: np.ndarray
@@ -108,16 +108,8 @@ LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
 
 @pinned
 def reduce(body: Body, n: int, level: int = 0) -> Reduced:
-    """Reduce a body for sweeps that ask for ``n`` modes.
-
-    Parameters
-    ----------
-    body : Body
-        With the lumped point as its first port and the seats after it.
-    n : int
-        Shapes wanted of the supported body; how many free ones go into the basis follows from it.
-    level : int
-        Index into `LEVELS`.
+    """Reduce a body for sweeps that need its ``n`` lowest supported shapes, at an index into
+    `LEVELS`; the lumped point is its first port, and the seats come after it.
     """
     more, steps = LEVELS[level]
     blocks: list[ReducedBlock] = []
@@ -125,7 +117,7 @@ def reduce(body: Body, n: int, level: int = 0) -> Reduced:
         if block.mirror is not None:
             blocks.append(blocks[block.mirror[0]].mirrored(block.mirror[0], block))
             continue
-        # A block of its own holds a part of the wanted modes only.
+        # A separate block holds a part of the wanted modes only.
         share = 2 * n if len(block.components) == 6 else n // 2
         blocks.append(_reduce_block(body, index, int(more * (share + 6)), steps))
     return Reduced(
@@ -140,7 +132,7 @@ def reduce(body: Body, n: int, level: int = 0) -> Reduced:
 def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBlock:
     block, factor, shift = body.blocks[index], factors(body)[index], SHIFT * body.scale
     r = len(block.components)
-    alone = Body(
+    single = Body(
         body.fidelity,
         (replace(block, mirror=None),),
         body.ports,
@@ -150,61 +142,68 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
         body.geometry,
         cache=Cache(Factored([factor])),
     )
-    found = [
+    elastic = [
         (v[0], m.family)
-        for m in modes(alone, (), n=min(count + 1, block.size)).modes
+        for m in modes(single, (), n=min(count + 1, block.size)).modes
         if not m.name.rigid
         for v in m.vectors
     ]
-    basis = free_shapes(block, [vector for vector, _ in found])
+    basis = free_shapes(block, [vector for vector, _ in elastic])
     u, value = basis.shapes, basis.value
     theta = 1 / (value + shift)
     families = [_family((c,)) for c in block.components]
-    families += [found[k][1] for k in basis.order]
-    whole = u.shape[1] >= block.size
-    cut = 0.0 if whole else float(theta[-1])
-    if not whole:
+    families += [elastic[k][1] for k in basis.order]
+    complete = u.shape[1] >= block.size
+    cut = 0.0 if complete else float(theta[-1])
+    if not complete:
         u, theta, families = u[:, :-1], theta[:-1], families[:-1]
     heavy = block.mass @ u
     moments = np.zeros((0, block.ports.shape[0], block.ports.shape[0]))
-    if not whole and r:
+    if not complete and r:
 
         def inverse(load):
             w = factor.solve(load - heavy @ (u.T @ load))
             return w - u @ (heavy.T @ w)
 
         moments = np.array(residual_fields(inverse, block.mass, block.ports, steps)[0])
-    own = _family(block.components) if block.components else ""
+    block_family = _family(block.components) if block.components else ""
     scaled = u * np.sqrt(theta)
     turn = basis.lower.T * np.sqrt(1 / theta[:r])[:, None]
     return ReducedBlock(
-        block.components, turn, theta, block.ports @ scaled, moments, cut, (*families, own), None
+        block.components,
+        turn,
+        theta,
+        block.ports @ scaled,
+        moments,
+        cut,
+        (*families, block_family),
+        None,
     )
 
 
 def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
-    """Rigid motions of a free block and some of its elastic modes, mass-normalised and in any
-    order, ready to be a basis.
+    """Return rigid motions of a free block and some of its elastic modes, mass-normalised and in
+    any order, as a basis.
     """
     r = len(block.components)
-    lower = (
-        np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid)) if r else np.zeros((0, 0))
-    )
-    columns = [block.rigid @ sla.inv(lower).T] * bool(r) + list(elastic)
+    lower, columns = np.zeros((0, 0)), list(elastic)
+    if r:
+        lower = np.linalg.cholesky(block.rigid.T @ (block.mass @ block.rigid))
+        columns.insert(0, block.rigid @ sla.inv(lower).T)
     u = np.column_stack(columns) if columns else np.zeros((block.size, 0))
     # Pairs come with their mean frequency; the quotient is that of the shape itself.
     value = np.einsum("ij,ij->j", u, block.stiffness @ u) / np.einsum("ij,ij->j", u, block.mass @ u)
     value[:r] = 0.0
     order = np.argsort(value[r:], kind="stable")
-    every = np.concatenate([np.arange(r), r + order]).astype(int)
-    return FreeShapes(u[:, every], value[every], order, lower)
+    sequence = np.concatenate([np.arange(r), r + order]).astype(int)
+    return FreeShapes(u[:, sequence], value[sequence], order, lower)
 
 
 def residual_fields(
     inverse: Callable[[np.ndarray], np.ndarray], mass: Mass, ports: sp.csr_matrix, steps: int
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """Moments mu_0 .. mu_(2 J + 2) of some ports, even ones across a solve, odd ones as Gram matrices,
-    and the fields W_0 .. W_J (n, q) of their rows (q, n), after so many steps J.
+    """Return moments mu_0 .. mu_(2 J + 2) of some ports, even ones across a solve, odd ones as Gram
+    matrices, and the fields W_0 .. W_J (n, q) of their rows (q, n), after so many steps J.
 
     `inverse` is H, the inverse of A (or of K) with U taken out.
     """
@@ -212,18 +211,18 @@ def residual_fields(
     out, fields = [ports @ w], [w]
     for step in range(steps + 1):
         heavy = mass @ w
-        after = inverse(heavy)
-        out += [w.T @ heavy, heavy.T @ after]
-        w = after
+        next_field = inverse(heavy)
+        out += [w.T @ heavy, heavy.T @ next_field]
+        w = next_field
         if step < steps:
             fields.append(w)
     return [(m + m.T) / 2 for m in out], fields
 
 
 def residual_basis(mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Combinations z ((J + 1) q, w) of the fields W_0 .. W_J with unit energy, from their moments
-    (2 J + 3, q, q): ``W z`` has unit Gram matrix in A (or K); and its Gram matrices in M and in
-    ``M H M``.
+    """Return combinations z ((J + 1) q, w) of the fields W_0 .. W_J with unit energy, from their
+    moments (2 J + 3, q, q): ``W z`` has unit Gram matrix in A (or K); and its Gram matrices in M
+    and in ``M H M``.
     """
     steps = (len(mu) - 1) // 2
 
@@ -235,8 +234,8 @@ def residual_basis(mu: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
-    """Combinations of fields with unit Gram matrix: the first ``width`` fields are kept whole,
-    later ones where they add something.
+    """Return combinations of fields with unit Gram matrix: the first ``width`` fields are kept
+    whole, later ones where they add something.
     """
     size = 1 / np.sqrt(np.diag(gram))
     gram = gram * np.outer(size, size)
@@ -246,20 +245,20 @@ def orthonormal(gram: np.ndarray, width: int) -> np.ndarray:
         for _ in range(2):  # twice is enough
             new = new - z @ (z.T @ gram @ new)
         value, vector = np.linalg.eigh(new.T @ gram @ new)
-        # What is below this is rounding of the moments; attachment fields must stay for the bound
-        # to hold.
+        # Values below this are rounding of the moments; attachment fields must stay for the bound to
+        # hold.
         keep = value > (1e-14 if start == 0 else 1e-10)
         z = np.hstack([z, new @ (vector[:, keep] / np.sqrt(value[keep]))])
     return size[:, None] * z
 
 
 def _family(components: Sequence[int]) -> str:
-    """Family of motions that all components belong to, or an empty text."""
-    return next((name for name, own in FAMILIES.items() if set(components) <= set(own)), "")
+    """Return the family of motions that all components belong to, or an empty text."""
+    return next((name for name, members in FAMILIES.items() if set(components) <= set(members)), "")
 
 
 def _frame(body: Body) -> Body:
-    """A body of ports only, with the flexibility of the true one."""
+    """Return a body of ports only, with the flexibility of the true one."""
 
     def bare(block):
         c = len(block.components)

@@ -1,13 +1,12 @@
 r"""Free-interface reduction (Rubin 1975): rigid motions, free modes, residual fields of ports.
 
-With U the rigid motions and the free modes below a cut, and H the inverse of K on what is left (U
-taken out),
+With U the rigid motions and the free modes below a cut, and H the inverse of K with U taken out,
 
     V = [U, W_0, .., W_J],      W_0 = H G',      W_(j+1) = H M W_j.
 
 W_0 are the residual attachment fields: with them statics is exact.  W_1 is the first correction for
 their inertia (a Krylov step).  U and W are orthogonal in K and in M, so only W needs to be turned
-to its own modes, and from the moments ``mu_j = G (H M)^j H G'`` alone: with ``W z`` orthonormal in
+to its modes, and from the moments ``mu_j = G (H M)^j H G'`` alone: with ``W z`` orthonormal in
 K,
 
     M -> z' [mu_(i+j+1)] z =: P,      M H M -> z' [mu_(i+j+2)] z =: Q.
@@ -49,11 +48,11 @@ from solidgear.solve.inertia_relief import relieved_fields
 from solidgear.solve.modes import ModeSet, modes
 from solidgear.solve.shifted import factors
 
-#: Relative error of the energy of a field; displacements are good to its root.
+#: relative error of the energy of a field; displacements are good to its root
 FINE = 1e-24
-#: Residual fields whose eigenvalue is this many times the softest of them have no mass to speak of.
+#: residual fields whose 1 / eigenvalue is below this share of the largest have negligible mass
 MASSLESS = 1e-13
-#: Residual flexibility of a port, over its `ease`, that is rounding.
+#: residual flexibility of a port, over its `ease`, that is rounding
 NOTHING = 1e-15
 
 
@@ -77,13 +76,13 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     Returns
     -------
     Superelement
-        Motions that move no port (ovalising families of a harmonic solid) are not in it: no
-        spring on a port feels them.
+        Without motions that move no port (ovalising families of a harmonic solid), which no
+        spring on a port drives.
 
     Raises
     ------
     SolidgearError
-        For a port the body does not have, or numbers that are not.
+        For a port the body does not have, or unusable numbers.
 
     Examples
     --------
@@ -97,37 +96,37 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
             f"rubin: n = {n} modes and {steps} steps; ask for one mode or more, and no negative steps"
         )
     chosen = chosen_ports(body, ports)
-    found = modes(body, (), n=min(n + 1, body.size), ovalising=False)
-    shapes, cut = lowest_shapes(found, n)
+    free_modes = modes(body, (), n=min(n + 1, body.size), ovalising=False)
+    shapes, cut = lowest_shapes(free_modes, n)
     blocks: dict[int, ReducedMotions] = {}
-    at = list(chosen.values())
+    indices = list(chosen.values())
     for index, block in enumerate(body.blocks):
         if not block.components:
             continue
         if block.mirror is not None:
-            # The same matrices, so the same shapes; only what ports make of them differs.
+            # The same matrices, so the same shapes; only the port motions differ.
             twin = blocks[block.mirror[0]]
             blocks[index] = reduced_motions(
-                block, index, at, twin.value, twin.shapes, twin.truncation
+                block, index, indices, twin.value, twin.shapes, twin.truncation
             )
             continue
         free = free_shapes(block, [v[index] for v in shapes if index in v])
-        own = port_rows(block, at)
-        size, rows = ease(body)[body.rows(block)[own]], block.ports[own]
+        block_rows = port_rows(block, indices)
+        size, rows = ease(body)[body.rows(block)[block_rows]], block.ports[block_rows]
         factor = factors(body)[index]
         value, basis, truncation = residual_block(block, factor, free, cut, rows, size, steps)
-        blocks[index] = reduced_motions(block, index, at, value, basis, truncation)
+        blocks[index] = reduced_motions(block, index, indices, value, basis, truncation)
     return assemble("rubin", body, chosen, blocks.values())
 
 
-def lowest_shapes(found: ModeSet, n: int) -> tuple[list[dict[int, np.ndarray]], float]:
-    """The ``n`` lowest elastic shapes, twins never torn apart, and the eigenvalue (rad^2/s^2) below
-    which there are no others; infinite where there are none at all.
+def lowest_shapes(mode_set: ModeSet, n: int) -> tuple[list[dict[int, np.ndarray]], float]:
+    """Return the ``n`` lowest elastic shapes, twins never separated, and the eigenvalue (rad^2/s^2)
+    below which there are no others; infinite where there are none at all.
     """
-    elastic = [m for m in found.modes if m.frequency_hz > 0]
+    elastic = [m for m in mode_set.modes if m.frequency_hz > 0]
     if sum(m.multiplicity for m in elastic) <= n:
         return [v for m in elastic for v in m.vectors], np.inf
-    # Twins are told by their mean, which the lower one undercuts by less than this.
+    # Twins have their mean frequency, which the lower one undercuts by less than this.
     cut = (2 * np.pi * elastic[-1].frequency_hz) ** 2 * (1 - 1e-6)
     return [v for m in elastic[:-1] for v in m.vectors], cut
 
@@ -141,10 +140,10 @@ def residual_block(
     size: np.ndarray,
     steps: int,
 ) -> tuple[np.ndarray, np.ndarray, Truncation]:
-    """Eigenvalues, mass-normalised shapes and truncation of one block: of the modes to keep, below an
-    eigenvalue (rad^2/s^2) under which there are no others, and of so many Krylov steps on the fields
-    of the rows (q, n) that springs may act on. `size` (q,) are flexibilities beside which one is
-    rounding.
+    """Return eigenvalues, mass-normalised shapes and truncation of one block, from free modes,
+    below an eigenvalue ``cut`` (rad^2/s^2) under which there are no others, and so many Krylov
+    steps on the fields of the rows (q, n) that springs may act on; ``size`` (q,) are flexibilities
+    beside which one is rounding.
     """
     u, value = free.shapes, free.value
     if u.shape[1] >= block.size or np.isinf(cut):
@@ -160,13 +159,13 @@ def residual_block(
 
     moments, fields = residual_fields(inverse, block.mass, rows, steps)
     mu = np.array(moments)
-    # What the mean motion of a seat as long as the shaft leaves over is rounding.
-    left = np.diag(mu[0]) > NOTHING * size
-    z, mass, beyond = residual_basis(mu[:, left][:, :, left])
+    # The residual of the mean motion of a seat as long as the shaft is rounding.
+    flexible = np.diag(mu[0]) > NOTHING * size
+    z, mass, beyond = residual_basis(mu[:, flexible][:, :, flexible])
     theta, turn = np.linalg.eigh(mass)
-    kept = theta > MASSLESS * theta.max(initial=0.0)
-    theta, turn = theta[kept][::-1], turn[:, kept][:, ::-1] / np.sqrt(theta[kept][::-1])
-    residual = np.hstack([w[:, left] for w in fields]) @ (z @ turn)
+    massive = theta > MASSLESS * theta.max(initial=0.0)
+    theta, turn = theta[massive][::-1], turn[:, massive][:, ::-1] / np.sqrt(theta[massive][::-1])
+    residual = np.hstack([w[:, flexible] for w in fields]) @ (z @ turn)
     defect = np.zeros((u.shape[1] + len(theta),) * 2)
     defect[u.shape[1] :, u.shape[1] :] = turn.T @ (beyond - mass @ mass) @ turn
     return np.concatenate([value, 1 / theta]), np.hstack([u, residual]), Truncation(cut, defect)

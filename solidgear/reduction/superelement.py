@@ -1,29 +1,29 @@
 r"""A body seen from its ports: a few coordinates, and a way back to the mesh.
 
-Every reduction here is a Ritz basis V of the free body that holds its rigid motions.  In the span
-of V the free body has its own modes; written in them,
+Every reduction here is a Ritz basis V of the free body that holds its rigid motions.  Written in the
+modes of the free body in the span of V,
 
     u = V q,      M = 1,      K = diag(0, .., 0, w_1^2, .., w_m^2),      port motions = (G V) q,
 
-so that stiffness is a matter of strain rows ``diag(w)``, rigid motions are the coordinates that no
-row touches, exactly, and two superelements differ in nothing but which V they came from
+so that stiffness is that of strain rows ``diag(w)``, rigid motions are the coordinates that no row
+touches, exactly, and two superelements differ in nothing but their V
 (:func:`solidgear.reduction.rubin.rubin`, :func:`solidgear.reduction.craig_bampton.craig_bampton`).
 
-What V leaves out
------------------
+Fields left out by V
+--------------------
 Let springs of any kind join ports of several bodies and ground, ``B = K + G' Kb G``, and let the
 masses ``M`` carry further inertias at ports.  Every basis here holds the rigid motions R and the
 static displacements E N of port loads in equilibrium (``P'N = 0`` with P = G R).  A field y with
 ``V' B y = 0`` then moves no port.  For with d = G y and f = Kb d, R gives ``P'f = 0``, so that
 f = N c; E N gives ``N'(d + F f) = 0`` with the flexibility F, hence ``d'Kb d + f'F f = 0``: no spring
 is stretched, and d is that of a rigid motion which nothing resists, known exactly and taken out
-beforehand.  So Y, all such fields, is what ``V' K y = 0`` says, whatever holds the body.
+beforehand.  So Y, all such fields, are those of ``V' K y = 0``, whatever holds the body.
 
 Two things about Y are kept with a superelement, as its
 :class:`Truncation`:
 
 - ``cut``, the lowest eigenvalue in Y: ``y' M y <= y' K y / cut``;
-- ``defect``, ``V' M Y Y' M V`` for a K-orthonormal Y: what inertia forces of V do to Y.
+- ``defect``, ``V' M Y Y' M V`` for a K-orthonormal Y: the work of inertia forces of V on Y.
 
 From these follows a proven bound on every frequency of any system the body is built into
 (:mod:`solidgear.system.bound`).
@@ -42,7 +42,7 @@ from solidgear.body import Block, Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import shift
 
-#: Which ports a reduction keeps: names, or (name, attachment) where the body has more than one.
+#: ports to keep: names, or (name, attachment) where the body has more than one of a name
 PortChoice = Iterable["str | tuple[str, str]"]
 
 
@@ -50,14 +50,16 @@ PortChoice = Iterable["str | tuple[str, str]"]
 class PortMotion:
     """Motion of a port as a linear function of coordinates."""
 
-    rows: np.ndarray  #: (6, n) x y z thx thy thz in the port's own axes, m and rad
-    point: np.ndarray  #: (3,) where the port is, m
-    axes: np.ndarray  #: (3, 3) its own axes as columns, in those that ``point`` is told in
+    rows: np.ndarray  #: (6, n) x y z thx thy thz in the axes of the port, m and rad
+    point: np.ndarray  #: (3,) place of the port, m
+    axes: np.ndarray  #: (3, 3) axes of the port as columns, in those of ``point``
 
-    def seen_from(self, other: PortMotion) -> np.ndarray:
-        """(6, n) motion at the place and in the axes of another port, carried there rigidly."""
-        turn = other.axes.T @ self.axes
-        offset = self.axes.T @ (other.point - self.point)
+    def seen_from(self, port: PortMotion) -> np.ndarray:
+        """Return the motion (6, n) at the place and in the axes of another port, carried there
+        rigidly.
+        """
+        turn = port.axes.T @ self.axes
+        offset = self.axes.T @ (port.point - self.point)
         return np.kron(np.eye(2), turn) @ shift(offset) @ self.rows
 
 
@@ -65,7 +67,7 @@ class PortMotion:
 class Truncation:
     """Truncation of a reduced part; see the head of this module."""
 
-    cut: float  #: lowest eigenvalue of the fields left out, rad^2/s^2; infinite if nothing is
+    cut: float  #: lowest eigenvalue of the fields left out, rad^2/s^2; infinite without any
     defect: np.ndarray  #: (n, n) positive semidefinite, s^2 in mass-normalised coordinates
 
 
@@ -93,7 +95,7 @@ class Superelement:
     kind : str
         ``rubin`` or ``craig_bampton``.
     fidelity : str
-        Of the body.
+        Model of the body.
     blocks : tuple of ReducedMotions
         Blocks of the body that move ports, in its order.
     ports : mapping of str to PortMotion
@@ -118,7 +120,7 @@ class Superelement:
 
     @cached_property
     def value(self) -> np.ndarray:
-        """(m,) eigenvalues of the free body in the basis, block by block, rad^2/s^2."""
+        """Eigenvalues (m,) of the free body in the basis, block by block, rad^2/s^2."""
         return np.concatenate([b.value for b in self.blocks])
 
     @property
@@ -133,19 +135,19 @@ class Superelement:
 
     @property
     def frequency_hz(self) -> np.ndarray:
-        """(m,) the same as frequencies, ascending, Hz; the last ones belong to residual fields and
-        are no modes of the body.
+        """Frequencies (m,) of these eigenvalues, ascending, Hz; the last ones belong to residual
+        fields and are no modes of the body.
         """
         return np.sqrt(np.sort(self.value)) / (2 * np.pi)
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """(m, m) identity."""
+        """Identity (m, m)."""
         return np.eye(self.size)
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """(m - rigid, m) rows S with ``K = S'S``."""
+        """Rows (m - rigid, m) S with ``K = S'S``."""
         return np.diag(np.sqrt(self.value))[self.value > 0]
 
     @cached_property
@@ -179,19 +181,15 @@ class Superelement:
 
 
 def joined(truncations: Iterable[Truncation]) -> Truncation:
-    """Truncation of parts that share no coordinates, together."""
-    every = list(truncations)
-    cut = min((t.cut for t in every), default=np.inf)
-    return Truncation(cut, sla.block_diag(*(t.defect for t in every)))
+    """Return the truncation of parts that share no coordinates, together."""
+    parts = list(truncations)
+    cut = min((t.cut for t in parts), default=np.inf)
+    return Truncation(cut, sla.block_diag(*(t.defect for t in parts)))
 
 
 def chosen_ports(body: Body, ports: PortChoice | None) -> dict[str, int]:
-    """Index of every port that a reduction keeps, by the name it will have.
-
-    Raises
-    ------
-    SolidgearError
-        For a port the body does not have, or a name that is asked for twice.
+    """Return the index of every port that a reduction keeps, by its name; refuse a port that the
+    body does not have, and a name that is asked for twice.
     """
     if ports is None:
         ports = dict.fromkeys(p.name for p in body.ports)
@@ -205,14 +203,14 @@ def chosen_ports(body: Body, ports: PortChoice | None) -> dict[str, int]:
 
 
 def port_rows(block: Block, ports: Iterable[int]) -> np.ndarray:
-    """Rows of some ports (indices) in the port matrix of a block."""
+    """Return the rows of some ports (indices) in the port matrix of a block."""
     c = len(block.components)
     return np.array([c * p + k for p in ports for k in range(c)], int)
 
 
 def ease(body: Body) -> np.ndarray:
-    """(6 p,) how far a unit load moves a port by inertia at the first frequency of the body, roughly:
-    units in which motions of ports are alike, SI.
+    """Return the units (6 p,) in which motions of ports have equal size, SI: the approximate motion of a
+    port by inertia under a unit load at the first frequency of the body.
 
     Always positive; an elastic flexibility need not be, for the mean motion of a seat as long as
     the shaft is a rigid motion alone.
@@ -225,7 +223,7 @@ def ease(body: Body) -> np.ndarray:
 def assemble(
     kind: str, body: Body, chosen: Mapping[str, int], blocks: Iterable[ReducedMotions]
 ) -> Superelement:
-    """A superelement of blocks that have been reduced to the chosen ports."""
+    """Return the superelement of blocks that have been reduced to the chosen ports."""
     blocks = tuple(blocks)
     motions = np.concatenate([b.motions for b in blocks], axis=2)
     ports = {}
@@ -238,7 +236,7 @@ def assemble(
 def reduced_motions(
     block: Block, index: int, ports: list[int], value, shapes, truncation: Truncation
 ) -> ReducedMotions:
-    """A block in mass-normalised shapes; in those of its twin, for one that repeats another."""
+    """Return a block in mass-normalised shapes; in those of its twin, for one that repeats another."""
     motions = np.zeros((6, len(ports), len(value)))
     moved = block.ports[port_rows(block, ports)] @ shapes
     motions[list(block.components)] = moved.reshape(

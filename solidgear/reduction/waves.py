@@ -1,7 +1,7 @@
 r"""Harmonics n >= 2 of a body of revolution as further coordinates of its superelement.
 
-Ports are mean motions of rings and bearings hold ports, so that these harmonics neither see a
-bearing nor one another; what drives them is a force on a patch of the surface
+Ports are mean motions of rings and bearings hold ports, so that these harmonics are coupled neither
+to bearings nor to one another; forces on a patch of the surface drive them
 (:mod:`solidgear.models.harmonic.patch`).  Each is reduced as blocks with ports are
 (:mod:`solidgear.reduction.rubin`): free modes and residual fields of the mean motions of the patch,
 so that its statics is exact and the bound on frequencies of systems holds on.
@@ -38,42 +38,22 @@ KEPT = 6
 def with_waves(
     part: Superelement,
     body: Body,
-    at: str,
+    carrier: str,
     offset: np.ndarray,
     axes: np.ndarray,
     rows: Mapping[int, np.ndarray],
     name: str = "mesh.point",
-    kept: int = KEPT,
+    count: int = KEPT,
     fields: Mapping[int, np.ndarray] | None = None,
 ) -> Superelement:
-    """A superelement with harmonics n >= 2 of the body that it was made of, and a port that feels them.
+    """Add harmonics n >= 2 of its body to a superelement, and a port that moves with them.
 
-    Harmonics that it has already are taken as they are: patches at whatever angles have their fields
-    in common and each a port of its own.
-
-    Parameters
-    ----------
-    at : str
-        Port of the part that carries the new one rigidly.
-    offset : (3,) ndarray
-        The new port from that one, m.
-    axes : (3, 3) ndarray
-        Radial, tangential and axial direction there as columns.
-    rows : mapping of int to (3, m) ndarray
-        Mean motions of the patch in these directions, by n.
-    name : str
-        Of the new port: the motion of the carried point and that of the patch by the harmonics;
-        it turns as its carrier does.
-    kept : int
-        Free modes of each harmonic.
-    fields : mapping of int to (k, m) ndarray, optional
-        Mean motions of all patches that are to have ports, where they do not lie alike along the
-        shaft; those of this one by default.
-
-    Raises
-    ------
-    SolidgearError
-        For a port of that name, or a body without further harmonics.
+    Harmonics that it has already are kept: patches at other angles have their fields in common and each
+    its port. The new port, of that name, is carried rigidly by the port ``carrier`` at an ``offset``
+    (3,), m, with radial, tangential and axial direction as columns of ``axes``; ``rows`` (3, m), by n,
+    are mean motions of the patch in these directions. ``count`` free modes of each harmonic are kept.
+    ``fields`` (k, m), by n, are mean motions of all patches that are to have ports, where they lie
+    differently along the shaft; by default those of this one.
     """
     if name in part.ports:
         raise SolidgearError(
@@ -85,7 +65,7 @@ def with_waves(
     fields = rows if fields is None else fields
     for n in rows:
         if all(block.index != FURTHER + n for block in blocks):
-            value, shapes, truncation = _reduced(body.family(n), fields[n], kept)
+            value, shapes, truncation = _reduced(body.family(n), fields[n], count)
             still = np.zeros((6, len(part.ports), len(value)))
             for index in (FURTHER + n, SINE + n):
                 blocks.append(ReducedMotions(index, value, shapes, still, truncation))
@@ -94,15 +74,15 @@ def with_waves(
     ports = {
         p: replace(motion, rows=np.pad(motion.rows, added)) for p, motion in part.ports.items()
     }
-    carrier = ports[at]
-    motion = shift(offset) @ carrier.rows
+    carrying = ports[carrier]
+    motion = shift(offset) @ carrying.rows
     motion[:3] += local
-    port = PortMotion(motion, carrier.point + carrier.axes @ offset, carrier.axes)
+    port = PortMotion(motion, carrying.point + carrying.axes @ offset, carrying.axes)
     return Superelement(part.kind, part.fidelity, tuple(blocks), {**ports, name: port})
 
 
 def _local(block: ReducedMotions, angle: float, axes: np.ndarray, rows) -> np.ndarray:
-    """(3, m) motion that a block of waves adds to a patch; none by other blocks."""
+    """Return the motion (3, m) that a block of waves adds to a patch; zeros by other blocks."""
     n = block.index % FURTHER
     if block.index < FURTHER or n not in rows:
         return np.zeros((3, len(block.value)))
@@ -111,10 +91,12 @@ def _local(block: ReducedMotions, angle: float, axes: np.ndarray, rows) -> np.nd
     return axes @ (turn[:, None] * (rows[n] @ block.shapes))
 
 
-def _reduced(family: Body, rows: np.ndarray, kept: int):
-    """Eigenvalues, shapes and truncation of one harmonic; the same for its cosine and its sine."""
+def _reduced(family: Body, rows: np.ndarray, count: int):
+    """Return eigenvalues, shapes and truncation of one harmonic; the same for its cosine and its
+    sine.
+    """
     # every mode stands for two
-    shapes, cut = lowest_shapes(modes(family, (), n=2 * kept + 1), 2 * kept)
+    shapes, cut = lowest_shapes(modes(family, (), n=2 * count + 1), 2 * count)
     (block,), (factor,) = family.blocks, factors(family)
     free = free_shapes(block, [v[0] for v in shapes])
     nothing = np.zeros(len(rows))
@@ -122,7 +104,9 @@ def _reduced(family: Body, rows: np.ndarray, kept: int):
 
 
 def own_waves(part: Superelement) -> dict[int, np.ndarray]:
-    """Coordinates of every harmonic n >= 2 of a superelement, by n, cosine and sine together."""
+    """Return the coordinates of every harmonic n >= 2 of a superelement, by n, cosine and sine
+    together.
+    """
     cuts = np.cumsum([0] + [len(block.value) for block in part.blocks])
     out: dict[int, np.ndarray] = {}
     for block, start, end in zip(part.blocks, cuts, cuts[1:]):
@@ -133,9 +117,9 @@ def own_waves(part: Superelement) -> dict[int, np.ndarray]:
 
 
 def local_compliance(part: Superelement, name: str, direction: np.ndarray) -> float:
-    """Compliance of a port by the harmonics n >= 2 under a constant force in a direction (3,),
-    m/N.
+    """Compute the compliance of a port by the harmonics n >= 2 under a constant force in a
+    direction (3,), m/N.
     """
-    own = np.concatenate([np.zeros(0, int), *own_waves(part).values()])
-    moved = np.asarray(direction) @ part.ports[name].rows[:3, own]
-    return float((moved**2 / part.value[own]).sum())
+    waves = np.concatenate([np.zeros(0, int), *own_waves(part).values()])
+    moved = np.asarray(direction) @ part.ports[name].rows[:3, waves]
+    return float((moved**2 / part.value[waves]).sum())

@@ -1,4 +1,4 @@
-"""Lives of the catalogue bearings of a scene, with what their unknown insides leave open."""
+"""Lives of the catalogue bearings of a scene, with their ranges by unknown inner dimensions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from solidgear.bearings.solved import AS_TOLD, Choice, Solved, solved
 from solidgear.body import Body
 from solidgear.scene import Bearing, Lubrication, Scene
 
-#: a bearing and the motion of its inner ring
+#: a bearing and the motion (6,) of its inner ring
 Place = tuple[Catalogued, np.ndarray]
 
 
@@ -22,89 +22,89 @@ class BearingLife:
     """Life of one bearing, and its range."""
 
     name: str
-    life: Life  #: at the middle of what is not known
+    life: Life  #: at the middle of the unknown data
     speed: float  #: rad/s; 0 where none is known
-    #: what is not known of this bearing or of those that share the load; empty where all is
+    #: names of unknown data of this bearing and of those that share the load; empty if all are known
     told: str
-    ends: tuple[Life, ...]  #: at the ends of that, each with the other
+    ends: tuple[Life, ...]  #: at all corners of the unknown data
 
     def range(self, kind: str) -> tuple[float, float]:
-        """Least and largest life, revolutions, ``basic``, ``reference`` or ``modified`` (that also
-        over the cleanliness that a word means); equal where everything is known.
+        """Return the least and largest life, revolutions, ``basic``, ``reference`` or ``modified``
+        (that also over the cleanliness that a word means); equal where everything is known.
         """
-        found = [end for one in (self.life, *self.ends) for end in _lives(one, kind)]
-        return min(found), max(found)
+        lives = [value for life in (self.life, *self.ends) for value in _lives(life, kind)]
+        return min(lives), max(lives)
 
 
-def _lives(one: Life, kind: str) -> tuple[float, ...]:
+def _lives(bearing_life: Life, kind: str) -> tuple[float, ...]:
     if kind != "modified":
-        return (getattr(one, kind),)
-    return (one.modified.low, one.modified.high) if one.modified else ()
+        return (getattr(bearing_life, kind),)
+    return (bearing_life.modified.low, bearing_life.modified.high) if bearing_life.modified else ()
 
 
 def bearing_lives(
     scene: Scene, body: Body | None = None, speed: float | None = None
 ) -> list[BearingLife]:
-    """Life of every catalogue bearing of a scene at its load; `body` is the shaft, where they wait
-    for its load, and `speed` its own, rad/s, in place of that of the bearings or of the
-    lubrication.
+    """Compute the life of every catalogue bearing of a scene at its load; `body` is the shaft, needed
+    where bearings settle under its load, and `speed` that of the shaft, rad/s, in place of the speeds
+    of bearings and lubrication.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
-    >>> found = bearing_lives(scene, sg.build(scene, "timoshenko"))
-    >>> [(one.name, round(one.life.basic / 1e9, 1)) for one in found]
+    >>> lives = bearing_lives(scene, sg.build(scene, "timoshenko"))
+    >>> [(bearing.name, round(bearing.life.basic / 1e9, 1)) for bearing in lives]
     [('A', 13.8), ('B', 23.1)]
     """
-    told, choices = left_open([scene])
-    found = [solved(scene, body, choice) for choice in (AS_TOLD, *choices)]
+    label, choices = left_open([scene])
+    states = [solved(scene, body, choice) for choice in (AS_TOLD, *choices)]
     return [
-        life_of(bearing, scene.lubrication, told, speed, [_place(one, bearing) for one in found])
+        life_of(bearing, scene.lubrication, label, speed, [_place(s, bearing) for s in states])
         for bearing in scene.bearings
         if bearing.catalogue is not None
     ]
 
 
-def _place(found: Solved, bearing: Bearing) -> Place:
-    return found.made[bearing.name], found.motion[bearing.name]
+def _place(state: Solved, bearing: Bearing) -> Place:
+    return state.made[bearing.name], state.motion[bearing.name]
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
-    """Words on what data leave open of the bearings of scenes that share their loads, empty where
-    all is known, and the corners of that.
+    """Return the names of unknown data of the bearings of scenes that share their loads, empty where
+    all are known, and the corners of their ranges.
 
     Examples
     --------
     >>> import solidgear as sg
-    >>> told, corners = left_open([sg.load("geometry/gearbox_catalogue.toml")])
-    >>> told, len(corners)
+    >>> label, corners = left_open([sg.load("geometry/gearbox_catalogue.toml")])
+    >>> label, len(corners)
     ('estimated insides and clearance classes', 4)
     """
     data = [b.catalogue for scene in scenes for b in scene.bearings if b.catalogue is not None]
-    estimated = any(one.estimated for one in data)
-    by_class = any(isinstance(one.clearance, str) for one in data)
+    estimated = any(catalogue.estimated for catalogue in data)
+    by_class = any(isinstance(catalogue.clearance, str) for catalogue in data)
     insides: tuple[End, ...] = ("softer", "stiffer") if estimated else ("middle",)
     places = (0.0, 1.0) if by_class else (0.5,)
     corners = [Choice(end, place) for end in insides for place in places]
     names = {"estimated insides": estimated, "clearance classes": by_class}
-    told = " and ".join(name for name, there in names.items() if there)
-    return told, [corner for corner in corners if corner != AS_TOLD]
+    label = " and ".join(name for name, unknown in names.items() if unknown)
+    return label, [corner for corner in corners if corner != AS_TOLD]
 
 
 def life_of(
     bearing: Bearing,
     oil: Lubrication | None,
-    told: str,
+    label: str,
     speed: float | None,
     places: Sequence[Place],
 ) -> BearingLife:
-    """Life of a bearing with catalogue data from how it lies: the bearing and the motion of its
-    inner ring, as told and at the corners of what is not known. A speed of the shaft, rad/s, is in
-    place of that of the bearing or of its lubrication.
+    """Compute the life of a catalogue bearing from its places: the bearing and the motion of its
+    inner ring, at the middle and at the corners of the unknown data; a speed of the shaft, rad/s,
+    replaces that of the bearing or lubrication.
     """
     data = bearing.catalogue
     assert data is not None
     turns = speed or data.speed or (oil.speed if oil else None) or 0.0
-    lives = [life(data, made, motion, oil, turns) for made, motion in places]
-    return BearingLife(bearing.name, lives[0], turns, told, tuple(lives[1:]))
+    lives = [life(data, rows, motion, oil, turns) for rows, motion in places]
+    return BearingLife(bearing.name, lives[0], turns, label, tuple(lives[1:]))

@@ -1,4 +1,4 @@
-"""Catalogue bearings of a scene: at their load, and over load."""
+"""Catalogue bearings of a scene: stiffness and contacts at their load, and stiffness over load."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from solidgear.scene.catalogue import Catalogue
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
-#: times the load that the scene says
+#: factors on the load of the scene
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
 
 
@@ -26,19 +26,19 @@ class BearingFacts:
     """One catalogue bearing at its load."""
 
     bearing: Bearing  #: with its stiffness there
-    made: Catalogued  #: its rows, by its data
-    motion: np.ndarray  #: (6,) of its inner ring
-    #: diagonal of the stiffness: least and largest of an estimated inside and its two ends
+    made: Catalogued  #: rows made from its data
+    motion: np.ndarray  #: (6,) motion of its inner ring
+    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions
     spread: tuple[np.ndarray, np.ndarray] | None
 
     @property
     def name(self) -> str:
-        """Of the bearing."""
+        """Name of the bearing."""
         return self.bearing.name
 
     @property
     def data(self) -> Catalogue:
-        """Of the catalogue."""
+        """Catalogue data of the bearing."""
         assert self.bearing.catalogue is not None
         return self.bearing.catalogue
 
@@ -49,12 +49,12 @@ class BearingFacts:
 
     @property
     def stiffness(self) -> np.ndarray:
-        """Tangent (6, 6) there."""
+        """Tangent stiffness (6, 6) at the load."""
         return np.array(self.bearing.matrix)
 
     @property
     def load(self) -> np.ndarray:
-        """Load (6,) that the shaft puts on it, N and N m."""
+        """Load (6,) of the shaft on the bearing, N and N m."""
         return self.made.bearing.load(self.motion)
 
     @property
@@ -64,18 +64,18 @@ class BearingFacts:
 
     @property
     def inside(self) -> dict[str, float]:
-        """Inner geometry it was solved with, SI."""
-        own = self.made.inside
+        """Inner dimensions that it was solved with, SI."""
+        inner = self.made.inside
         out = {
-            "elements": own.elements,
-            "element_diameter": own.diameter,
-            "pitch_diameter": own.pitch,
-            "contact_angle": own.angle,
+            "elements": inner.elements,
+            "element_diameter": inner.diameter,
+            "pitch_diameter": inner.pitch,
+            "contact_angle": inner.angle,
         }
         if self.data.grooved:
-            out |= dict(zip(("conformity_inner", "conformity_outer"), own.conformity))
+            out |= dict(zip(("conformity_inner", "conformity_outer"), inner.conformity))
         if not self.data.balls:
-            out["element_length"] = own.length
+            out["element_length"] = inner.length
         return out
 
     @property
@@ -92,8 +92,8 @@ class BearingFacts:
 
 
 def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
-    """Every catalogue bearing of a scene at its load; `body` is the shaft, where they wait for its
-    load.
+    """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
+    bearings settle under its load.
 
     Examples
     --------
@@ -103,8 +103,8 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
     >>> [(fact.name, fact.data.kind, len(fact.rows)) for fact in facts]
     [('A', 'cylindrical', 1), ('B', 'angular_contact', 2)]
     """
-    known = [b for b in scene.bearings if b.catalogue is not None]
-    if not known:
+    bearings = [b for b in scene.bearings if b.catalogue is not None]
+    if not bearings:
         raise SolidgearError(
             f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
             "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
@@ -113,57 +113,57 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
     ends: dict[str, Solved] = {}
     if any(made.estimated for made in middle.made.values()):
         ends = {end: solved(scene, body, Choice(end=end)) for end in ("softer", "stiffer")}
-    return [_facts(bearing.name, middle, ends) for bearing in known]
+    return [_facts(bearing.name, middle, ends) for bearing in bearings]
 
 
-def _facts(name: str, found: Solved, ends: dict[str, Solved]) -> BearingFacts:
-    bearing, made, spread = _named(found, name), found.made[name], None
-    if made.estimated:
+def _facts(name: str, middle: Solved, ends: dict[str, Solved]) -> BearingFacts:
+    rows, spread = middle.made[name], None
+    if rows.estimated:
         # an even number of elements under the load is another bearing than an odd one: the middle
         # need not lie between
-        all_three = [np.diag(np.array(_named(s, name).matrix)) for s in (found, *ends.values())]
-        spread = (np.min(all_three, axis=0), np.max(all_three, axis=0))
-    return BearingFacts(bearing, made, found.motion[name], spread)
+        solutions = (middle, *ends.values())
+        diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in solutions]
+        spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
+    return BearingFacts(_named(middle, name), rows, middle.motion[name], spread)
 
 
-def _named(found: Solved, name: str) -> Bearing:
-    return next(b for b in found.scene.bearings if b.name == name)
+def _named(solution: Solved, name: str) -> Bearing:
+    return next(b for b in solution.scene.bearings if b.name == name)
 
 
 @dataclass(frozen=True)
 class OverLoad:
     """Stiffness of a bearing over the load."""
 
-    factors: np.ndarray  #: (n,) times the load of the scene
-    load: np.ndarray  #: (n, 6) on the bearing
-    #: middle, low, high: (n, 6) diagonal of its stiffness, and its range by an estimated inside
-    middle: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
+    factors: np.ndarray  #: (n,) on the load of the scene
+    load: np.ndarray  #: (n, 6) load on the bearing
+    middle: np.ndarray  #: (n, 6) diagonal of its stiffness
+    low: np.ndarray  #: its least value over the range of estimated dimensions
+    high: np.ndarray  #: its largest
 
 
 def over_load(
     scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
 ) -> dict[str, OverLoad]:
-    """Stiffness of every catalogue bearing at so many times the load that the scene says; `body` is
-    the shaft, where they wait for its load.
+    """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
+    `body` is the shaft, needed where bearings settle under its load.
     """
     names = [b.name for b in scene.bearings if b.catalogue is not None]
     loads: dict[str, list] = {name: [] for name in names}
-    found: dict[tuple[str, str], list] = {}
+    diagonals: dict[tuple[str, str], list] = {}
     for end in ("middle", "softer", "stiffer"):
         start = None
         for factor in factors:
-            at = solved(scene, body, Choice(end=end, load=factor), start)
-            start = at.equilibrium
+            state = solved(scene, body, Choice(end=end, load=factor), start)
+            start = state.equilibrium
             for name in names:
-                stiffness = at.made[name].bearing.tangent(at.motion[name])
-                found.setdefault((name, end), []).append(np.diag(stiffness))
+                bearing, motion = state.made[name].bearing, state.motion[name]
+                diagonals.setdefault((name, end), []).append(np.diag(bearing.tangent(motion)))
                 if end == "middle":
-                    loads[name].append(at.made[name].bearing.load(at.motion[name]))
+                    loads[name].append(bearing.load(motion))
     curves = {}
     for name in names:
-        ends = np.array([found[name, end] for end in ("middle", "softer", "stiffer")])
+        ends = np.array([diagonals[name, end] for end in ("middle", "softer", "stiffer")])
         at_load = np.array(loads[name])
         curves[name] = OverLoad(
             np.array(factors), at_load, ends[0], ends.min(axis=0), ends.max(axis=0)
@@ -172,7 +172,9 @@ def over_load(
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """A scene with another load of such components, on its port or on the bearing of a name."""
+    """Return the scene with the components `load` as its load, on its port or on the bearing of a
+    name.
+    """
     new = BearingLoad(**load)
     if bearing is None:
         free = tuple(
@@ -182,12 +184,12 @@ def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -
             for b in scene.bearings
         )
         return scene.with_changes(load=new, bearings=free)
-    known = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
-    if bearing not in known:
+    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
+    if bearing not in catalogues:
         raise SolidgearError(
             f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
-            f"{', '.join(known) or 'none'}"
+            f"{', '.join(catalogues) or 'none'}"
         )
-    data = known[bearing].with_changes(load=new, displacement=None)
+    data = catalogues[bearing].with_changes(load=new, displacement=None)
     changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
     return scene.with_changes(bearings=tuple(changed))

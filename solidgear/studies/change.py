@@ -1,8 +1,8 @@
-"""A number in two files: what it changes by, and whether that is more than its error bars."""
+"""A number in two files: its change, and whether that is more than its error bars."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Generic, TypeVar
 
 from solidgear.judge.deviations import resolution
@@ -10,12 +10,12 @@ from solidgear.judge.deviations import resolution
 
 @dataclass(frozen=True)
 class Change:
-    """A number of one thing beside that of another, in SI.
+    """A number of one design beside that of another, in SI.
 
     Examples
     --------
-    >>> one = Change(100.0, 101.0, 0.2, 0.3)
-    >>> one.difference, one.band, one.verdict
+    >>> change = Change(100.0, 101.0, 0.2, 0.3)
+    >>> change.difference, change.band, change.verdict
     (1.0, 0.5, 'resolved')
     >>> Change(100.0, 100.4, 0.2, 0.3).verdict, Change(100.0, 101.0).verdict
     ('not resolved', 'no band')
@@ -23,7 +23,7 @@ class Change:
 
     a: float
     b: float
-    #: bar_a, bar_b: error bars of both, in the unit of the number; None of one that has none
+    #: error bars of both, in the unit of the number; None without one
     bar_a: float | None = None
     bar_b: float | None = None
 
@@ -34,12 +34,12 @@ class Change:
 
     @property
     def relative(self) -> float | None:
-        """Of the size of `a`; None where that is zero."""
+        """Difference over the size of `a`; None where that is zero."""
         return self.difference / abs(self.a) if self.a else None
 
     @property
     def band(self) -> float | None:
-        """Sum of both bars; None unless both are known."""
+        """Sum of both error bars; None unless both are known."""
         return None if self.bar_a is None or self.bar_b is None else self.bar_a + self.bar_b
 
     @property
@@ -48,24 +48,26 @@ class Change:
         return resolution(abs(self.difference), self.band)
 
     def as_dict(self) -> dict:
-        """Plain data that JSON can hold."""
-        told = {name: getattr(self, name) for name in ("a", "b", "bar_a", "bar_b")}
-        return told | {
-            name: getattr(self, name) for name in ("difference", "relative", "band", "verdict")
+        """Return plain data that JSON can hold."""
+        return asdict(self) | {
+            "difference": self.difference,
+            "relative": self.relative,
+            "band": self.band,
+            "verdict": self.verdict,
         }
 
 
 @dataclass(frozen=True)
 class BarredMode:
-    """An elastic mode of one of two things."""
+    """An elastic mode with the error bar of its frequency."""
 
     name: str
     frequency_hz: float
-    bar: float | None  #: largest relative error of its frequency; None where nothing tells it
+    bar: float | None  #: largest relative error of the frequency; None where it is unknown
 
     @property
     def width(self) -> float | None:
-        """Its error bar, Hz."""
+        """Error bar of the frequency, Hz."""
         return None if self.bar is None else self.bar * self.frequency_hz
 
 
@@ -74,30 +76,30 @@ M = TypeVar("M", bound=BarredMode)
 
 @dataclass(frozen=True)
 class ModePair(Generic[M]):
-    """A mode of one thing and its partner in the other; either may be missing."""
+    """A mode of one design and its partner in another; either may be missing."""
 
     a: M | None
     b: M | None
-    #: modal assurance criterion of their motions; None for a mode alone, and for modes that belong
-    #: together by name
+    #: modal assurance criterion of their motions; None for a mode alone, and for modes paired by
+    #: name
     mac: float | None = None
 
     @property
     def change(self) -> Change | None:
-        """Of the frequency, Hz; None for a mode alone."""
+        """Change of the frequency, Hz; None for a mode alone."""
         if self.a is None or self.b is None:
             return None
         return Change(self.a.frequency_hz, self.b.frequency_hz, self.a.width, self.b.width)
 
     @property
     def verdict(self) -> str | None:
-        """That of the change, and what holds the pair together where that is its name alone; None
-        for a mode alone.
+        """Verdict on the change, with ``by name`` where names alone pair the modes; None for a mode
+        alone.
 
         Examples
         --------
-        >>> one = BarredMode("bending 3", 900.0, 1e-4), BarredMode("bending 3", 660.0, 1e-4)
-        >>> ModePair(*one, mac=0.98).verdict, ModePair(*one).verdict
+        >>> a, b = BarredMode("bending 3", 900.0, 1e-4), BarredMode("bending 3", 660.0, 1e-4)
+        >>> ModePair(a, b, mac=0.98).verdict, ModePair(a, b).verdict
         ('resolved', 'resolved, by name')
         """
         if self.change is None:
@@ -105,5 +107,5 @@ class ModePair(Generic[M]):
         return self.change.verdict + (", by name" if self.mac is None else "")
 
     def within(self, highest: float) -> bool:
-        """Tell whether either of them lies below a frequency, Hz."""
+        """Return True where either mode lies below a frequency, Hz."""
         return any(m is not None and m.frequency_hz <= highest for m in (self.a, self.b))

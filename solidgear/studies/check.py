@@ -1,4 +1,4 @@
-"""Checks of a scene: mass closed, free body free, and every guard on the scene."""
+"""Check of a scene: mass against the closed form, free body free, and every guard on the scene."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from solidgear.studies.round_part import against_the_part, described, of_files
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: what a model is worth after the worst that was said of it
+#: verdict on a model by the worst level of its notices
 VERDICTS = {
     "fact": "holds",
     "caution": "holds with caution",
@@ -35,9 +35,9 @@ VERDICTS = {
     "avoid": "will not hold",
     "fault": "will not hold",
 }
-#: mass that arcs may lack or have too much, followed to the order of coarse elements
+#: relative error of the mass beside arcs, which coarse elements follow to their order
 FOLLOWED = 1e-6
-#: what a comparison finds out by itself, or what is no matter of the models
+#: guards whose answer a comparison finds itself, or that do not concern models
 NOT_IN_COMPARISONS = (
     "beam_against_solid",
     "lumped_against_solid",
@@ -45,9 +45,9 @@ NOT_IN_COMPARISONS = (
     "memory",
     "renderer",
 )
-#: guards that hold beams and lumped models against a light solid
+#: guards that compare beams and lumped models with a light solid
 COMPARES = ("beam_against_solid", "lumped_against_solid")
-#: what is about other models than a body, or about the machine
+#: guards on other models than a body, or on the machine
 NOT_HEARD_ALONE = (
     "rigid_seats",
     "memory",
@@ -57,27 +57,27 @@ NOT_HEARD_ALONE = (
     "frequency_range",
     "doubtful_data",
 )
-#: what depends on the mesh of one solid
+#: guards on the mesh of one solid
 OF_A_MESH = (
     "linear_elements",
     "hexahedra_at_fillets",
     "nearly_incompressible",
     "uniform_at_shoulder",
 )
-#: what is heard of a body without an axis as well
+#: guards on a body without an axis too
 OF_ANY_BODY = ("linear_elements", "nearly_incompressible")
 
 
 @pinned
 def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
-    """Facts, cautions and faults of a scene, in sentences, and what each model is worth for it.
+    """Return facts, cautions and faults of a scene, in sentences, and a verdict on each model.
 
     Parameters
     ----------
     body : Body
-        The model asked for; its mesh is held against the closed form.
+        The model asked for; its mesh is compared with the closed form.
     probe : Probe, optional
-        Of the plain part of the scene and that body, for what it has solved or will have.
+        Of the plain part of the scene and that body, for solutions that it has or will have.
 
     Returns
     -------
@@ -89,47 +89,47 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     """
     probe = probe or Probe(scene.plain, body, whole=scene)
     free = without_axis(scene)
-    said = [("shaft", notice) for notice in (_of_a_body if free else _of_the_shaft)(scene)]
-    said += [("mesh", notice) for notice in _of_the_mesh(scene, body)]
-    said += [("features", notice) for notice in _beyond_the_segments(scene)]
-    said += [("round_part", notice) for notice in described(scene) if not free]
+    by_guard = [("shaft", notice) for notice in (_of_a_body if free else _of_the_shaft)(scene)]
+    by_guard += [("mesh", notice) for notice in _of_the_mesh(scene, body)]
+    by_guard += [("features", notice) for notice in _beyond_the_segments(scene)]
+    if not free:
+        by_guard += [("round_part", notice) for notice in described(scene)]
     for name in _guards(scene):
-        said += [(name, notice) for notice in _heard(name, probe)]
-    records = [_record(name, notice, notice.models) for name, notice in said]
-    out = {
-        kind: [n.sentence for _, n in said if n.level in levels]
-        for kind, levels in (
-            ("facts", ("fact",)),
-            ("cautions", ("caution", "open", "avoid")),
-            ("faults", ("fault",)),
-        )
-    }
-    return out | {
+        by_guard += [(name, notice) for notice in _heard(name, probe)]
+    records = [_record(name, notice, notice.models) for name, notice in by_guard]
+
+    def sentences(*levels: str) -> list[str]:
+        return [notice.sentence for _, notice in by_guard if notice.level in levels]
+
+    return {
+        "facts": sentences("fact"),
+        "cautions": sentences("caution", "open", "avoid"),
+        "faults": sentences("fault"),
         "records": [record.model_dump() for record in records],
         "verdicts": {model: _verdict(model, records) for model in (*beams(), *_solids(scene))},
     }
 
 
 def notices(scene: Scene, solutions: dict[str, Solution]) -> list[GuardRecord]:
-    """Notices on models that are solved, facts left out, of the guards that a comparison does not
-    answer by itself.
+    """Return notices on models that are solved, facts left out, of the guards that a comparison
+    does not answer by itself.
     """
     plain = scene.plain
-    # quick solutions are of the plain part; what is solved with features is no stand-in for them
-    known = solutions if plain is scene else {}
-    probes = [Probe(plain, r.body, known, scene) for r in solutions.values()]
+    # quick solutions are of the plain part; solutions with features cannot stand in for them
+    plain_solutions = solutions if plain is scene else {}
+    probes = [Probe(plain, s.body, plain_solutions, scene) for s in solutions.values()]
     out: dict[str, GuardRecord] = {}
     if scene.body is not None and probes:
-        heard = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
-        for notice in (n for n in heard if n.level != "fact"):
+        of_part = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
+        for notice in (n for n in of_part if n.level != "fact"):
             out[notice.sentence] = _record("round_part", notice, _about(notice, solutions))
     for name in (n for n in _guards(scene) if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
-                about = _about(notice, solutions)
-                mine = name not in OF_A_MESH or probe.body.fidelity in notice.models
-                if notice.level != "fact" and mine and (about or not notice.models):
-                    out.setdefault(notice.sentence, _record(name, notice, about))
+                models = _about(notice, solutions)
+                concerned = name not in OF_A_MESH or probe.body.fidelity in notice.models
+                if notice.level != "fact" and concerned and (models or not notice.models):
+                    out.setdefault(notice.sentence, _record(name, notice, models))
     return list(out.values())
 
 
@@ -140,37 +140,38 @@ def _record(guard: str, notice: Notice, models: Iterable[str]) -> GuardRecord:
 
 
 def _about(notice: Notice, solutions: dict[str, Solution]) -> list[str]:
-    """Solved models that a notice is about; what is said of beams is not said of a lumped model
-    that rests on a solid.
+    """Return the solved models that a notice is about; a notice on beams does not concern a lumped
+    model that rests on a solid.
     """
-    meant = set(notice.models) & set(LADDER.of(BEAM))
-    lumped = () if meant and not meant & set(solutions) else LADDER.of(LUMPED)
+    beam_models = set(notice.models) & set(LADDER.of(BEAM))
+    lumped = () if beam_models and not beam_models & set(solutions) else LADDER.of(LUMPED)
     return [m for m in notice.models if m in solutions or m in lumped]
 
 
-def cautions(scene: Scene, body: Body, fidelity: str | None = None) -> list[str]:
-    """Sentences of the guards to be heard before the numbers of one model are used; facts and what concerns
-    other models left out. The mesh of the body is not judged where the numbers are of another model.
+def cautions(scene: Scene, body: Body, name: str | None = None) -> list[str]:
+    """Return the sentences of the guards to be read before the numbers of one model are used,
+    without facts and notices on other models; the mesh of the body is not judged where the numbers
+    are of another model.
     """
-    model = fidelity or body.fidelity
+    model = name or body.fidelity
     probe, out = Probe(scene.plain, body, whole=scene), []
     silent = set(NOT_HEARD_ALONE)
     if LADDER[model].family != BEAM:
         silent.add("beam_against_solid")
     if model != body.fidelity:
         silent.update(OF_A_MESH)
-    for name in _guards(scene):
-        if name not in silent:
+    for guard in _guards(scene):
+        if guard not in silent:
             out += [
                 n.sentence
-                for n in _heard(name, probe)
+                for n in _heard(guard, probe)
                 if n.level != "fact" and (not n.models or model in n.models)
             ]
     return list(dict.fromkeys(out))
 
 
 def _heard(name: str, probe: Probe) -> list[Notice]:
-    """Notices of a guard; one that cannot be run must not hide what the others have to say."""
+    """Return the notices of a guard; one that cannot be run must not hide those of the others."""
     try:
         return _of_this_lumped(GUARDS[name](probe), name, probe)
     except (
@@ -181,45 +182,52 @@ def _heard(name: str, probe: Probe) -> list[Notice]:
         np.linalg.LinAlgError,
     ) as error:
         text = f"not checked ({name.replace('_', ' ')}): {error}"
-        # What a comparison would have found out is open; nothing holds for want of a check.
+        # A result that a comparison would have given is open; nothing holds for want of a check.
         concerned = beams() if name in COMPARES else ()
         return [Notice("open" if concerned else "caution", concerned, text)]
 
 
-def _of_this_lumped(said: Notices, name: str, probe: Probe) -> list[Notice]:
-    """The same, without the lumped model in what is said of the beams that it does not rest on."""
+def _of_this_lumped(heard: Notices, name: str, probe: Probe) -> list[Notice]:
+    """Return the notices without the lumped model where they are about beams that it does not rest
+    on.
+    """
     if probe.beam_fits:
-        return list(said)
+        return list(heard)
     if name == "lumped_against_solid":  # that of the plain part, on its beam
         return []
     lumped, beam = set(LADDER.of(LUMPED)), set(LADDER.of(BEAM))
-    return [
-        replace(n, models=tuple(m for m in n.models if m not in lumped))
-        if beam & set(n.models)
-        else n
-        for n in said
-    ]
+    out = []
+    for notice in heard:
+        if beam & set(notice.models):
+            others = tuple(m for m in notice.models if m not in lumped)
+            notice = replace(notice, models=others)
+        out.append(notice)
+    return out
 
 
 def _solids(scene: Scene) -> list[str]:
-    """Solids that a verdict is told of: those asked without naming any, and those that hold it."""
+    """Return the solids that get a verdict: those solved when none is named, and those that hold
+    the scene.
+    """
     fit = LADDER.fit(scene)
     return [m for m in LADDER.of(SOLID) if m in fit or not LADDER[m].unfit(scene)]
 
 
 def _verdict(model: str, records: list[GuardRecord]) -> dict:
-    own = [
+    relevant = [
         r for r in records if model in r.models or (r.guard == "free_motions" and r.level != "fact")
     ]
-    worst = max((r.level for r in own), key=LEVELS.index, default="fact")
+    worst = max((r.level for r in relevant), key=LEVELS.index, default="fact")
     return {
         "verdict": VERDICTS[worst],
-        "guards": list(dict.fromkeys(r.guard for r in own if r.level == worst and worst != "fact")),
+        "guards": list(
+            dict.fromkeys(r.guard for r in relevant if r.level == worst and worst != "fact")
+        ),
     }
 
 
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
-    """Models that answer for the plain part only."""
+    """Yield notices on features, and on models that answer for the plain part only."""
     yield from smearing(scene)
     features = resolved(scene)
     if not features:
@@ -237,11 +245,11 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         return
     names = feature_labels(features)
     # fillets of a part from a file are neither, and are not recognised
-    known = ", as far as cylinders and cones tell" if scene.body is not None else ""
+    as_recognised = ", as far as cylinders and cones tell" if scene.body is not None else ""
     yield Notice(
         "fact",
         (),
-        f"not of revolution{known}: {names}; all that is told of the shaft is of its plain part",
+        f"not of revolution{as_recognised}: {names}; all that is told of the shaft is of its plain part",
     )
     fit = LADDER.holding(scene)
     use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
@@ -274,14 +282,16 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 
 def _guards(scene: Scene) -> tuple[str, ...]:
-    """Names of the guards to be heard: most speak of the plain part of a shaft."""
+    """Return the names of the guards that apply: most speak of the plain part of a shaft."""
     return OF_ANY_BODY if without_axis(scene) else tuple(GUARDS)
 
 
 def _of_a_body(scene: Scene) -> Iterator[Notice]:
-    """Edges, mass and materials of a body without an axis, and doubts about its files."""
+    """Yield notices on edges, mass and materials of a body without an axis, and doubts about its
+    files.
+    """
     body = scene.body
-    assert body is not None and body.edges is not None  # that is without an axis
+    assert body is not None and body.edges is not None  # so it is without an axis
     edges = " x ".join(f"{1e3 * edge:.6g}" for edge in body.edges)
     block = body.kind == "block"
     yield Notice(
@@ -294,16 +304,16 @@ def _of_a_body(scene: Scene) -> Iterator[Notice]:
 
 
 def _held_at(scene: Scene) -> str:
-    """Patches that are held, or those that could be."""
-    held = [repr(b.patch.name) for b in scene.bearings if b.patch is not None]
-    if held:
-        return f"held at {listed(held)}"
-    there = listed([repr(p.name) for p in scene.body.patches], 12) if scene.body else ""
-    return f"free; patches: {there or 'none, for the file names no groups of surfaces'}"
+    """Return the patches that are held, or those that could be, in words."""
+    supports = [repr(b.patch.name) for b in scene.bearings if b.patch is not None]
+    if supports:
+        return f"held at {listed(supports)}"
+    patches = listed([repr(p.name) for p in scene.body.patches], 12) if scene.body else ""
+    return f"free; patches: {patches or 'none, for the file names no groups of surfaces'}"
 
 
 def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
-    """Length, mass and inertia, with all rigid masses."""
+    """Yield notices on length, mass and inertia, with all rigid masses."""
     shaft, exact = mass_properties(scene.outline), whole_mass(scene)
     yield Notice(
         "fact",
@@ -313,56 +323,54 @@ def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
         f"kg m^2 (closed form{' of the round part' if scene.body is not None else ''})",
     )
     if scene.masses:
-        each = listed(
-            f"{m.name!r} {m.mass:.4g} kg"
-            + (
-                f" on y = {1e3 * m.lo:.6g} to {1e3 * m.hi:.6g} mm"
-                if m.on is None
-                else f" on {m.on!r}"
-            )
+        masses = listed(
+            f"{m.name!r} {m.mass:.4g} kg on "
+            + (f"y = {1e3 * m.lo:.6g} to {1e3 * m.hi:.6g} mm" if m.on is None else repr(m.on))
             for m in scene.masses
         )
-        yield Notice("fact", (), f"of this mass the shaft has {shaft.mass:.4g} kg, {each}")
+        yield Notice("fact", (), f"of this mass the shaft has {shaft.mass:.4g} kg, {masses}")
 
 
 def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
-    """Mass and inertia against the closed form, and no stiffness against rigid motions."""
+    """Yield notices on mass and inertia of the mesh against the closed form, and on its stiffness
+    against rigid motions, which must be none.
+    """
     exact = mass_properties(scene.outline)
-    matrix, own = body.mass_matrix(), (body.fidelity,)
-    # beams leave out fillets and chamfers, and are held against what they are made of
+    matrix, model = body.mass_matrix(), (body.fidelity,)
+    # beams leave out fillets and chamfers, and are compared with the segments alone
     beam = LADDER[body.fidelity].family == BEAM
     due = mass_properties(Outline(scene.segments)) if beam else exact
-    # of what is cut there is no closed form; of a part there is what its file says
+    # with cuts there is no closed form; a part has the mass of its file
     closed = [("mass", matrix[0, 0], due.mass), ("polar inertia", matrix[4, 4], due.iyy)]
     bare = " without fillets and chamfers" if beam and scene.outline.corners else ""
-    where, off = f"closed form{bare}", f"the closed form{bare}"
+    source, off = f"closed form{bare}", f"the closed form{bare}"
     if not body.mesh.get("round", True):
-        whole = scene.body
-        closed, where, off = [], "the part", "that of the part"
-        if whole is not None:
-            closed = [("mass", matrix[0, 0], whole.mass(scene.material))]
-    residual, told = body.rigid_residual(), []
+        part = scene.body
+        closed, source, off = [], "the part", "that of the part"
+        if part is not None:
+            closed = [("mass", matrix[0, 0], part.mass(scene.material))]
+    residual, errors = body.rigid_residual(), []
     tolerance = LADDER[body.fidelity].mass_tolerance
     limit = max(tolerance, FOLLOWED if scene.outline.corners else 0.0)
-    for name, got, want in closed:
-        error = got / want - 1
-        told.append(f"{name} {error:+.1e}")
+    for name, meshed, exact_value in closed:
+        error = meshed / exact_value - 1
+        errors.append(f"{name} {error:+.1e}")
         if abs(error) > limit:
             yield Notice(
                 "fault",
-                own,
+                model,
                 f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: mesh finer",
             )
-    against = f"{' and '.join(told)} against {where}, " if told else ""
+    against = f"{' and '.join(errors)} against {source}, " if errors else ""
     yield Notice(
         "fact",
-        own,
+        model,
         f"mesh looked at: {body.fidelity}, {body.size} unknowns, {against}stiffness {residual:.1e} "
         "against rigid motions (a free body gives rounding)",
     )
     if residual > 1e-9:
         yield Notice(
             "fault",
-            own,
+            model,
             f"the body is not free: rigid motions meet a stiffness of {residual:.1e}, limit 1e-9",
         )

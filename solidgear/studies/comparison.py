@@ -1,4 +1,4 @@
-"""The main job: one scene, every model, one verdict."""
+"""Comparison of one scene by every model, with one verdict."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import functools
 import logging
 import os
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
@@ -47,13 +47,13 @@ Progress = Callable[[str], None]
 
 @dataclass(repr=False)
 class Comparison(Displayed):
-    """Everything a comparison found."""
+    """Result of a comparison."""
 
     shown: ClassVar[str] = "comparison"
 
     scene: Scene
-    record: Record  #: what ``results.json`` holds
-    solutions: dict[str, Solution]  #: the bodies and mode shapes behind it
+    record: Record  #: contents of ``results.json``
+    solutions: dict[str, Solution]  #: bodies and mode shapes behind the record, by model
 
     @property
     def results(self) -> dict:
@@ -75,9 +75,9 @@ class Comparison(Displayed):
         out : path
             The folder.
         renders : bool
-            Whether mode shapes are drawn.
+            Draw mode shapes.
         units : {'engineering', 'si', 'us'}
-            Of the page; results.json is SI always.
+            Units of the page; results.json is SI always.
         progress : callable
             Called with a sentence at every step.
 
@@ -119,16 +119,16 @@ def compare(
 ) -> Comparison | TwoShafts:
     """Solve a scene with several models and compare them; or two scenes beside each other.
 
-    Solids are solved on ever finer meshes until their error bars meet the tolerance of the scene: that
-    of the harmonic solid, which judges, a tenth of it, that of the 3D solid the whole.
+    Solids are solved on ever finer meshes until their error bars are small enough: a tenth of the
+    tolerance of the scene for the harmonic solid, which judges, all of it for the 3D solid.
 
     Parameters
     ----------
     scene : Scene
     models : tuple of str, optional
         Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
-        lumped one needs one of the others to rest on. Another scene in their place is held beside
-        the first, each solved by the model that the judge chooses.
+        lumped model rests on one of the others. Another scene in their place is compared with the
+        first, each solved by the model that the judge chooses.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
         mesh fix it: that mesh and two coarser ones are solved.
@@ -146,7 +146,8 @@ def compare(
     Raises
     ------
     SolidgearError
-        For an unknown model, a train, or settings of two scenes.  A model that fails is reported as not valid, and the others go on.
+        For an unknown model, a train, or settings of two scenes.  A model that fails is reported
+        as not valid, and the others go on.
 
     Examples
     --------
@@ -156,8 +157,8 @@ def compare(
     >>> comparison.record.verdict.sentences
     ['Not judged: no solid was run, and a beam cannot judge itself.']
     >>> thicker = sg.Segment.cylinder("rod", length=0.6, diameter=0.022)
-    >>> found = sg.compare(sg.Scene.from_parts([rod]), sg.Scene.from_parts([thicker]))
-    >>> found["mass"].verdict, round(found["mass"].relative, 4)
+    >>> shafts = sg.compare(sg.Scene.from_parts([rod]), sg.Scene.from_parts([thicker]))
+    >>> shafts["mass"].verdict, round(shafts["mass"].relative, 4)
     ('resolved', 0.21)
     """
     if isinstance(scene, Train) or isinstance(models, Train):
@@ -177,109 +178,109 @@ def compare(
     models = LADDER.names if models is None else models
     check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
-    found = _Found({}, {}, [], {}, [])
+    findings = _Findings()
     complete = True
     open_ = OpenNumbers()
     overall = Meter()
     with overall.stage("all"), one_run() as run:
         try:
-            _run(scene, models, options, found, progress)
+            _run(scene, models, options, findings, progress)
             progress("what the data leave open")
             open_ = opened(scene)
         except KeyboardInterrupt:
             complete = False
             progress("interrupted; keeping what is there")
     record = recorded(
-        scene, found.solutions, found.failed, found.causes, found.lumped, found.guards, complete
+        scene,
+        findings.solutions,
+        findings.failed,
+        findings.causes,
+        findings.lumped,
+        findings.guards,
+        complete,
     )
-    record.where = found.where
+    record.where = findings.where
     record.open = open_
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
-    return Comparison(scene, record, found.solutions)
+    return Comparison(scene, record, findings.solutions)
 
 
 @dataclass
-class _Found:
-    """Findings of a comparison so far; an interrupt leaves it whole."""
+class _Findings:
+    """Findings of a comparison so far; an interrupt leaves them whole."""
 
-    solutions: dict[str, Solution]
-    failed: dict[str, str]
-    causes: list[CauseRecord]
-    lumped: dict[str, LumpedRecord]
-    guards: list[GuardRecord]
+    solutions: dict[str, Solution] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)
+    causes: list[CauseRecord] = field(default_factory=list)
+    lumped: dict[str, LumpedRecord] = field(default_factory=dict)
+    guards: list[GuardRecord] = field(default_factory=list)
     where: WhereRecord | None = None
 
 
-def _run(scene: Scene, models, options, found: _Found, progress: Progress) -> None:
+def _run(scene: Scene, models, options, findings: _Findings, progress: Progress) -> None:
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
-    # who names models is told why one does not fit
-    known = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
-    for model in (m for m in known if m in models):
+    # a model that was named is reported where it does not fit
+    bodies = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
+    for model in (m for m in bodies if m in models):
         try:
-            chosen = _circumference(scene, model, options[model], found)
+            chosen = _circumference(scene, model, options[model], findings)
             # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose
             # modes are paired with its own.
-            counted = not _after_a_solid(model, found.solutions)
+            counted = not _after_a_solid(model, findings.solutions)
             solution = study(
                 scene,
                 model,
                 chosen,
                 counted=counted,
                 progress=progress,
-                keep=functools.partial(found.solutions.__setitem__, model),
+                keep=functools.partial(findings.solutions.__setitem__, model),
             )
         except (SolidgearError, MemoryError) as error:
-            found.failed[model] = str(error) or "not enough memory"
-            log.warning("%s failed: %s", model, found.failed[model])
+            findings.failed[model] = str(error) or "not enough memory"
+            log.warning("%s failed: %s", model, findings.failed[model])
             continue
-        found.solutions[model] = solution
-        # A dearer solid's lumped models are those of the cheaper one within the bars, at ten times
+        findings.solutions[model] = solution
+        # A dearer solid's lumped models are those of the cheaper one within error bars, at ten times
         # the price.
-        if lumped and not _after_a_solid(model, found.lumped):
+        if lumped and not _after_a_solid(model, findings.lumped):
             progress(f"lumped: synthesis from {model}")
-            found.lumped |= synthesise_all(scene, {model: solution}, log.info)
+            findings.lumped |= synthesise_all(scene, {model: solution}, log.info)
         # Factors are the largest thing a body holds, and no further solution is needed.
         solution.body.cache.clear()
-    if found.solutions:
+    if findings.solutions:
         progress("guards")
-        found.guards = notices(scene, found.solutions)
-    if "harmonic" in found.solutions:
+        findings.guards = notices(scene, findings.solutions)
+    if "harmonic" in findings.solutions:
         progress("where the error sits")
-        found.where = recorded_places(scene, found.solutions["harmonic"])
-    found.causes = _causes(scene, found.solutions, options, progress)
+        findings.where = recorded_places(scene, findings.solutions["harmonic"])
+    findings.causes = _causes(scene, findings.solutions, options, progress)
 
 
 def _after_a_solid(model: str, done: Collection[str]) -> bool:
-    """Tell whether a model is a solid and another one is done."""
+    """Return True where a model is a solid and another solid is done."""
     solids = LADDER.of(SOLID)
     return model in solids and any(s in done for s in solids if s != model)
 
 
-def _circumference(scene: Scene, model: str, options: dict, found: _Found) -> dict:
-    """Options of a model that divides the circumference into cells, with as many as the modes need
-    that the harmonic solid found in the range asked for.
+def _circumference(scene: Scene, model: str, options: dict, findings: _Findings) -> dict:
+    """Return the options of a model that divides the circumference into cells, with as many cells
+    as the modes need that the harmonic solid found in the range asked for.
     """
-    harmonic = found.solutions.get("harmonic")
+    harmonic = findings.solutions.get("harmonic")
     if "around" not in LADDER[model].options or harmonic is None or "around" in options:
         return options
-    waves = max(
-        (
-            r["n"]
-            for r in harmonic.modes.evidence.get("families", [])
-            if (r["n"] or 0) > 1 and r["modes_below"]
-        ),
-        default=1,
-    )
+    families = harmonic.modes.evidence.get("families", [])
+    ovalising = [row["n"] for row in families if (row["n"] or 0) > 1 and row["modes_below"]]
+    waves = max(ovalising, default=1)
     if waves < 2:
         return options
-
     return {**options, "around": cells_around(scene, waves)}
 
 
 def check_models(models: tuple[str, ...]) -> None:
-    """Refuse unknown models, and the lumped one alone, in one sentence."""
+    """Refuse unknown models, and the lumped model alone, in one sentence."""
     unknown = [m for m in models if m not in LADDER]
     if unknown or not set(models) & set(LADDER.bodies):
         raise SolidgearError(
@@ -296,20 +297,18 @@ def _causes(scene: Scene, solutions: dict[str, Solution], options, progress: Pro
             out += beam_causes(scene)
         for model in LADDER.of(SOLID):
             if model in solutions:
-                out += attachment_causes(
-                    {a: v.quantities for a, v in solutions[model].variants.items()}, model
-                )
+                variants = solutions[model].variants.items()
+                out += attachment_causes({a: v.quantities for a, v in variants}, model)
         harmonic, beam = solutions.get("harmonic"), solutions.get("timoshenko")
         if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
-            section, own = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
-            gap = {name: change(own, section, name) for name in SHOWN}
-            mesh = (
-                {k: v for k, v in harmonic.options.items() if k not in FREE}
-                if options["harmonic"]
-                else HARMONIC
-            )
-            found = shoulder_cause(scene, gap, mesh, progress)
-            out += [found] if found else []
+            solid, timoshenko = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
+            gap = {name: change(timoshenko, solid, name) for name in SHOWN}
+            mesh = HARMONIC
+            if options["harmonic"]:
+                mesh = {k: v for k, v in harmonic.options.items() if k not in FREE}
+            cause = shoulder_cause(scene, gap, mesh, progress)
+            if cause:
+                out.append(cause)
     except SolidgearError as error:
         log.warning("causes left out: %s", error)
     return out

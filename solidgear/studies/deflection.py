@@ -1,9 +1,9 @@
-"""A shaft at rest under load: where it goes, what its bearings carry, and how each carries it."""
+"""A shaft at rest under load: its deflection line, and the load and stiffness of its bearings."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,9 +27,9 @@ from solidgear.system.system import System
 STATIONS = 81
 #: models of a shaft, the cheapest first
 MODELS = ("euler", "timoshenko", LADDER.judges[0])
-#: the one part of a system that is one shaft
+#: name of the shaft in a system of one
 SHAFT = "shaft"
-#: modes kept of a body whose statics alone are asked for
+#: modes kept of a body for statics
 FEW = 6
 #: why numbers have no error bar
 WITHOUT_BAR = "each model is solved on its usual mesh alone; solidgear stiffness shows error bars"
@@ -39,17 +39,16 @@ FIRM = 1e15
 
 @dataclass(frozen=True, eq=False)
 class BearingState:
-    """A bearing and what it carries."""
+    """A bearing under load; without catalogue data it has no clearance, rows or life."""
 
     name: str
     place: float  #: along the shaft, m
-    load: np.ndarray  #: (6,) of the shaft on it, N and N m
-    relative: np.ndarray  #: (6,) motion of its inner ring against the outer one, m and rad
-    stiffness: np.ndarray  #: (6, 6) tangent at that point
-    clearance: float | None  #: radial, at work, m; None of a bearing without catalogue data
-    #: loads of rolling elements, row by row; none without catalogue data
-    rows: tuple[Contacts, ...]
-    life: Life | None  #: with its static safety; None without catalogue data
+    load: np.ndarray  #: (6,) load of the shaft on it, N and N m
+    relative: np.ndarray  #: (6,) motion of the inner ring against the outer ring, m and rad
+    stiffness: np.ndarray  #: (6, 6) tangent at that motion
+    clearance: float | None = None  #: radial, at work, m
+    rows: tuple[Contacts, ...] = ()  #: loads of rolling elements, row by row
+    life: Life | None = None  #: with its static safety
 
     @property
     def radial(self) -> float:
@@ -68,7 +67,7 @@ class BearingState:
 
     @property
     def loaded(self) -> tuple[int, ...]:
-        """Rolling elements that carry, row by row."""
+        """Number of loaded rolling elements, row by row."""
         return tuple(int((row.load > 0).sum()) for row in self.rows)
 
     @property
@@ -80,7 +79,7 @@ class BearingState:
         return float(max(max(np.nanmax(row.inner), np.nanmax(row.outer)) for row in loaded))
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI that JSON can hold."""
         return {
             "name": self.name,
             "place": self.place,
@@ -106,7 +105,7 @@ class BearingState:
 
 
 def _finite(value: float) -> float | None:
-    """A number for JSON, which has none that is infinite."""
+    """Return a number, or None where it is infinite, which JSON cannot hold."""
     return value if np.isfinite(value) else None
 
 
@@ -116,7 +115,7 @@ class ShaftDeflection:
 
     name: str
     model: str
-    stations: np.ndarray  #: (s,) along the shaft, m; empty of a model without a body
+    stations: np.ndarray  #: (s,) along the shaft, m
     line: np.ndarray  #: (s, 6) motions of cross-sections there (mean, weighted by mass), m and rad
     ports: dict[str, np.ndarray]  #: motions of lumped points, bearings and other stations
     bearings: tuple[BearingState, ...]
@@ -124,11 +123,15 @@ class ShaftDeflection:
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on bearings beyond what they are rated for."""
-        told = [(b.name, note) for b in self.bearings if b.life for note in b.life.notes]
-        return tuple(f"bearing {self.name}.{name}: {note}" for name, note in told)
+        lives = [(bearing.name, bearing.life) for bearing in self.bearings if bearing.life]
+        return tuple(
+            f"bearing {self.name}.{name}: {note}"
+            for name, bearing_life in lives
+            for note in bearing_life.notes
+        )
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI that JSON can hold."""
         return {
             "name": self.name,
             "model": self.model,
@@ -148,7 +151,7 @@ class SceneDeflection:
     shafts: tuple[ShaftDeflection, ...]  #: one a model, the finest last
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI that JSON can hold."""
         return {
             "scene": self.title,
             "load": self.load.tolist(),
@@ -162,14 +165,14 @@ def deflect_scene(
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
 ) -> SceneDeflection:
-    """Deflection of a shaft under the [load] of its scene, by several models, the finest last;
-    bearings of catalogue data need no stiffness yet.
+    """Compute the deflection of a shaft under the [load] of its scene, by several models, the finest
+    last; bearings of catalogue data need no stiffness yet.
 
     Examples
     --------
     >>> import solidgear as sg
-    >>> found = deflect_scene(sg.load("geometry/gearbox_catalogue.toml"), ["timoshenko"])
-    >>> round(sum(float(b.load[2]) for b in found.shafts[0].bearings), 6)
+    >>> deflection = deflect_scene(sg.load("geometry/gearbox_catalogue.toml"), ["timoshenko"])
+    >>> round(sum(float(b.load[2]) for b in deflection.shafts[0].bearings), 6)
     1400.0
     """
     load, shafts = load_of(scene), []
@@ -180,7 +183,7 @@ def deflect_scene(
 
 
 def load_of(scene: Scene) -> np.ndarray:
-    """Load (6,) at the lumped point of a scene, N and N m; a scene without load is refused."""
+    """Return the load (6,) at the lumped point of a scene, N and N m; refuse a scene without load."""
     if scene.load is None:
         raise SolidgearError(
             'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
@@ -199,29 +202,32 @@ class ShaftAtRest:
         self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
 
     def settled(self, choice: Choice = AS_TOLD) -> ShaftDeflection:
-        """Deflection with the bearings at a place in the ranges of their data; a shaft that nothing
-        holds is refused.
+        """Compute the deflection with the bearings at a choice in the ranges of their data; refuse
+        a shaft that nothing holds.
         """
-        made = {f"{SHAFT}.{name}": one for name, one in made_of(self.scene, choice).items()}
-        held = OnBearings(self.system, (seats_of(SHAFT, self.scene, made),))
-        found = held.equilibrium(self.load)
-        return shaft_deflection(SHAFT, self.model, self.scene, self.system, found, self.body, made)
+        bearings = {f"{SHAFT}.{name}": rows for name, rows in made_of(self.scene, choice).items()}
+        supported = OnBearings(self.system, (seats_of(SHAFT, self.scene, bearings),))
+        state = supported.equilibrium(self.load)
+        return shaft_deflection(
+            SHAFT, self.model, self.scene, self.system, state, self.body, bearings
+        )
 
 
 def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
-    """Bearings of a shaft as a system rests on them, free stations left out; those of catalogue
-    data by ``part.name``.
+    """Return the bearings that a shaft rests on in a system, free stations left out; those of
+    catalogue data by ``part.name``.
     """
-    own = {b.name: made[f"{part}.{b.name}"] for b in scene.bearings if b.catalogue is not None}
+    catalogued = [b.name for b in scene.bearings if b.catalogue is not None]
+    by_name = {name: made[f"{part}.{name}"] for name in catalogued}
     firm = scene.with_changes(bearings=tuple(map(_firm, scene.bearings)))
-    holding = [one for one in mounted(firm, own) if _holds(one)]
+    holding = tuple(bearing for bearing in mounted(firm, by_name) if _holds(bearing))
     places = {b.name: b.y for b in scene.bearings}
-    around = scene.housing or scene.housing_axial
-    return Seats(part, tuple(holding), tuple(places[one.port] for one in holding), around)
+    housing = scene.housing or scene.housing_axial
+    return Seats(part, holding, tuple(places[bearing.port] for bearing in holding), housing)
 
 
 def _firm(bearing: Bearing) -> Bearing:
-    """A held seat with springs that Newton's search resolves beside those of the shaft."""
+    """Return a held seat with springs that Newton's search resolves beside those of the shaft."""
     if bearing.hold is None:
         return bearing
     return bearing.with_changes(
@@ -229,9 +235,9 @@ def _firm(bearing: Bearing) -> Bearing:
     )
 
 
-def _holds(one: Mounted) -> bool:
-    """False for a free station, whose stiffness is zero."""
-    stiffness = getattr(one.bearing, "stiffness", None)
+def _holds(seat: Mounted) -> bool:
+    """Return False for a free station, whose stiffness is zero."""
+    stiffness = getattr(seat.bearing, "stiffness", None)
     return stiffness is None or bool(np.any(stiffness))
 
 
@@ -240,32 +246,33 @@ def shaft_deflection(
     model: str,
     scene: Scene,
     system: System,
-    found: SystemEquilibrium,
+    state: SystemEquilibrium,
     body: Body | None,
     made: Mapping[str, Catalogued],
     against: np.ndarray | None = None,
 ) -> ShaftDeflection:
-    """Deflection of one part of a system at rest.
+    """Compute the deflection of one part of a system at rest.
 
-    Its `body` is None of a rigid one, whose line has its two ends; `against` (6,) is the motion of
-    what it stands in, at the start of the shaft, that its line is told against.
+    A rigid part has no `body`, and a line of its two ends; `against` (6,) is the motion, at the start
+    of the shaft, of the housing that its line is relative to.
     """
     ports = {
-        station.name: system.motion(f"{part}.{station.name}") @ found.coordinates
+        station.name: system.motion(f"{part}.{station.name}") @ state.coordinates
         for station in scene.stations
     }
     bearings = tuple(
-        _bearing(f"{part}.{b.name}", b, found, made)
+        _bearing(f"{part}.{b.name}", b, state, made)
         for b in scene.bearings
-        if f"{part}.{b.name}" in found.load
+        if f"{part}.{b.name}" in state.load
     )
     if body is None:
         stations = np.array([0.0, scene.length])
-        line = _rigid_line(system, part, scene, found.coordinates, stations)
+        motion = system.motion(f"{part}.{scene.port.name}") @ state.coordinates
+        line = np.array([shift((0.0, y - scene.port.y, 0.0)) @ motion for y in stations])
     else:
-        known = body.cache.get(_Sections, lambda: _sections(body, scene.length))
-        stations = known.stations
-        line = known.project(system.expand(part, found.coordinates))
+        sections = body.cache.get(_Sections, lambda: _sections(body, scene.length))
+        stations = sections.stations
+        line = sections.project(system.expand(part, state.coordinates))
     if against is not None:
         line = line - np.array([shift((0.0, y, 0.0)) @ against for y in stations])
     return ShaftDeflection(part, model, stations, line, ports, bearings)
@@ -273,35 +280,39 @@ def shaft_deflection(
 
 @dataclass(frozen=True)
 class _Sections:
-    """Places of the deflection line of a body, m, and what finds the motions of sections there."""
+    """Sections of the deflection line of a body."""
 
-    stations: np.ndarray
-    project: Projection
+    stations: np.ndarray  #: m
+    project: Projection  #: of the body's displacement on the motions of sections
 
 
 def _sections(body: Body, length: float) -> _Sections:
-    """Sections of a line: at the nodes of a beam, between which they would be guessed."""
+    """Return the sections of a line: those at the nodes of a beam, between which they would be
+    guessed.
+    """
     stations = np.linspace(0.0, length, STATIONS)
     if all(block.sections is None for block in body.blocks):
         stations = np.unique(min((block.y for block in body.blocks), key=len))
     return _Sections(stations, Projection(body, stations))
 
 
-def _rigid_line(
-    system: System, part: str, scene: Scene, coordinates: np.ndarray, stations: np.ndarray
-) -> np.ndarray:
-    """(s, 6) motions along a rigid shaft."""
-    motion = system.motion(f"{part}.{scene.port.name}") @ coordinates
-    return np.array([shift((0.0, y - scene.port.y, 0.0)) @ motion for y in stations])
-
-
 def _bearing(
-    end: str, bearing: Bearing, found: SystemEquilibrium, made: Mapping[str, Catalogued]
+    end: str, bearing: Bearing, state: SystemEquilibrium, made: Mapping[str, Catalogued]
 ) -> BearingState:
-    own, data = made.get(end), bearing.catalogue
-    relative = found.relative[end]
-    told = bearing.name, bearing.y, found.load[end], relative, found.tangent[end]
-    if own is None or data is None:
-        return BearingState(*told, None, (), None)
-    rows = own.bearing.contacts(relative)
-    return BearingState(*told, own.clearance, rows, life(data, own, relative))
+    relative = state.relative[end]
+    plain = BearingState(
+        name=bearing.name,
+        place=bearing.y,
+        load=state.load[end],
+        relative=relative,
+        stiffness=state.tangent[end],
+    )
+    rows, data = made.get(end), bearing.catalogue
+    if rows is None or data is None:
+        return plain
+    return replace(
+        plain,
+        clearance=rows.clearance,
+        rows=rows.bearing.contacts(relative),
+        life=life(data, rows, relative),
+    )

@@ -30,8 +30,8 @@ def elastic_ring(
 
     Teeth push on a pitch of the inner surface each.  Harmonics n = 0 and 1 follow the port of the
     scene, which is ``centre``; harmonics from 2 on are the ring's own waves.  Bearings of the scene
-    are left out: what holds the ring is told to the stage and holds its centre, so that waves are
-    those of a free rim.
+    are left out: the stage states the support of the ring, which holds its centre, so that waves
+    are those of a free rim.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def elastic_ring(
     waves : sequence of int
         From 2 on.
     **options
-        Of the harmonic model, such as ``order``.
+        Options of the harmonic model, such as ``order``.
 
     Returns
     -------
@@ -93,8 +93,8 @@ def elastic_ring(
     part = rubin(body, ports=[name])
     for k, azimuth in enumerate(teeth.azimuths, 1):
         # angles of patches count from z, azimuths from x
-        there = replace(patch, angle=azimuth + np.pi / 2)
+        planet_patch = replace(patch, angle=azimuth + np.pi / 2)
         point = rotation(1, azimuth)[:3, 0] * teeth.module * teeth.ring / 2
-        part = with_waves(part, body, name, point[:3], there.axes, rows, f"planet {k}")
-    ports = {"centre" if port == name else port: own for port, own in part.ports.items()}
+        part = with_waves(part, body, name, point[:3], planet_patch.axes, rows, f"planet {k}")
+    ports = {"centre" if key == name else key: port for key, port in part.ports.items()}
     return Placed(replace(part, ports=ports), origin=np.array([0.0, -y, 0.0]))

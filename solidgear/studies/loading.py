@@ -1,7 +1,7 @@
-"""Reading a scene: catalogue bearings get their stiffness at their load.
+"""Reading of scene and train files: catalogue bearings get their stiffness at their load.
 
-A scene file is data, and stays so: :mod:`solidgear.scene` reads it, and what a bearing's catalogue
-data mean is worked out here, once, so that all that follows sees a 6x6 like any other.
+:mod:`solidgear.scene` reads a file as data; here the catalogue data of bearings become a 6x6 once,
+as for any other bearing.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from solidgear.scene.recognised import Recognised
     from solidgear.scene.train import Train
 
-#: model on which bearings and shaft find their equilibrium: loads in a shaft hang little on how its
-#: shoulders are modelled
+#: model on which bearings and shaft find their equilibrium: loads in a shaft depend little on how
+#: its shoulders are modelled
 SHAFT = "timoshenko"
 
 
@@ -61,16 +61,16 @@ def load(path: str | os.PathLike) -> Scene:
 
 
 def as_written(path: str | os.PathLike) -> Scene:
-    """A scene file as it is written: catalogue bearings without their stiffness, the part of a [body]
-    read; errors as of :func:`load`.
+    """Read a scene file as it is written: catalogue bearings without their stiffness, the part of a
+    [body] read; errors as of :func:`load`.
     """
     return file.load(path, part_of)
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
-    """Scene that tables of a file describe, what they name relative to its path; errors as of
-    :func:`load`. Catalogue bearings settle at the load of the scene where it is `alone`, and not
-    with a train.
+    """Return the scene that tables of a file describe, with names of files relative to its path;
+    errors as of :func:`load`. Catalogue bearings settle at the load of the scene where it is
+    `alone`, and not with a train.
     """
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
@@ -111,11 +111,11 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
     """
     from solidgear.scene import train_file  # start-up: not every file needs it
 
-    def shaft(side: str, of: Path, alone: bool) -> Scene:
-        """Scene of a shaft: settled by itself, or to be settled with its train."""
-        return load(of) if alone and point is None else as_written(of)
+    def scene(side: str, file: Path, alone: bool) -> Scene:
+        # one that is not settled by itself settles with its train
+        return load(file) if alone and point is None else as_written(file)
 
-    train = train_file.load_train(path, shaft)
+    train = train_file.load_train(path, scene)
     if point is None and not train.operation:
         return train
     from solidgear.studies.train.operation import at_point  # start-up: not every file needs it
@@ -125,7 +125,7 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
 
 
 def part_of(table: BodyTable, folder: Path) -> Recognised:
-    """The part that a scene file names; read apart from scenes that have none."""
+    """Read the part that a scene file names."""
     from solidgear.meshing.part import recognise  # start-up: not every file needs it
 
     return recognise(table, folder)
@@ -133,21 +133,22 @@ def part_of(table: BodyTable, folder: Path) -> Recognised:
 
 @contextmanager
 def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Errors told with the file, the key and the value they come from; tables are those of the file
-    where some of them have been changed, or it is none of tables.
+    """Raise errors anew with the file, the key and the value they come from; tables are those of
+    the file where some of them have been changed.
     """
     try:
         yield
     except SceneError as error:
-        where = os.fspath(path)
-        known = parse(where) if tables is None else tables
-        raise error.located(known, where=place_of(where)) from None
+        written = parse(os.fspath(path)) if tables is None else tables
+        raise error.located(written, where=place_of(os.fspath(path))) from None
     except SolidgearError as error:
         raise SceneError(str(error), where=place_of(os.fspath(path))) from None
 
 
 def shaft(scene: Scene) -> Body | None:
-    """Body on which bearings settle, or None where none of them waits for the shaft's load."""
+    """Return the body on which bearings settle, or None where no bearing waits for the load of the
+    shaft.
+    """
     from solidgear.bearings.solved import wants_equilibrium  # start-up: not every file needs it
 
     if not wants_equilibrium(scene):

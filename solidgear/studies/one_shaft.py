@@ -1,4 +1,4 @@
-"""One shaft by the cheapest solid that is sure enough: its numbers and modes, each with its bar."""
+"""One shaft by the cheapest solid that is sure enough: numbers and modes with their error bars."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, eq=False)
 class OneShaft(Side):
-    """A shaft, solved with bars."""
+    """A shaft, solved with error bars."""
 
     scene: Scene
     settled: Settled
     values: Values  #: SI
     modes: ModeSet
     bars: dict[str, float]  #: relative, of quantities and modes
-    mass: float  #: of the shaft without what sits on it, kg
-    mass_bar: float | None  #: relative; that of rounding where it has a closed form, None elsewhere
+    mass: float  #: of the shaft without masses on it, kg
+    mass_bar: float | None  #: relative; rounding for a closed form, else None
 
     @property
     def title(self) -> str:
@@ -43,12 +43,12 @@ class OneShaft(Side):
         return self.scene.title or self.scene.name
 
     def bar(self, name: Quantity) -> float | None:
-        """Bar of a quantity in its own unit; None where nothing is known."""
+        """Return the error bar of a quantity in its unit; None where nothing is known."""
         width = self.settled.bars.get(name, math.inf) * size(self.values, name)
         return width if math.isfinite(width) else None
 
     def seen(self, mode: Mode) -> BarredMode:
-        """A mode with its bar."""
+        """Return a mode with its error bar."""
         bar = self.bars.get(mode.name, math.inf)
         return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
 
@@ -62,8 +62,8 @@ def one_shaft(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> OneShaft:
-    """A shaft by the cheapest solid whose bars are within a relative tolerance, with the numbers of
-    further lumped points; `before` as of :func:`solidgear.judge.settle.settle`.
+    """Solve a shaft by the cheapest solid whose error bars are within a relative tolerance, with
+    numbers of further lumped points; `before` as in :func:`solidgear.judge.settle.settle`.
     """
 
     def say(text: str) -> None:
@@ -72,7 +72,7 @@ def one_shaft(
     settled = settle(scene, tol, points=points, before=before, progress=say)
     body = settled.body
     say("statics and modes")
-    found = answered(
+    solution = answered(
         body,
         as_supports(scene),
         [scene.port.name, *points],
@@ -83,21 +83,30 @@ def one_shaft(
         spare=True,
     )
     say("how sure its frequencies are")
-    bars = bars_of_modes(scene, body, found.modes.whole, settled)
-    for asked in (q for q in settled.bars if q.is_frequency):
+    bars = bars_of_modes(scene, body, solution.modes.whole, settled)
+    for quantity in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
-        mode = found.modes.named(asked)
+        mode = solution.modes.named(quantity)
         if mode is not None:
-            bars.setdefault(str(mode.name), settled.bars[asked])
-    mass, exact = mass_of(scene, body)
-    said = tuple(cautions(scene, body))
-    numbers = found.quantities, found.modes, bars
-    return OneShaft(letter, name, said, scene, settled, *numbers, mass, exact)
+            bars.setdefault(str(mode.name), settled.bars[quantity])
+    mass, mass_bar = mass_of(scene, body)
+    return OneShaft(
+        letter=letter,
+        name=name,
+        cautions=tuple(cautions(scene, body)),
+        scene=scene,
+        settled=settled,
+        values=solution.quantities,
+        modes=solution.modes,
+        bars=bars,
+        mass=mass,
+        mass_bar=mass_bar,
+    )
 
 
 def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:
-    """Mass of a shaft without what sits on it, kg, and its relative bar: that of rounding where the
-    mass has a closed form, None where it is that of a mesh.
+    """Compute the mass of a shaft without masses on it, kg, and its relative error bar: rounding
+    where the mass has a closed form, None where it is that of a mesh.
     """
     if body.mesh.get("round", True):
         return mass_properties(scene.outline).mass, ROUNDING

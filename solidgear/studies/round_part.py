@@ -24,7 +24,7 @@ ROUND_MODEL = "harmonic"
 
 
 def described(scene: Scene) -> Iterator[Notice]:
-    """Round portion of the part of a scene."""
+    """Yield notices on the body of revolution inside the part of a scene."""
     body = scene.body
     if body is None:
         return
@@ -47,18 +47,21 @@ def described(scene: Scene) -> Iterator[Notice]:
         )
     several = len(scene.segments) > 1
     segments = f"{len(scene.segments)} segments are" if several else "1 segment is"
+    noun = "segments" if several else "segment"
     yield Notice(
         "fact",
         (),
         f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {segments} the round part: "
         f"{100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
-        f"is of revolution, and the volume of the segment{'s' * several} is {same}",
+        f"is of revolution, and the volume of the {noun} is {same}",
     )
     yield from of_files(scene)
 
 
 def of_files(scene: Scene) -> Iterator[Notice]:
-    """Materials of a part, doubts about its files, and that a single mesh is not judged."""
+    """Yield notices on the materials of a part, doubts about its files, and a single mesh, which is
+    not judged.
+    """
     body = scene.body
     assert body is not None  # asked of parts
     yield from _of_materials(scene)
@@ -68,19 +71,19 @@ def of_files(scene: Scene) -> Iterator[Notice]:
         finer = "" if body.edges else "; a STEP file would be meshed coarse to fine"
         yield Notice(
             "caution",
-            tuple(r.name for r in LADDER if PARTS in r.holds),
+            tuple(model.name for model in LADDER if PARTS in model.holds),
             f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
             f'judged{finer}; mesh = ["coarser", "finer"] of the [body] judges two',
         )
 
 
 def _of_materials(scene: Scene) -> Iterator[Notice]:
-    """Materials of the part, and what its round part makes of them."""
+    """Yield notices on the materials of a part, and on the mean material of its round part."""
     body = scene.body
     assert body is not None  # asked of parts
     if not body.groups:
         return
-    told = [
+    labels = [
         f"{group.label} {1e6 * group.volume:.6g} cm^3, {material.density * group.volume:.6g} kg, "
         f"E {material.E / 1e9:.6g} GPa"
         for group, material in zip(body.groups, body.materials(scene.material))
@@ -88,7 +91,7 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"{body.name} by materials: {'; '.join(told)}; {body.mass(scene.material):.6g} kg in all",
+        f"{body.name} by materials: {'; '.join(labels)}; {body.mass(scene.material):.6g} kg in all",
     )
     if body.mixed:
         yield Notice(
@@ -103,28 +106,28 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
 def against_the_part(
     scene: Scene, solutions: dict[str, Solution], probe: Probe
 ) -> Iterator[Notice]:
-    """The light harmonic solid of the round part, of which the probe is, against the solids of the
-    part itself.
+    """Yield notices that compare the light harmonic solid of the round part, which is that of the
+    probe, with the solids of the part itself.
     """
     if scene.body is None or scene.body.round:
         return
     names, tolerance = judged(scene), scene.ask.tolerance
-    of_mean = ", with one mean material across," if scene.body.mixed else ""
+    mean_material = ", with one mean material across," if scene.body.mixed else ""
     for model in (m for m in LADDER.of(SOLID) if m in solutions and PARTS in LADDER[m].holds):
-        mine, theirs = probe.solution(ROUND_MODEL), solutions[model]
-        told, verdicts = [], []
+        round_solution, solution = probe.solution(ROUND_MODEL), solutions[model]
+        labels, verdicts = [], []
         for name in names:
-            gap = change(mine.quantities, theirs.quantities, name)
+            gap = change(round_solution.quantities, solution.quantities, name)
             if gap is None:
                 continue
-            bars = [r.error_bars.get(SCENE, {}).get(name) for r in (mine, theirs)]
+            bars = [r.error_bars.get(SCENE, {}).get(name) for r in (round_solution, solution)]
             bar = sum(b.width for b in bars if b is not None)
-            told.append(
-                f"{name} {mine.quantities[name]:.5g} {name.unit} ({'+' if gap > 0 else ''}{percent(gap)}"
+            labels.append(
+                f"{name} {round_solution.quantities[name]:.5g} {name.unit} ({'+' if gap > 0 else ''}{percent(gap)}"
                 + (f" +- {percent(bar)})" if all(bars) else ", part without an error bar)")
             )
             verdicts.append(gap_verdict(gap, bar, tolerance))
-        if not told:
+        if not labels:
             continue
         if all(v == WITHIN for v in verdicts):
             words = (
@@ -138,6 +141,6 @@ def against_the_part(
         yield Notice(
             "caution",
             (model,),
-            f"the round part of {scene.body.name} alone{of_mean}, as {LADDER[ROUND_MODEL].title}, has "
-            f"{', '.join(told)} against the {LADDER[model].title} of the part; {words}",
+            f"the round part of {scene.body.name} alone{mean_material}, as {LADDER[ROUND_MODEL].title}, has "
+            f"{', '.join(labels)} against the {LADDER[model].title} of the part; {words}",
         )

@@ -31,12 +31,10 @@ class Spectrum:
     """A measured spectrum."""
 
     name: str  #: of the file
-    #: what, unit: of the amplitude, as the first line of the file says; empty without one
-    what: str
-    unit: str
-    #: frequency_hz, amplitude: (n,) frequencies ascend
-    frequency_hz: np.ndarray
-    amplitude: np.ndarray
+    what: str  #: name of the amplitude in the first line of the file; empty without one
+    unit: str  #: of the amplitude, from the same line
+    frequency_hz: np.ndarray  #: (n,) ascending
+    amplitude: np.ndarray  #: (n,)
 
     @property
     def in_decibels(self) -> bool:
@@ -45,21 +43,20 @@ class Spectrum:
 
     @property
     def level(self) -> np.ndarray:
-        """(n,) amplitude in dB; zeros lie 200 dB below the largest."""
+        """Amplitude (n,) in dB; zeros lie 200 dB below the largest."""
         if self.in_decibels:
             return self.amplitude
         return 20 * np.log10(np.maximum(self.amplitude, 1e-10 * self.amplitude.max()))
 
     @property
     def resolution_hz(self) -> np.ndarray:
-        """(n,) distance of every line to its farther neighbour, Hz."""
+        """Distance (n,) of every line to its farther neighbour, Hz."""
         gaps = np.diff(self.frequency_hz)
         return np.maximum(np.append(gaps[0], gaps), np.append(gaps, gaps[-1]))
 
     def peaks(self) -> list[tuple[float, float, float]]:
-        """Frequency, amplitude and resolution of every peak that stands out, by frequency.
-
-        Of even lines the frequency is that of the parabola through three levels.
+        """Return frequency, amplitude and resolution of every peak that stands out, by frequency; of even
+        lines the frequency is that of the parabola through three levels.
 
         Examples
         --------
@@ -91,43 +88,34 @@ def read_spectrum(path: str | os.PathLike) -> Spectrum:
     names and units such as ``frequency [Hz], acceleration [m/s^2]``, or without one.
 
     Columns are parted by a comma, a semicolon, a tab or blanks; further columns are not read, nor
-    lines that begin with ``#``.
-
-    Parameters
-    ----------
-    path : str or path
-
-    Raises
-    ------
-    SolidgearError
-        A file that cannot be read, no numbers, a first column that is not in Hz, frequencies that
-        do not ascend, or negative amplitudes that are no levels in dB.
+    lines that begin with ``#``.  A first column that is not in Hz, frequencies that do not ascend,
+    and negative amplitudes that are no levels in dB are refused.
     """
-    where = os.fspath(path)
+    file = os.fspath(path)
     try:
         if os.path.getsize(path) > MOST_BYTES:
-            raise SolidgearError(f"{where}: larger than {MOST_BYTES:g} bytes; is it a spectrum?")
+            raise SolidgearError(f"{file}: larger than {MOST_BYTES:g} bytes; is it a spectrum?")
         text = Path(path).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        said = getattr(error, "strerror", None) or "not a text in UTF-8"
-        raise SolidgearError(f"{where}: the spectrum cannot be read: {said}") from None
+        reason = getattr(error, "strerror", None) or "not a text in UTF-8"
+        raise SolidgearError(f"{file}: the spectrum cannot be read: {reason}") from None
     rows = list(_rows(text))
-    what = unit = ""
+    quantity = unit = ""
     if rows and not _is_number(rows[0][1][0]):
-        what, unit = _header(rows.pop(0)[1], where)
+        quantity, unit = _header(rows.pop(0)[1], file)
     if len(rows) < FEWEST_LINES:
         raise SolidgearError(
-            f"{where}: {len(rows)} lines of numbers are no spectrum; give {FEWEST_LINES} or more, "
+            f"{file}: {len(rows)} lines of numbers are no spectrum; give {FEWEST_LINES} or more, "
             "frequency in Hz and amplitude"
         )
-    values = np.array([_pair(cells, line, where) for line, cells in rows[:MOST_LINES]])
-    found = Spectrum(Path(where).name, what, unit, values[:, 0], values[:, 1])
-    _refuse(found, [line for line, _ in rows], where)
-    return found
+    values = np.array([_pair(cells, line, file) for line, cells in rows[:MOST_LINES]])
+    spectrum = Spectrum(Path(file).name, quantity, unit, values[:, 0], values[:, 1])
+    _refuse(spectrum, [line for line, _ in rows], file)
+    return spectrum
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Number and cells of every line that says something."""
+    """Yield number and cells of every line with content."""
     for number, line in enumerate(text.splitlines(), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -149,13 +137,13 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _header(cells: list[str], where: str) -> tuple[str, str]:
-    """Name and unit of the amplitude; the frequency must be in Hz."""
+def _header(cells: list[str], file: str) -> tuple[str, str]:
+    """Return name and unit of the amplitude; the frequency must be in Hz."""
     unit = _UNIT.search(cells[0])
-    said = (unit.group(1) if unit else cells[0]).casefold()
-    if (unit and said != "hz") or any(word in said for word in _NO_FREQUENCY):
+    frequency_unit = (unit.group(1) if unit else cells[0]).casefold()
+    if (unit and frequency_unit != "hz") or any(word in frequency_unit for word in _NO_FREQUENCY):
         raise SolidgearError(
-            f"{where}: the first column is {show(cells[0], 40)}; it must be a frequency in Hz, such "
+            f"{file}: the first column is {show(cells[0], 40)}; it must be a frequency in Hz, such "
             'as "frequency [Hz]"'
         )
     if len(cells) < 2:
@@ -164,33 +152,33 @@ def _header(cells: list[str], where: str) -> tuple[str, str]:
     return _UNIT.sub("", cells[1]).strip(), unit.group(1) if unit else ""
 
 
-def _pair(cells: list[str], line: int, where: str) -> tuple[float, float]:
+def _pair(cells: list[str], line: int, file: str) -> tuple[float, float]:
     words = (cells + ["", ""])[:2]
     pair = tuple(float(word) if _is_number(word) else nan for word in words)
     if not all(map(isfinite, pair)):
         raise SolidgearError(
-            f"{where}: line {line} is {show(', '.join(cells), 60)}; it must hold two finite numbers, "
+            f"{file}: line {line} is {show(', '.join(cells), 60)}; it must hold two finite numbers, "
             "a frequency in Hz and an amplitude"
         )
     return pair[0], pair[1]
 
 
-def _refuse(found: Spectrum, lines: list[int], where: str) -> None:
-    hz, size = found.frequency_hz, found.amplitude
+def _refuse(spectrum: Spectrum, lines: list[int], file: str) -> None:
+    hz, size = spectrum.frequency_hz, spectrum.amplitude
     back = np.flatnonzero(np.diff(hz) <= 0)
     if back.size:
         k = int(back[0]) + 1
         raise SolidgearError(
-            f"{where}: line {lines[k]} goes from {hz[k - 1]:g} to {hz[k]:g} Hz; frequencies must "
+            f"{file}: line {lines[k]} goes from {hz[k - 1]:g} to {hz[k]:g} Hz; frequencies must "
             "ascend"
         )
     if hz[0] < 0:
-        raise SolidgearError(f"{where}: begins at {hz[0]:g} Hz; a frequency must not be negative")
-    if not found.in_decibels and size.min() < 0:
+        raise SolidgearError(f"{file}: begins at {hz[0]:g} Hz; a frequency must not be negative")
+    if not spectrum.in_decibels and size.min() < 0:
         k = int(size.argmin())
         raise SolidgearError(
-            f"{where}: line {lines[k]} has an amplitude of {size[k]:g}; amplitudes must not be "
+            f"{file}: line {lines[k]} has an amplitude of {size[k]:g}; amplitudes must not be "
             'negative, unless the first line says that they are levels, such as "level [dB]"'
         )
-    if not found.in_decibels and not size.max() > 0:
-        raise SolidgearError(f"{where}: all amplitudes are zero; nothing was measured")
+    if not spectrum.in_decibels and not size.max() > 0:
+        raise SolidgearError(f"{file}: all amplitudes are zero; nothing was measured")

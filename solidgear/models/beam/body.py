@@ -3,8 +3,8 @@
 A port is tied to the beam as the scene asks. ``section`` is the beam's own node. ``average`` is the
 area-weighted least-squares rigid motion of the seat's surface, which a beam moves section by
 section: with deflection w, turn th and radius r the port motion (d, ph) minimises, over the seat,
-``int [2 pi (w - d - ph (y - y0))^2 + pi r^2 (th - ph)^2] r ds``. What a beam lacks against a solid
-is then the distortion of sections and not the width of the seat. ``rigid`` lets the beam move as
+``int [2 pi (w - d - ph (y - y0))^2 + pi r^2 (th - ph)^2] r ds``. A beam then lacks against a solid
+the distortion of sections and not the width of the seat. ``rigid`` lets the beam move as
 one piece along the seat.
 """
 
@@ -28,7 +28,7 @@ from solidgear.models.beam.shoulder import Hinge, hinges
 from solidgear.models.spectrum import elastic_scale
 from solidgear.scene.attached import attached_stations
 
-# Shortest Euler element over the length of the shaft.
+#: shortest Euler element over the length of the shaft
 SHORTEST = 3e-4
 
 
@@ -44,18 +44,13 @@ def beam(
     shoulder: bool = False,
     attachments: tuple[str, ...] | None = None,
 ) -> Body:
-    """Free beam model of a scene, in four blocks (axial, torsion and the two bending planes); options as
-    in :data:`~solidgear.models.options.BEAM_OPTIONS`.
+    """Build the free beam model of a scene, in four blocks (axial, torsion and the two bending planes);
+    options as in :data:`~solidgear.models.options.BEAM_OPTIONS`.
 
     Cowper's shear coefficient is for comparison with older work, on solid sections only. There are
     eight elements to a diameter unless more are asked for. With ``shoulder`` steps of the outer radius
     are as soft as in the solid (:mod:`solidgear.models.beam.shoulder`), where a plain beam fills the
-    thick part with stress at once.
-
-    Raises
-    ------
-    SolidgearError
-        For Cowper's coefficient on a hollow shaft, or Euler elements below ``SHORTEST`` of the shaft.
+    thick part with stress at once. Euler elements below ``SHORTEST`` of the shaft are refused.
 
     Examples
     --------
@@ -85,7 +80,7 @@ def on_nodes(
     kappa: str,
     shoulder: bool,
 ) -> Body:
-    """The same with given nodes (m) and stations with their attachments."""
+    """Build the same with given nodes (m) and stations with their attachments."""
     n = len(nodes)
     if not shear:
         _long_enough(nodes)
@@ -93,46 +88,49 @@ def on_nodes(
     section = Section(elements, head, kappa)
     if shoulder:
         section.soften(*softening(nodes, hinges(scene.segments)))
-    made = matrices(section, shear, rotary_inertia, mass)
-    at = unknowns(made, n)
-    size = {name: int(places.max()) + 1 for name, places in at.items()}
+    by_family = matrices(section, shear, rotary_inertia, mass)
+    dofs = unknowns(by_family, n)
+    size = {name: int(places.max()) + 1 for name, places in dofs.items()}
     k, m = {}, {}
-    for name, (stiff, heavy, _) in made.items():
-        k[name], m[name] = (_sum(one, at[name], size[name]) for one in (stiff, heavy))
+    for name, (stiff, heavy, _) in by_family.items():
+        k[name], m[name] = (_sum(matrix, dofs[name], size[name]) for matrix in (stiff, heavy))
     ports = tuple(Port(s.name, s.y, a) for s, a in wanted)
-    one, zero = np.ones(n), np.zeros(n)
+    ones, zero = np.ones(n), np.zeros(n)
     lift = np.column_stack(
-        [np.column_stack([one, zero]).ravel(), np.column_stack([nodes, one]).ravel()]
+        [np.column_stack([ones, zero]).ravel(), np.column_stack([nodes, ones]).ravel()]
     )
     lift = np.vstack([lift, np.zeros((size["bending"] - 2 * n, 2))])
     y2 = np.concatenate([np.repeat(nodes, 2), np.full(size["bending"] - 2 * n, np.nan)])
-    shape = {name: part[2] for name, part in made.items()}
-    rows = [port_rows(station, how, elements, shape, at, size) for station, how in wanted]
+    shape = {name: part[2] for name, part in by_family.items()}
+    rows = [
+        port_rows(station, attachment, elements, shape, dofs, size)
+        for station, attachment in wanted
+    ]
 
     turn = shape["bending"][:, 1]
     tilting = np.einsum("eqi,eq,eqj->eij", turn, section.w * section.rotary, turn)
-    swirl = _sum(tilting, at["bending"], size["bending"])
+    swirl = _sum(tilting, dofs["bending"], size["bending"])
 
     def block(
         name: str, components: tuple[int, ...], family: str, rigid, y, per_node: int
     ) -> Block:
         ports = []
-        for (station, how), row in zip(wanted, rows):
-            if how == "rigid":
+        for (station, attachment), row in zip(wanted, rows):
+            if attachment == "rigid":
                 mask = _seat_mask(station, nodes, per_node, size[family])
                 ports.append(Attached(station.y, held=mask))
             else:
                 ports.append(Attached(station.y, row[family]))
         spun = swirl.__matmul__ if family == "bending" else None
-        made = Block(name, components, k[family], m[family], rigid, y, swirl=spun)
-        return with_ports(made, ports)
+        free = Block(name, components, k[family], m[family], rigid, y, swirl=spun)
+        return with_ports(free, ports)
 
     bending = block("bending_z", (2, 3), "bending", lift, y2, 2)
     blocks = (
         bending,
         bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0)),
-        block("axial", (1,), "axial", one[:, None], nodes, 1),
-        block("torsion", (4,), "torsion", one[:, None], nodes, 1),
+        block("axial", (1,), "axial", ones[:, None], nodes, 1),
+        block("torsion", (4,), "torsion", ones[:, None], nodes, 1),
     )
     facts = {
         "element": "timoshenko" if shear else "euler",
@@ -154,22 +152,24 @@ def on_nodes(
     )
 
 
-def _sum(matrices: np.ndarray, at: np.ndarray, size: int) -> sp.csr_matrix:
-    """Matrices (e, k, k) of elements put together by their unknowns (e, k)."""
-    places = np.broadcast_to(at[:, :, None], matrices.shape)
-    both = (places.ravel(), places.transpose(0, 2, 1).ravel())
-    return sp.csr_matrix((matrices.ravel(), both), shape=(size, size))
+def _sum(matrices: np.ndarray, dofs: np.ndarray, size: int) -> sp.csr_matrix:
+    """Assemble matrices (e, k, k) of elements by their unknowns (e, k)."""
+    places = np.broadcast_to(dofs[:, :, None], matrices.shape)
+    entries = (places.ravel(), places.transpose(0, 2, 1).ravel())
+    return sp.csr_matrix((matrices.ravel(), entries), shape=(size, size))
 
 
 def mesh(scene, elements: int | None, wanted=()):
-    """Nodes (n,) at segment ends, ports and ends of rigid seats, filled in evenly to at least so
-    many elements (None is eight to a diameter), m.
+    """Return nodes (n,) at segment ends, ports and ends of rigid seats, filled in evenly to at
+    least so many elements (None is eight to a diameter), m.
     """
-    found = {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
+    places = (
+        {s.y0 for s in scene.segments} | {scene.segments[-1].y1} | {s.y for s in scene.stations}
+    )
     for station, attachment in wanted:
         if attachment == "rigid":
-            found |= {max(station.lo, 0.0), min(station.hi, scene.length)}
-    marks = np.array(sorted(found))
+            places |= {max(station.lo, 0.0), min(station.hi, scene.length)}
+    marks = np.array(sorted(places))
     # Marks that differ by rounding only would make an element of no length.
     marks = marks[np.concatenate([[True], np.diff(marks) > 1e-9 * scene.length])]
     diameter = 2 * min(max(s.outer0, s.outer1) for s in scene.segments)
@@ -181,7 +181,7 @@ def mesh(scene, elements: int | None, wanted=()):
 
 
 def matrices(section: Section, shear: bool, rotary_inertia: bool, mass: str):
-    """Stiffness, mass and fields of all elements, by block."""
+    """Return stiffness, mass and fields of all elements, by family of motion."""
     return {
         "bending": bending_matrices(section, shear, rotary_inertia, mass),
         "axial": rod_matrices(section, section.stretch, section.mass, mass),
@@ -189,20 +189,20 @@ def matrices(section: Section, shear: bool, rotary_inertia: bool, mass: str):
     }
 
 
-def unknowns(made, n: int) -> dict[str, np.ndarray]:
-    """(e, k) unknowns of every element of a beam of n nodes, by block; internal ones, that Timoshenko
-    elements carry, after those of the nodes.
+def unknowns(by_family, n: int) -> dict[str, np.ndarray]:
+    """Return the unknowns (e, k) of every element of a beam of n nodes, by family; internal ones,
+    that Timoshenko elements carry, after those of the nodes.
     """
     ends = np.arange(n - 1)[:, None] + np.arange(2)
-    inner = made["bending"][0].shape[-1] - 4
+    inner = by_family["bending"][0].shape[-1] - 4
     inside = 2 * n + np.arange((n - 1) * inner).reshape(n - 1, inner)
-    both = np.hstack([2 * ends[:, :1] + np.arange(4), inside])
-    return {"bending": both, "axial": ends, "torsion": ends}
+    bending = np.hstack([2 * ends[:, :1] + np.arange(4), inside])
+    return {"bending": bending, "axial": ends, "torsion": ends}
 
 
 def softening(nodes, steps: tuple[Hinge, ...]) -> np.ndarray:
-    """(3, e) compliances of shoulders in bending, stretch and twist, each on the element that it
-    softens: the first one of the thick part.
+    """Return the compliances (3, e) of shoulders in bending, stretch and twist, each on the element
+    that it softens: the first one of the thick part.
     """
     out = np.zeros((3, len(nodes) - 1))
     for step in steps:
@@ -211,24 +211,24 @@ def softening(nodes, steps: tuple[Hinge, ...]) -> np.ndarray:
 
 
 def softened(nodes, step: Hinge) -> int:
-    """The element that a shoulder softens."""
+    """Return the element that a shoulder softens."""
     return int(np.argmin(abs(nodes - step.y))) - (not step.ahead)
 
 
 def _long_enough(nodes):
     """Refuse Euler elements that would cost the digits: their stiffness grows with the inverse cube
-    of their length, and the rest of the shaft with it only by what is left of sixteen digits. Shear
+    of their length, and the rest of the shaft keeps only the remainder of sixteen digits. Shear
     bounds that growth in a Timoshenko element.
 
     Measured on a uniform shaft with two marks this close: first bending is off by 2e-6 at 3e-4 of
     the length, 3e-4 at 3e-5.
     """
     gap = np.diff(nodes)
-    at = int(np.argmin(gap))
+    shortest = int(np.argmin(gap))
     length = nodes[-1] - nodes[0]
-    if gap[at] < SHORTEST * length:
+    if gap[shortest] < SHORTEST * length:
         raise SolidgearError(
-            f"euler: the element at y = {nodes[at]:.9g} m is {gap[at]:.3g} m long, below "
+            f"euler: the element at y = {nodes[shortest]:.9g} m is {gap[shortest]:.3g} m long, below "
             f"{SHORTEST:g} of the shaft, and loses its digits; let marks (segment ends, bearings, "
             "the port) that close coincide, ask for fewer elements, or use the timoshenko or "
             "harmonic model"
@@ -236,10 +236,10 @@ def _long_enough(nodes):
 
 
 def port_rows(
-    station, attachment: str, e: Elements, shape, at, size: dict[str, int]
+    station, attachment: str, e: Elements, shape, dofs, size: dict[str, int]
 ) -> dict[str, np.ndarray]:
-    """Motions of a port as rows on the unknowns of bending (d, ph), axial and torsion; zeros where
-    the tie is rigid.
+    """Return the motions of a port as rows on the unknowns of bending (d, ph), axial and torsion;
+    zeros where the tie is rigid.
     """
     out = {name: np.zeros((2 if name == "bending" else 1, n)) for name, n in size.items()}
     if attachment == "section":
@@ -248,24 +248,24 @@ def port_rows(
         out["axial"][0, node] = out["torsion"][0, node] = 1.0
     if attachment == "average":
         under, lo, hi = pieces(e, station)
-        own = {name: part[under] for name, part in shape.items()}
-        for name, (gram, rows) in seat(e.only(under), own, lo, hi, station.y).items():
-            for places, row in zip(at[name][under], rows):
+        seat_shape = {name: part[under] for name, part in shape.items()}
+        for name, (gram, rows) in seat(e.only(under), seat_shape, lo, hi, station.y).items():
+            for places, row in zip(dofs[name][under], rows):
                 out[name][:, places] += row
             out[name] = np.linalg.solve(gram.sum(axis=0), out[name])
     return out
 
 
 def pieces(e: Elements, station) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(k,) elements under a seat, and the ends of what is under it of each, m."""
+    """Return the elements (k,) under a seat, and the ends of the part of each under it, m."""
     lo, hi = np.maximum(e.left, station.lo), np.minimum(e.right, station.hi)
     under = np.flatnonzero(hi > lo)
     return under, lo[under], hi[under]
 
 
 def seat(e: Elements, shape, lo, hi, y) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Contribution of each piece of a seat to the Gram matrix of its port, a point at y, and
-    to their rows before they are divided by it, by block.
+    """Return the contribution of each piece of a seat to the Gram matrix of its port, a point at y,
+    and to the port's rows before they are divided by it, by family.
     """
     place, r, ds, lagrange = surface(e, lo, hi)
     h, w = place - y, 2 * np.pi * r * ds
@@ -282,11 +282,11 @@ def seat(e: Elements, shape, lo, hi, y) -> dict[str, tuple[np.ndarray, np.ndarra
 
 
 def _seat_mask(station, nodes, per_node: int, size: int) -> np.ndarray:
-    """Unknowns that a rigid seat takes along: those of its nodes, and the internal ones of its
-    elements.
+    """Return the unknowns that a rigid seat takes along: those of its nodes, and the internal ones
+    of its elements.
     """
     tol = 1e-9 * nodes[-1]
     inside = (nodes > station.lo - tol) & (nodes < station.hi + tol)
-    within = inside[1:] & inside[:-1]
-    internal = (size - per_node * len(nodes)) // len(within)
-    return np.concatenate([np.repeat(inside, per_node), np.repeat(within, internal)])
+    whole_elements = inside[1:] & inside[:-1]
+    internal = (size - per_node * len(nodes)) // len(whole_elements)
+    return np.concatenate([np.repeat(inside, per_node), np.repeat(whole_elements, internal)])

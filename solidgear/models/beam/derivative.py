@@ -1,8 +1,9 @@
 """Derivatives of a beam by its shape and material, with the same elements, moved.
 
-What numbers feel of the nodes, seats and segments is gathered once from the energies of elements and
-then multiplied with the velocities of as many parameters as there are. Derivatives of an element by
-what it is made of are imaginary parts (:mod:`solidgear.models.beam.element`), exact to rounding.
+The derivatives of numbers by nodes, seats and segments are gathered once from the energies of
+elements and then multiplied with the velocities of any number of parameters. Derivatives of an
+element by its shape and material are imaginary parts (:mod:`solidgear.models.beam.element`), exact to
+rounding.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from solidgear.models.beam.shoulder import hinges
 from solidgear.scene.attached import attached_stations
 from solidgear.solve.adjoint import Form
 
-#: imaginary step: its square is nothing beside one
+#: imaginary step: its square is negligible beside 1
 STEP = 1e-30
 SEAT = ("y", "lo", "hi")
 HINGE = ("bend", "stretch", "twist")
@@ -64,15 +65,16 @@ class BeamAdjoint:
         self.segments, self.materials = np.zeros((s, len(SHAPE), f)), np.zeros((s, len(MATTER), f))
         self.seats = np.zeros((len(self.stations), len(SEAT), f))
         self.steps = np.zeros((len(self.hinges), len(HINGE), f))
-        made = self._made(self.elements, self.soft)
-        self.shape = {name: part[2] for name, part in made.items()}
-        self.at = unknowns(made, len(self.places))
+        by_family = self._matrices(self.elements, self.soft)
+        self.shape = {name: part[2] for name, part in by_family.items()}
+        self.dofs = unknowns(by_family, len(self.places))
         families = self._families(forms)
         for family in families:
-            self._tied(family, made)
+            self._tied(family, by_family)
         self._gather(families)
 
-    def _made(self, elements: Elements, soft: np.ndarray):
+    def _matrices(self, elements: Elements, soft: np.ndarray):
+        """Return stiffness, mass and fields of elements with the options of the body, by family."""
         facts = self.body.mesh
         section = Section(elements, facts["head"], facts["kappa"])
         if self.hinges:
@@ -88,38 +90,41 @@ class BeamAdjoint:
                     block = self.body.block(index)
                     name = block.name.partition("_")[0]
                     _, signs = block.mirror or (index, (1.0,) * len(block.components))
-                    sides = []
+                    columns = list(block.components)
+                    states = []
                     for state in (a, b):
                         u = state.vectors[index]
                         u = u if block.expand is None else block.expand @ u
-                        six = (state.forces, state.motions)
-                        own = [
-                            part.reshape(-1, 6)[:, list(block.components)] * signs for part in six
-                        ]
-                        sides.append((u, *own))
-                    pairs.setdefault(name, []).append((k, form.scale, a.eigenvalue, *sides))
-        return [_Family(name, some, len(forms)) for name, some in pairs.items()]
+                        forces = state.forces.reshape(-1, 6)[:, columns] * signs
+                        motions = state.motions.reshape(-1, 6)[:, columns] * signs
+                        states.append((u, forces, motions))
+                    pairs.setdefault(name, []).append((k, form.scale, a.eigenvalue, *states))
+        return [_Family(name, members, len(forms)) for name, members in pairs.items()]
 
     def _gather(self, families: list[_Family]) -> None:
-        """All elements and seats, once for each of their parts, with an imaginary step in it."""
-        own = [one.name for one in fields(Elements)]
-        names = [*own, *(HINGE if self.hinges else ()), *SEAT]
+        """Gather the derivatives from all elements and seats, once for each of their fields, with
+        an imaginary step in it.
+        """
+        element_names = [field.name for field in fields(Elements)]
+        names = [*element_names, *(HINGE if self.hinges else ()), *SEAT]
         rows, count = len(names), len(self.owner)
 
         def stepped(values: np.ndarray | float, name: str) -> np.ndarray:
-            """(rows, e) values, of which those of one row take the step."""
+            """Return (rows, e) values; those in the row of the name take the step."""
             step = 1j * STEP * (np.array(names) == name)
             return np.atleast_1d(values) + step[:, None]
 
-        every = Elements(*(stepped(getattr(self.elements, n), n).ravel() for n in own))
+        elements = Elements(
+            **{n: stepped(getattr(self.elements, n), n).ravel() for n in element_names}
+        )
         soft = np.array([stepped(part, n).ravel() for part, n in zip(self.soft, HINGE)])
-        made = {
+        by_family = {
             kind: [part.reshape(rows, count, *part.shape[1:]) for part in parts]
-            for kind, parts in self._made(every, soft).items()
+            for kind, parts in self._matrices(elements, soft).items()
         }
-        felt = np.zeros((rows, count, self.nodes.shape[1]))
+        rates = np.zeros((rows, count, self.nodes.shape[1]))
         for family in families:
-            felt += family.energy(made[family.name], self.at[family.name])
+            rates += family.energy(by_family[family.name], self.dofs[family.name])
         for p, (station, how) in enumerate(self.stations):
             if how != "average":
                 continue
@@ -131,48 +136,48 @@ class BeamAdjoint:
             places = (np.arange(rows)[:, None] * count + under).ravel()
             shape = {
                 kind: parts[2][:, under].reshape(len(places), *parts[2].shape[2:])
-                for kind, parts in made.items()
+                for kind, parts in by_family.items()
             }
             y = np.repeat(stepped(station.y, "y"), len(under), axis=0)
-            terms = seat(every.only(places), shape, begin.ravel(), end.ravel(), y)
+            terms = seat(elements.only(places), shape, begin.ravel(), end.ravel(), y)
             for family in families:
                 gram, row = (t.reshape(rows, len(under), *t.shape[1:]) for t in terms[family.name])
-                more = family.port(p, gram, row, self.at[family.name][under])
-                felt[:, under] += more
-                self.seats[p] += more[-len(SEAT) :].sum(axis=1)
-        for name, one in zip(names, felt):
-            self._felt(name, one)
+                seat_rates = family.port(p, gram, row, self.dofs[family.name][under])
+                rates[:, under] += seat_rates
+                self.seats[p] += seat_rates[-len(SEAT) :].sum(axis=1)
+        for name, element_rates in zip(names, rates):
+            self._add(name, element_rates)
 
-    def _felt(self, name: str, felt: np.ndarray) -> None:
-        """Add what every element feels of one of its parts to whose part that is."""
+    def _add(self, name: str, rates: np.ndarray) -> None:
+        """Add (e, forms) derivatives by a field of elements to the node, segment or step it is of."""
         if name == "left":
-            self.nodes[:-1] += felt
+            self.nodes[:-1] += rates
         elif name == "right":
-            self.nodes[1:] += felt
+            self.nodes[1:] += rates
         elif name in SHAPE:
-            np.add.at(self.segments[:, SHAPE.index(name)], self.owner, felt)
+            np.add.at(self.segments[:, SHAPE.index(name)], self.owner, rates)
         elif name in MATTER:
-            np.add.at(self.materials[:, MATTER.index(name)], self.owner, felt)
+            np.add.at(self.materials[:, MATTER.index(name)], self.owner, rates)
         elif name in HINGE:
             for k, step in enumerate(self.hinges):
-                self.steps[k, HINGE.index(name)] += felt[softened(self.places, step)]
+                self.steps[k, HINGE.index(name)] += rates[softened(self.places, step)]
 
-    def _tied(self, family: _Family, made) -> None:
-        """A rigid seat takes its nodes along as they lie about the port."""
+    def _tied(self, family: _Family, by_family) -> None:
+        """Add derivatives by rigid seats, which take their nodes along as they lie about the port."""
         if family.name != "bending" or all(how != "rigid" for _, how in self.stations):
             return
-        stiff, heavy, shape = made["bending"]
-        at = self.at["bending"]
-        size = {name: int(part.max()) + 1 for name, part in self.at.items()}
+        stiff, heavy, _ = by_family["bending"]
+        dofs = self.dofs["bending"]
+        size = {name: int(part.max()) + 1 for name, part in self.dofs.items()}
         rows = [
-            port_rows(station, how, self.elements, self.shape, self.at, size)["bending"]
+            port_rows(station, how, self.elements, self.shape, self.dofs, size)["bending"]
             for station, how in self.stations
         ]
-        for mine, other in ((0, 1), (1, 0)):
-            u, forces = family.u[mine], family.forces[mine]
+        for i, j in ((0, 1), (1, 0)):
+            u, forces = family.u[i], family.forces[i]
             pull = np.zeros_like(u)
-            local = stiff @ u[at] - family.eigenvalue * (heavy @ u[at])
-            np.add.at(pull, at, local)
+            local = stiff @ u[dofs] - family.eigenvalue * (heavy @ u[dofs])
+            np.add.at(pull, dofs, local)
             for row, force in zip(rows, forces.transpose(1, 2, 0)):
                 pull -= row.T @ force
             for p, (station, how) in enumerate(self.stations):
@@ -182,27 +187,23 @@ class BeamAdjoint:
                 inside = np.flatnonzero(
                     (self.places > station.lo - tol) & (self.places < station.hi + tol)
                 )
-                held = -family.scale * pull[2 * inside] * family.motions[other][:, p, 1]
-                self.nodes[inside] += family.sums(held)
-                self.seats[p, 0] -= family.sums(held).sum(axis=0)
+                rates = family.sums(-family.scale * pull[2 * inside] * family.motions[j][:, p, 1])
+                self.nodes[inside] += rates
+                self.seats[p, 0] -= rates.sum(axis=0)
 
     def by(self, low, high, step: float) -> np.ndarray:
-        """(f,) derivatives along the way from one scene to another.
-
-        Raises
-        ------
-        SolidgearError
-            If the shaft takes another form, or what lies at one place moves apart.
+        """Compute the derivatives (f,) along the way from one scene to another; refuse a shaft that
+        takes another form, and places of one line that move apart.
         """
 
         def rate(things, names) -> np.ndarray:
-            one, two = (
-                np.array([[getattr(one, name) for name in names] for one in things(scene)])
+            a, b = (
+                np.array([[getattr(thing, name) for name in names] for thing in things(scene)])
                 for scene in (low, high)
             )
-            if one.shape != two.shape:
+            if a.shape != b.shape:
                 raise SolidgearError("the shaft takes another form there")
-            return (two - one) / step
+            return (b - a) / step
 
         segments = rate(lambda scene: scene.segments, SHAPE)
         seats = rate(lambda scene: scene.stations, SEAT)
@@ -219,12 +220,11 @@ class BeamAdjoint:
         return out + self.velocity @ self.nodes
 
     def _along(self, segments: np.ndarray, seats: np.ndarray) -> np.ndarray:
-        """(n,) velocity of the nodes."""
+        """Return the velocity (n,) of the nodes."""
         marks = {0.0: 0.0} | {s.y1: v[1] for s, v in zip(self.scene.segments, segments)}
         tol = 1e-9 * self.scene.length
         for (station, how), rates in zip(self.stations, seats):
-            wanted = {"section": SEAT[:1], "rigid": SEAT[1:], "average": ()}[how]
-            for name in wanted:
+            for name in {"section": SEAT[:1], "rigid": SEAT[1:], "average": ()}[how]:
                 place, rate = getattr(station, name), rates[SEAT.index(name)]
                 near = next((m for m in marks if abs(m - place) < tol), None)
                 if near is None:
@@ -233,12 +233,12 @@ class BeamAdjoint:
                     raise SolidgearError(
                         f"{station.name} moves away from where something else stays"
                     )
-        at = np.array(sorted(marks))
-        return np.interp(self.places, at, [marks[m] for m in at])
+        places = np.array(sorted(marks))
+        return np.interp(self.places, places, [marks[m] for m in places])
 
 
 class _Family:
-    """Pairs of states in blocks of one kind."""
+    """Pairs of states in the blocks of one family of motion."""
 
     def __init__(self, name: str, pairs: list, forms: int):
         self.name = name
@@ -246,28 +246,30 @@ class _Family:
         self.scale, self.eigenvalue = np.array(scale), np.array(eigenvalue)
         self.owner = np.eye(forms)[list(form)]
         sides = [[np.array(part) for part in zip(*side)] for side in (first, second)]
-        #: (n, pairs) unknowns, (pairs, p, c) forces and motions of ports, of both states
+        # of both states: (n, pairs) unknowns, (pairs, p, c) forces and motions of ports
         self.u = [side[0].T for side in sides]
         self.forces, self.motions = [side[1] for side in sides], [side[2] for side in sides]
 
     def sums(self, values: np.ndarray) -> np.ndarray:
-        """(..., forms) sums over the pairs of each."""
+        """Return the sums (..., forms) over the pairs of each form."""
         return values @ self.owner
 
-    def energy(self, made, at: np.ndarray) -> np.ndarray:
-        """(..., e, forms) derivatives from elements with an imaginary step in them."""
-        stiff, heavy = (part.imag / STEP for part in made[:2])
-        one, two = (u[at] for u in self.u)
-        each = (one * (self.eigenvalue * (heavy @ two) - stiff @ two)).sum(axis=-2)
-        return self.sums(self.scale * each)
+    def energy(self, element_matrices, dofs: np.ndarray) -> np.ndarray:
+        """Compute the derivatives (..., e, forms) from elements with an imaginary step in them."""
+        stiff, heavy = (part.imag / STEP for part in element_matrices[:2])
+        u, v = (states[dofs] for states in self.u)
+        rates = (u * (self.eigenvalue * (heavy @ v) - stiff @ v)).sum(axis=-2)
+        return self.sums(self.scale * rates)
 
-    def port(self, p: int, gram: np.ndarray, rows: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """(..., k, forms) derivatives from the pieces of a seat with an imaginary step in them."""
-        whole = gram[0].sum(axis=0).real
+    def port(self, p: int, gram: np.ndarray, rows: np.ndarray, dofs: np.ndarray) -> np.ndarray:
+        """Compute the derivatives (..., k, forms) from the pieces of a seat with an imaginary step
+        in them.
+        """
+        seat_gram = gram[0].sum(axis=0).real
         gram, rows = gram.imag / STEP, rows.imag / STEP
         total = np.zeros((*rows.shape[:2], len(self.scale)))
-        for mine, other in ((0, 1), (1, 0)):
-            force = np.linalg.solve(whole, self.forces[mine][:, p].T)
-            moved = rows @ self.u[other][at] - gram @ self.motions[other][:, p].T
+        for i, j in ((0, 1), (1, 0)):
+            force = np.linalg.solve(seat_gram, self.forces[i][:, p].T)
+            moved = rows @ self.u[j][dofs] - gram @ self.motions[j][:, p].T
             total += (moved * force).sum(axis=-2)
         return self.sums(self.scale * total)

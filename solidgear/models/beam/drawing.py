@@ -28,12 +28,12 @@ class BeamLine:
     nodes: np.ndarray  #: (n,) axial positions, m
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """The profile of the shaft, each section of it a rigid disc."""
+        """Return the profile of the shaft, each section of it a rigid disc."""
         rings = _profile(self.shaft, self.nodes)
         return revolve(rings, _waves(rings, self.nodes, moved))
 
     def volume(self) -> None:
-        """None: a beam has no mesh of its volume."""
+        """Return None: a beam has no mesh of its volume."""
         return None
 
 
@@ -49,22 +49,14 @@ def _waves(rings: Rings, nodes: np.ndarray, moved: Mapping[str, np.ndarray]) -> 
     if "axial" in moved:
         waves.append(wave(0, 0.0, 0.0, 0.0, np.interp(rings.y, nodes, moved["axial"])))
     if "torsion" in moved:
-        waves.append(
-            wave(
-                0,
-                0.0,
-                0.0,
-                0.0,
-                0.0 * rings.r,
-                rings.r * np.interp(rings.y, nodes, moved["torsion"]),
-            )
-        )
+        turn = np.interp(rings.y, nodes, moved["torsion"])
+        waves.append(wave(0, 0.0, 0.0, 0.0, 0.0 * rings.r, rings.r * turn))
     return waves
 
 
 def _profile(scene: Shaft, nodes: np.ndarray) -> Rings:
-    """Closed outline of the meridian: up the outer surface, down the bore, counter-clockwise in (r,
-    y).
+    """Return the closed outline of the meridian: up the outer surface, down the bore,
+    counter-clockwise in (r, y).
     """
     tol = 1e-9 * scene.length
     along: dict[str, list[tuple[float, float]]] = {surface: [] for surface in SURFACES}
@@ -78,11 +70,9 @@ def _profile(scene: Shaft, nodes: np.ndarray) -> Rings:
     # Faces across the axis are divided, so that their colours follow the displacement.
     parts, drawn, size = [], [], 0
     for p, q in zip(loop, np.roll(loop, -1, axis=0)):
-        n = (
-            max(1, int(np.ceil(abs(q[0] - p[0]) / (0.03 * scene.length))))
-            if abs(q[1] - p[1]) < tol
-            else 1
-        )
+        n = 1
+        if abs(q[1] - p[1]) < tol:
+            n = max(1, int(np.ceil(abs(q[0] - p[0]) / (0.03 * scene.length))))
         parts.append(p + np.arange(n)[:, None] / n * (q - p))
         drawn.append(size)
         size += n

@@ -5,7 +5,7 @@ of the element clamped at one end, integrated over the true section; its mass is
 displacement field of that static problem. A uniform element is the textbook one. Nothing here is
 shared with the solid builders: that independence is what makes a comparison worth having.
 
-All elements of a beam are made at once. What they are made of may be complex, so that a derivative
+All elements of a beam are made at once. Their shape and material may be complex, so that a derivative
 is an imaginary part (Squire and Trapp 1998, SIAM Review 40, 110), without a difference.
 """
 
@@ -31,20 +31,10 @@ _INTEGRAL = np.column_stack(
 
 
 def shear_coefficient(nu, outer, inner):
-    """Timoshenko shear coefficient of a circular tube (Hutchinson 2001, J. Appl. Mech. 68, eq. 49).
+    """Return the Timoshenko shear coefficient of a circular tube of radii in m (Hutchinson 2001, J.
+    Appl. Mech. 68, eq. 49).
 
     For a solid circle it is ``6 (1+nu)^2 / (7 + 12 nu + 4 nu^2)``.
-
-    Parameters
-    ----------
-    nu : float or ndarray
-        Poisson's ratio.
-    outer, inner : float or ndarray
-        Radii, m.
-
-    Returns
-    -------
-    float or ndarray
 
     Examples
     --------
@@ -67,8 +57,8 @@ def shear_coefficient(nu, outer, inner):
 
 @dataclass(frozen=True, eq=False)
 class Elements:
-    """Elements of a beam, each (e,): where one begins and ends, and the two ends,
-    radii (m) and material (SI) of the segment that it lies in.
+    """Elements of a beam, each field (e,): their ends (m), and the ends, radii (m) and material
+    (SI) of the segment that each lies in.
     """
 
     left: np.ndarray
@@ -85,15 +75,15 @@ class Elements:
 
     @classmethod
     def of(cls, segments: Sequence[Segment], nodes: np.ndarray) -> Elements:
-        """Those between nodes, m."""
+        """Return the elements between nodes, m."""
         owner = owners(segments, nodes)
         shapes = np.array([[getattr(s, name) for name in SHAPE] for s in segments])[owner].T
         matter = np.array([[getattr(s.material, name) for name in MATTER] for s in segments])
         return cls(nodes[:-1], nodes[1:], *shapes, *matter[owner].T)
 
-    def only(self, some: np.ndarray) -> Elements:
-        """Some of them."""
-        return Elements(*(getattr(self, one.name)[some] for one in fields(self)))
+    def only(self, places: np.ndarray) -> Elements:
+        """Return the elements at some places."""
+        return Elements(**{f.name: getattr(self, f.name)[places] for f in fields(self)})
 
 
 #: fields of a segment and of its material that make an element
@@ -102,7 +92,7 @@ MATTER = ("E", "nu", "density")
 
 
 def owners(segments: Sequence[Segment], nodes: np.ndarray) -> np.ndarray:
-    """(e,) place of the segment of every element."""
+    """Return the place (e,) of the segment of every element."""
     middle = (nodes[1:] + nodes[:-1]) / 2
     ends = np.array([s.y1 for s in segments])
     return np.minimum(np.searchsorted(ends, middle), len(ends) - 1)
@@ -158,43 +148,29 @@ class Section:
         self.polar = 2 * self.rotary
 
     def soften(self, bend: np.ndarray, stretch: np.ndarray, twist: np.ndarray) -> None:
-        """Add compliances (e,), rad/(N m), m/N and rad/(N m), spread evenly over the length; shear and
-        inertia stay.
+        """Add compliances (e,), rad/(N m), m/N and rad/(N m), spread evenly over the length; shear
+        and inertia stay.
         """
         self.bend = 1 / (1 / self.bend + (bend / self.length)[:, None])
         self.stretch = 1 / (1 / self.stretch + (stretch / self.length)[:, None])
         self.twist = 1 / (1 / self.twist + (twist / self.length)[:, None])
 
     def integral(self, values: np.ndarray) -> np.ndarray:
-        """(e, q, k) integrals from the left end to each Gauss point, exact for the polynomial through
-        the values there.
+        """Return the integrals (e, q, k) from the left end to each Gauss point, exact for the
+        polynomial through the values there.
         """
         return (self.length / 2)[:, None, None] * (_INTEGRAL @ values)
 
 
 def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
-    """Stiffness, mass and fields of bending elements on ``(z, thx)`` at both ends, then internal
-    unknowns.
+    """Return stiffness and mass (e, n, n) of bending elements on ``(z, thx)`` at both ends, then internal
+    unknowns (n is 4, with internal unknowns 5 or 6; N/m, N, N m, and kg, kg m, kg m^2), and their
+    deflection and turn at the Gauss points (e, 2, q, n).
 
-    With shear the static field has constant shear in an element, which alone converges with the
-    square of its length.  Two internal fields, those of a clamped element under a uniform force and
-    a uniform moment, lift that to the fourth power; they store no energy together with the nodal
-    fields.
-
-    Parameters
-    ----------
-    shear : bool
-        Timoshenko, else Euler-Bernoulli.
-    rotary : bool
-        Whether sections carry rotary inertia.
-    mass : {'consistent', 'lumped'}
-
-    Returns
-    -------
-    stiffness, mass : (e, n, n) ndarray
-        n is 4, with internal unknowns 5 or 6; N/m, N, N m, and kg, kg m, kg m^2.
-    shape : (e, 2, q, n) ndarray
-        Deflection and turn at the Gauss points.
+    With shear (Timoshenko) the static field has constant shear in an element, which alone converges
+    with the square of its length.  Two internal fields, those of a clamped element under a uniform
+    force and a uniform moment, lift that to the fourth power; they store no energy together with the
+    nodal fields.
 
     Examples
     --------
@@ -206,14 +182,14 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
     >>> round(float(k[0, 0, 0] * 0.6**3 / section.bend[0, 0]), 9)  # 12 E I / L^3
     12.0
     """
-    left, one = c.length[:, None] - c.s, np.ones_like(c.s)
+    lever, ones = c.length[:, None] - c.s, np.ones_like(c.s)
     none = np.zeros_like(c.s)
     soft = np.stack([1 / c.bend, 1 / c.shear if shear else none], axis=1)
     # Clamped at the left.  With dz/dy = thx a tip force bends by L - s, a tip moment by 1, a
     # uniform force by (L - s)^2 / 2 and a uniform moment by L - s.  First row moments, second row
     # shear forces.
-    tip = np.stack([np.stack([left, one], -1), np.stack([one, none], -1)], axis=1)
-    spread = np.stack([np.stack([left**2 / 2, left], -1), np.stack([left, none], -1)], axis=1)
+    tip = np.stack([np.stack([lever, ones], -1), np.stack([ones, none], -1)], axis=1)
+    spread = np.stack([np.stack([lever**2 / 2, lever], -1), np.stack([lever, none], -1)], axis=1)
 
     def product(a, weight, b):
         a, b = ((part.reshape(len(part), -1, part.shape[-1])) for part in (a, b))
@@ -223,14 +199,14 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
         return product(a, c.w[:, None] * soft, b)
 
     def field(inner):
-        """Deflection and turn along the cantilever for internal moments and forces."""
+        """Return deflection and turn along the cantilever for internal moments and forces."""
         turn = c.integral(inner[:, 0] * soft[:, 0, :, None])
         slope = turn + inner[:, 1] * soft[:, 1, :, None]
         return np.stack([c.integral(slope), turn], axis=1)
 
     resist = np.linalg.inv(energy(tip, tip))
     # rigid motion of the right end less that of the left
-    difference = np.zeros((len(left), 2, 4), left.dtype)
+    difference = np.zeros((len(lever), 2, 4), lever.dtype)
     difference[:, [0, 1, 0, 1], [0, 1, 2, 3]] = -1.0, -1.0, 1.0, 1.0
     difference[:, 0, 1] = -c.length
     carried = resist @ difference
@@ -251,7 +227,7 @@ def bending_matrices(c: Section, shear: bool, rotary: bool, mass: str):
         clamped = clamped * np.sqrt(k[:, :1, 0] / size)[:, None, None]
         nodal, n = k, 5 + rotary
         inside = energy(clamped, clamped)
-        k = np.zeros((len(left), n, n), np.result_type(nodal, inside))
+        k = np.zeros((len(lever), n, n), np.result_type(nodal, inside))
         k[:, :4, :4], k[:, 4:, 4:] = nodal, inside
         shape = np.concatenate([shape, field(clamped)], axis=3)
     return k, product(shape, c.w[:, None] * inertia, shape), shape
@@ -262,9 +238,9 @@ _HALVES = (_GAUSS[0] < 0, _GAUSS[0] > 0)
 
 
 def rod_matrices(c: Section, rigidity, inertia, mass: str):
-    """Stiffness and mass (e, 2, 2) of tapered bars in stretch or twist, ``consistent`` or ``lumped``, by
-    ``E A`` and ``rho A``, or ``G J`` and ``rho J``, at the Gauss points; and their motion (e, q, 2)
-    there.
+    """Return stiffness and mass (e, 2, 2) of tapered bars in stretch or twist, ``consistent`` or
+    ``lumped``, by ``E A`` and ``rho A``, or ``G J`` and ``rho J``, at the Gauss points; and their
+    motion (e, q, 2) there.
     """
     compliance = (c.w / rigidity).sum(axis=1)[:, None, None]
     k = np.array([[1.0, -1.0], [-1.0, 1.0]]) / compliance
@@ -277,9 +253,9 @@ def rod_matrices(c: Section, rigidity, inertia, mass: str):
 
 
 def surface(e: Elements, lo: np.ndarray, hi: np.ndarray):
-    """Quadrature on the outer surface of parts of elements between two places, m: (e, q) places along
-    the shaft, radii there, and weights of the length along the surface, m; and the interpolation (e,
-    q, q) from the Gauss points of the element.
+    """Return quadrature on the outer surface of parts of elements between two places, m: places (e,
+    q) along the shaft, radii there, and weights of the length along the surface, m; and the
+    interpolation (e, q, q) from the Gauss points of the element.
     """
     x, w = _GAUSS
     y = (lo + hi)[:, None] / 2 + (hi - lo)[:, None] / 2 * x

@@ -1,14 +1,14 @@
 """Flexibility that a beam lacks at a sharp shoulder.
 
 Stress cannot fill the thick part right behind a step of the outer radius, as a beam lets it.  The
-solid is softer there, by what a short piece of the thin shaft would add.  How long that piece is,
-in diameters of the thin shaft, depends on the ratio of the diameters and on the kind of load.
+solid is softer there, by the flexibility of a short piece of the thin shaft.  The length of that
+piece, in diameters of the thin shaft, depends on the ratio of the diameters and on the kind of load.
 
-What gives is the thick part: of another material it gives as its modulus has it, and the missing
-length goes with E (in twist with G) of the thin part over that of the thick one.  Measured for
-moduli of 0.2 to 20 times each other and ratios of diameters of 1.2 to 6 (``of_two_materials`` in
-``validation/stability/shoulder_step.py``): from 1.5 on, where the thick part is the softer, what is
-lacking is 0.88 to 1.09 times that; where it is the stiffer, little is lacking at all.
+The thick part gives: of another material it gives as its modulus has it, and the missing length goes
+with E (in twist with G) of the thin part over that of the thick one.  Measured for moduli of 0.2 to
+20 times each other and ratios of diameters of 1.2 to 6 (``of_two_materials`` in
+``validation/stability/shoulder_step.py``): from 1.5 on, where the thick part is the softer, the
+missing length is 0.88 to 1.09 times that; where it is the stiffer, little is missing at all.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: ratio of diameters, then missing length of the thin shaft over its diameter in bending, stretch
 #: and twist: harmonic solid (order 6, four layers) less beam, for a solid steel shaft two diameters
-#: long on a thick part one and a half of its own (``validation/stability/shoulder_step.py``).  In
+#: long on a thick part of one and a half diameters (``validation/stability/shoulder_step.py``).  In
 #: twist the handbooks have 0.125 at a ratio of 2 (Nestorides 1958, A Handbook on Torsional
 #: Vibration, sec. 1: junction effect).
 MISSING = np.array(
@@ -44,23 +44,14 @@ MISSING = np.array(
     ]
 )
 
-#: below this ratio of diameters, parts whose moduli differ by more than this: what is stiffer is no
-#: longer what is thinner, and not even the sign of what a beam lacks is that of one material
+#: ratio of diameters and ratio of moduli: below the first and beyond the second, the stiffer part is
+#: no longer the thicker one, and not even the sign of the missing length is that of one material
 SMALL_STEP, ALIKE = 1.2, 2.0
 
 
 def grown(ratio: float, thin: Material, thick: Material) -> tuple[float, float]:
-    """Factor on the missing length of one material where there are two.
-
-    Parameters
-    ----------
-    ratio : float
-        Of the diameters.
-
-    Returns
-    -------
-    tuple of float
-        In bending and stretch, and in twist; zeros where what is lacking is not known.
+    """Return the factors on the missing length of one material where there are two, in bending and
+    stretch, and in twist, at a ratio of diameters; zeros where the missing length is unknown.
 
     Examples
     --------
@@ -81,19 +72,13 @@ class Hinge:
 
     y: float  #: of the step, m
     ahead: bool  #: whether the thick part lies at larger y
-    #: bend, stretch, twist: rad/(N m), m/N and rad/(N m)
-    bend: float
-    stretch: float
-    twist: float
+    bend: float  #: rad/(N m)
+    stretch: float  #: m/N
+    twist: float  #: rad/(N m)
 
 
 def hinges(segments: Sequence[Segment]) -> tuple[Hinge, ...]:
-    """Compliances of all steps of the outer radius.
-
-    Parameters
-    ----------
-    segments : sequence of Segment
-        End to end.
+    """Return the compliances of all steps of the outer radius between segments that lie end to end.
 
     Examples
     --------

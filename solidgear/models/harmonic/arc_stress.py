@@ -1,5 +1,5 @@
-r"""Stress of a harmonic solid on a fillet: along its arc, around the axis, and what a free surface
-must not have.
+r"""Stress of a harmonic solid on a fillet: along its arc, around the axis, and the traction that a
+free surface must not have.
 
 Strains are those of :func:`solidgear.models.harmonic.families.strains`; with the outward normal n and
 the tangent s of the meridian,
@@ -7,7 +7,7 @@ the tangent s of the meridian,
     along = s . sigma s,   around = sigma_tt,   shear = s . sigma t,   traction = sigma n
 
 The traction is zero for the exact solution. A finite element solution leaves some of it: the error
-of its stress, at the very place that is looked at.
+of its stress at that place.
 """
 
 from __future__ import annotations
@@ -37,27 +37,16 @@ class ArcStress:
     """
 
     angle: np.ndarray  #: (q,) from where the arc leaves the cylinder, rad
-    #: along, around, shear: (q,) normal stress along the meridian and around the axis, and shear
-    #: between them, Pa
-    along: np.ndarray
-    around: np.ndarray
-    shear: np.ndarray
-    traction: np.ndarray  #: (q,) size of what should be no traction, Pa
+    along: np.ndarray  #: (q,) normal stress along the meridian, Pa
+    around: np.ndarray  #: (q,) normal stress around the axis, Pa
+    shear: np.ndarray  #: (q,) between both, Pa
+    traction: np.ndarray  #: (q,) size of the traction, which should be zero, Pa
     slope: np.ndarray  #: (2, q) derivative of `along` and `shear` along the normal, outwards, Pa/m
 
 
 class Arc:
-    """The arc of a fillet at the root of a step, on the mesh of a harmonic solid.
-
-    Parameters
-    ----------
-    scene : Scene
-        That the body was built from.
-
-    Raises
-    ------
-    SolidgearError
-        If the mesh has no such arc.
+    """Arc of a fillet at the root of a step, on the mesh of the harmonic solid of a scene; refused
+    if the mesh has no such arc.
     """
 
     def __init__(self, scene, body: Body, corner: Corner):
@@ -74,7 +63,7 @@ class Arc:
         self._cells = cells
 
     def stress(self, block: Block, u: np.ndarray) -> ArcStress:
-        """Stress under (n,) displacements of a block."""
+        """Compute the stress under displacements (n,) of a block."""
         family = family_of(block.name)
         values = self._work.geometry.whole(family, u)
         parts = np.concatenate(
@@ -86,7 +75,7 @@ class Arc:
         return ArcStress(angle, along, around, shear, traction, np.array(slope))
 
     def _on_cell(self, cell: int, waves: int, values: np.ndarray) -> np.ndarray:
-        """(7, q) angle, along, around, shear, traction and both slopes on the arc of a cell."""
+        """Return angle, along, around, shear, traction and both slopes (7, q) on the arc of a cell."""
         edge = int(self._work.flat.arc[cell])
         t = np.linspace(0.0, 1.0, PLACES)
         end = np.full(PLACES, float(edge in (OUT, HIGH)))
@@ -98,8 +87,8 @@ class Arc:
         tangent = np.array([-normal[1], normal[0]])
         across = _across(sigma, normal)
         traction = np.sqrt((across**2).sum(axis=0))
-        off = np.abs(place - np.array(self.corner.on_cylinder)[:, None])
-        angle = np.arctan2(off[1], np.abs(centre[0] - place[0]))
+        distance = np.abs(place - np.array(self.corner.on_cylinder)[:, None])
+        angle = np.arctan2(distance[1], np.abs(centre[0] - place[0]))
         # differences along reference coordinates, turned to the normal with tensors as they are there
         way = np.linalg.solve(jac, normal.T[:, :, None])[:, :, 0].T
         slopes = np.zeros((2, PLACES))
@@ -115,8 +104,8 @@ class Arc:
         return np.array([angle, along, sigma[1], shear, traction, *slopes])
 
     def _tensor(self, kind: Kind, cell: int, waves: int, values: np.ndarray, points: np.ndarray):
-        """(6, q) stress rr, tt, yy, rt, ty, ry, (2, q) places and (q, 2, 2) Jacobians at reference
-        points of a cell.
+        """Return stress (6, q) rr, tt, yy, rt, ty, ry, places (2, q) and Jacobians (q, 2, 2) at
+        reference points of a cell.
         """
         table = self._work.shapes.on(kind, np.array([cell]), points)
         r = table.x[0][0]
@@ -137,13 +126,15 @@ class Arc:
 
 
 def _across(sigma: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(3, q) traction along r, y and around the axis on a surface of some normal (r, y)."""
+    """Return the traction (3, q) along r, y and around the axis on a surface of some normal (r, y)."""
     rr, _, yy, rt, ty, ry = sigma
     n, m = normal
     return np.array([n * rr + m * ry, n * ry + m * yy, n * rt + m * ty])
 
 
 def _along_and_shear(sigma: np.ndarray, tangent: np.ndarray) -> np.ndarray:
-    """(2, q) normal stress along a tangent (r, y), and shear between it and the circumference."""
+    """Return the normal stress along a tangent (r, y) and the shear between it and the
+    circumference (2, q).
+    """
     r, y, around = _across(sigma, tangent)
     return np.array([tangent[0] * r + tangent[1] * y, around])

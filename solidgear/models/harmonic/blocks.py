@@ -31,15 +31,15 @@ from solidgear.models.harmonic.sections import PARTS, from_cells
 if TYPE_CHECKING:
     from solidgear.scene.shaft import Shaft
 
-#: of the mapping of straight cells
+#: element of the mapping of straight cells
 CORNERS = ElementQuad1()
 #: corners at the ends of the local edge where a coordinate has a value
 _ENDS = {(0, 1.0): (1, 2), (1, 1.0): (3, 2), (1, 0.0): (0, 1)}
 
 
 def _functions(t: Tabulated, weight: np.ndarray, around: bool) -> np.ndarray:
-    """(ne, k, nb, nq) values of phi / r, where asked for, phi,r and phi,y, times the root of the
-    weights.
+    """Return the values (ne, k, nb, nq) of phi / r, where asked for, phi,r and phi,y, times the
+    root of the weights.
     """
     root = np.sqrt(weight)
     if not around:
@@ -48,7 +48,7 @@ def _functions(t: Tabulated, weight: np.ndarray, around: bool) -> np.ndarray:
 
 
 def _products(t: Tabulated) -> np.ndarray:
-    """(nq, nb nb) products of basis functions, of which every mass is a weighted sum."""
+    """Return the products (nq, nb nb) of basis functions, of which every mass is a weighted sum."""
     nq = t.value.shape[1]
     return (t.value[:, None] * t.value).reshape(-1, nq).T
 
@@ -76,8 +76,8 @@ class Work:
         self.area = 0.0
 
     def batches(self):
-        """Yields (cells, material, tabulated basis, area weights (m, nq)), one material and one shape
-        of cells at a time.
+        """Yield (cells, material, tabulated basis, area weights (m, nq)), one material and one
+        shape of cells at a time.
         """
         bytes_each = 8 * (3 * self.dofs.shape[0] * len(self.weights) + 30 * self.dofs.shape[0] ** 2)
         for index, segment in enumerate(self.scene.segments):
@@ -88,7 +88,7 @@ class Work:
                     yield part, segment.material, t, t.det * self.weights
 
     def block(self, name: str, components: tuple[int, ...], wanted) -> Block:
-        """Block of a family of motion, by its name, with the ports of stations and their
+        """Build the block of a family of motion, by its name, with the ports of stations and their
         attachments.
         """
         family, nb = family_of(name), self.dofs.shape[0]
@@ -136,23 +136,24 @@ class Work:
             for station, attachment in wanted
         ]
         if not components:
-            return self._held(with_ports(block, ()), seats)
-        ports = [
-            Attached(station.y, held=seat)
-            if seat is not None
-            else Attached(station.y, self.mean(family, station, attachment)[:, keep])
-            for seat, (station, attachment) in zip(seats, wanted)
-        ]
+            return self._clamped(with_ports(block, ()), seats)
+        ports = []
+        for seat, (station, attachment) in zip(seats, wanted):
+            if seat is not None:
+                ports.append(Attached(station.y, held=seat))
+            else:
+                mean = self.mean(family, station, attachment)[:, keep]
+                ports.append(Attached(station.y, mean))
         return with_ports(replace(block, sections=self._sections(family, keep)), ports)
 
     def _seat_unknowns(self, station, c: int) -> np.ndarray:
-        """Mask of the unknowns on a seat, so many at each node."""
+        """Return the mask of the unknowns on a seat, so many at each node."""
         seat = np.zeros((self.n, c), bool)
         seat[self.geometry.edge_unknowns(self.seat_cells(station), 0, 1.0)] = True
         return seat.ravel()
 
-    def _held(self, block: Block, seats) -> Block:
-        """A block of waves that no motion of a port goes with: rigid seats stand still in it."""
+    def _clamped(self, block: Block, seats) -> Block:
+        """Return a block of waves, which move no port, with rigid seats at rest in it."""
         still = np.zeros(block.size, bool)
         for seat in seats:
             if seat is not None:
@@ -173,15 +174,15 @@ class Work:
         )
 
     def _sections(self, family: Family, keep: np.ndarray) -> Sections:
-        """Section motions of a block of which ``keep`` are the unknowns left."""
+        """Return the section motions of a block with the unknowns of a mask left."""
         density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
-        every = from_cells(
+        full = from_cells(
             self.shapes, self.dofs, self.order, density, PARTS[family.waves], family.count
         )
-        return through(every, sp.identity(len(keep), format="csc")[:, keep].tocsr())
+        return through(full, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def seat_cells(self, station):
-        """Cells with their outer edge on the seat."""
+        """Return the cells with their outer edge on the seat."""
         y = self.flat.points[1][self.flat.cells[:, self.flat.outer]]
         tol = 1e-9 * self.scene.length
         return self.flat.outer[
@@ -189,25 +190,25 @@ class Work:
         ]
 
     def on_edge(self, cells, direction: int, value: float):
-        """Basis tabulated on a local edge of straight cells: where a coordinate has a value."""
+        """Tabulate the basis on a local edge of straight cells: where a coordinate has a value."""
         points = np.empty((2, len(self.g)))
         points[direction], points[1 - direction] = value, self.g
         nodes = self.flat.points[:, self.flat.cells[:, cells]]
         return tabulate(CORNERS, nodes, self.element, points)
 
     def surface(self, station, attachment):
-        """Basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
+        """Return basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
         section; its cells, and their corners at both ends of it.
         """
         if attachment == "average":
             cells, direction, value = self.seat_cells(station), 0, 1.0
         elif attachment == "section":
-            off = np.abs(self.flat.points[1][self.flat.cells] - station.y)
+            distance = np.abs(self.flat.points[1][self.flat.cells] - station.y)
             tol = 1e-9 * self.scene.length
             # of cells beside a fillet a single corner may lie in the plane
-            cells, direction, value = np.flatnonzero((off[2:] < tol).all(axis=0)), 1, 1.0
+            cells, direction, value = np.flatnonzero((distance[2:] < tol).all(axis=0)), 1, 1.0
             if not len(cells):  # a section at the very start
-                cells, value = np.flatnonzero((off[:2] < tol).all(axis=0)), 0.0
+                cells, value = np.flatnonzero((distance[:2] < tol).all(axis=0)), 0.0
         else:
             raise SolidgearError(
                 f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"
@@ -218,7 +219,9 @@ class Work:
         return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells], cells, ends
 
     def mean(self, family: Family, station, attachment) -> np.ndarray:
-        """(m, n c) least-squares rigid motion of a surface, as rows on the unknowns of a family."""
+        """Return the least-squares rigid motion (m, n c) of a surface, as rows on the unknowns of a
+        family.
+        """
         value, r, h, w, dofs, *_ = self.surface(station, attachment)
         density = family.means(r, h, w)
         rows = np.zeros((self.n, *density.shape[2:]))

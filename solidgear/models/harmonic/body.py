@@ -1,7 +1,7 @@
 """Axisymmetric-harmonic solid: exact 3D elasticity of a body of revolution on its meridian.
 
-The unknowns and the matrices of one harmonic are in
-:mod:`solidgear.models.harmonic.blocks`; here a scene is meshed and its blocks put together.
+Here a scene is meshed and its blocks put together; unknowns and matrices of one harmonic are in
+:mod:`solidgear.models.harmonic.blocks`.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def harmonic(
     across: tuple[tuple[float, float], ...] = (),
     plain: bool = False,
 ) -> Body:
-    """Free harmonic solid of a scene; options as in
+    """Build the free harmonic solid of a scene; options as in
     :data:`~solidgear.models.options.HARMONIC_OPTIONS`.
 
     The defaults are the reference setting, good to 1e-4 on the overhung pinion; order 8 with 4 layers
@@ -51,12 +51,8 @@ def harmonic(
     bending, axial and torsion knows nothing of its motions, and must be given supports that do not
     couple it (:meth:`solidgear.body.Supports.on`). Ovalising harmonics carry no port motion; those
     that are not built at once are built when modes need them. Lines across are drawn before cells are
-    cut.
-
-    Raises
-    ------
-    SolidgearError
-        For layers thinner than digits, cells without end, or a cut where the mesh has no corner.
+    cut. Layers thinner than digits, cells without end and cuts off the corners of the mesh are
+    refused.
     """
     thick_enough("harmonic", {"layers": layers, "ratio": ratio})
     # chamfers in shoulders as cones, to whose ends layers lead
@@ -107,10 +103,7 @@ def harmonic(
         "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
         "pair_tolerance": 1e-9,
     }
-    further = Families(
-        scene,
-        lambda n: Work(scene, mesh).block(f"ovalising_{n}", (), wanted),
-    )
+    further = Families(scene, lambda n: Work(scene, mesh).block(f"ovalising_{n}", (), wanted))
     return Body(
         "harmonic",
         tuple(blocks),

@@ -1,6 +1,5 @@
-"""Families of motion of a harmonic solid: unknowns, energies, rigid and mean motions of each.
-
-In the unknowns of :mod:`solidgear.models.harmonic.blocks`; one set of integrals serves them all.
+"""Families of motion of a harmonic solid: unknowns, energies, rigid and mean motions of each, in the
+unknowns of :mod:`solidgear.models.harmonic.blocks`; one set of integrals serves them all.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ TORSION = -1
 
 
 def strains(n: int) -> tuple[np.ndarray, ...]:
-    """Strains rr, tt, yy and shears rt, ty, ry of harmonic n, each (3, c): entry [i, p] belongs to
+    """Return strains rr, tt, yy and shears rt, ty, ry of harmonic n, each (3, c): entry [i, p] belongs to
     function i of unknown p, functions being (phi / r, phi,r, phi,y) and unknowns (u_r, u_y) for
     n = 0, (p, q, w) otherwise. Shears rt and ty go with ``sin nt``, the others with ``cos nt``.
     """
@@ -38,37 +37,39 @@ def strains(n: int) -> tuple[np.ndarray, ...]:
 
 @dataclass(frozen=True)
 class Family:
-    """One family of motion."""
+    """A family of motion."""
 
-    waves: int  #: around the axis; :data:`TORSION` of torsion
+    waves: int  #: around the axis, or :data:`TORSION`
 
     @property
     def count(self) -> int:
-        """Unknowns of a point."""
+        """Number of unknowns of a point."""
         return {TORSION: 1, 0: 2}.get(self.waves, 3)
 
     @property
     def share(self) -> np.ndarray:
-        """(c,) share of the mass in every unknown."""
+        """Share (c,) of the mass in every unknown."""
         return np.array([2.0, 2.0, 1.0]) if self.count == 3 else np.ones(self.count)
 
     @property
     def turns(self) -> np.ndarray:
-        """(c,) waves around of every unknown's motion along fixed axes; none where nothing varies."""
+        """Waves (c,) around of the motion of every unknown along fixed axes; zeros where nothing
+        varies.
+        """
         n = self.waves
         return np.array([n - 1.0, n + 1.0, n]) if self.count == 3 else np.zeros(self.count)
 
     @property
-    def held(self) -> tuple[int, ...]:
+    def zero_on_axis(self) -> tuple[int, ...]:
         """Unknowns that are zero on the axis."""
         return {TORSION: (), 0: (0,), 1: (1, 2)}.get(self.waves, (0, 1, 2))
 
     def free(self, on_axis: np.ndarray) -> np.ndarray:
-        """(n, c) mask of the unknowns that the axis leaves free; given is which points have a share on
-        it.
+        """Return the mask (n, c) of the unknowns that the axis leaves free, from the mask (n,) of
+        points with a share on it.
         """
         keep = np.ones((len(on_axis), self.count), bool)
-        for unknown in self.held:
+        for unknown in self.zero_on_axis:
             keep[on_axis, unknown] = False
         return keep
 
@@ -78,7 +79,7 @@ class Family:
         return 3 if self.waves == TORSION else 1
 
     def weight(self, r: np.ndarray, area: np.ndarray) -> np.ndarray:
-        """Weights of points in integrals over the body."""
+        """Return the weights of points in integrals over the body."""
         return (np.pi if self.waves > 0 else 2 * np.pi) * area * r**self.power
 
     @property
@@ -99,31 +100,31 @@ class Family:
         return product(rr + tt + yy), product(rr, tt, yy), product(rt, ty, ry)
 
     def stiffness(self, material: Material) -> np.ndarray:
-        """(3, c, 3, c) coefficients of twice the strain energy density in a material."""
+        """Return the coefficients (3, c, 3, c) of twice the strain energy density in a material."""
         mu = material.shear_modulus
         lame = 2 * mu * material.nu / (1 - 2 * material.nu)
         trace, normal, shear = self.energy
         return lame * trace + mu * (2 * normal + shear)
 
-    def rigid(self, r: np.ndarray, y: np.ndarray, one: np.ndarray | float = 1.0) -> np.ndarray:
-        """(..., c, m) rigid motions about the origin at some places; or their coefficients by those of
-        the places and of a constant.
+    def rigid(self, r: np.ndarray, y: np.ndarray, constant: np.ndarray | float = 1.0) -> np.ndarray:
+        """Return the rigid motions (..., c, m) about the origin at some places; or their
+        coefficients by those of the places and of a constant.
         """
-        count = 2 if self.waves == 1 else 1 if self.waves < 1 else 0
-        out = np.zeros((*r.shape, self.count, count))
+        motions = {TORSION: 1, 0: 1, 1: 2}.get(self.waves, 0)
+        out = np.zeros((*r.shape, self.count, motions))
         if self.waves == 0:
-            out[..., 1, 0] = one
+            out[..., 1, 0] = constant
         elif self.waves == TORSION:
-            out[..., 0, 0] = one
+            out[..., 0, 0] = constant
         elif self.waves == 1:
-            out[..., 0, 0] = one
+            out[..., 0, 0] = constant
             out[..., 0, 1] = y
             out[..., 2, 1] = -r
         return out
 
     def means(self, r: np.ndarray, h: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """(..., c, m) densities whose integrals over a surface of length weights ``w`` are its mean
-        motions (least squares) about the place from which ``h`` counts.
+        """Return the densities (..., c, m) whose integrals over a surface of length weights ``w``
+        are its mean motions (least squares) about the place from which ``h`` counts.
         """
         if self.waves == 0:
             out = np.zeros((*r.shape, 2, 1))
@@ -141,6 +142,6 @@ class Family:
 
 
 def family_of(block: str) -> Family:
-    """The family of a block, by its name."""
-    known = {"torsion": TORSION, "axial": 0, "bending_z": 1, "bending_x": 1}
-    return Family(known[block] if block in known else int(block.rpartition("_")[2]))
+    """Return the family of a block, by its name."""
+    waves = {"torsion": TORSION, "axial": 0, "bending_z": 1, "bending_x": 1}
+    return Family(waves[block] if block in waves else int(block.rpartition("_")[2]))

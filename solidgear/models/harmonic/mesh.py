@@ -20,17 +20,15 @@ from solidgear.models.harmonic.families import Family
 
 @dataclass(frozen=True)
 class HarmonicMesh:
-    """The mesh of a meridian, with the unknowns of one component of the displacement; the same before
-    cells were cut towards corners, and the cell there of every cell.
-    """
+    """Mesh of a meridian with the unknowns of one component of the displacement."""
 
     mesh: MeshQuad1
     element: Element
-    dofs: np.ndarray
+    dofs: np.ndarray  #: (nb, ne)
     meridian: Meridian
     order: int
-    uncut: Meridian
-    parent: np.ndarray
+    uncut: Meridian  #: before cells were cut towards corners
+    parent: np.ndarray  #: (ne,) cell of ``uncut`` of every cell
 
     @property
     def size(self) -> int:
@@ -38,7 +36,9 @@ class HarmonicMesh:
         return int(self.dofs.max()) + 1
 
     def edge_unknowns(self, cells: np.ndarray, direction: int, value: float) -> np.ndarray:
-        """Unknowns of cells that do not vanish on a local edge, where a coordinate has a value."""
+        """Return the unknowns of cells that do not vanish on a local edge, where a coordinate has a
+        value.
+        """
         # more points than the highest function has zeros on an edge
         along = np.linspace(0.0, 1.0, self.order + 4)[1:-1]
         points = np.empty((2, len(along)))
@@ -57,7 +57,7 @@ class HarmonicMesh:
         return out
 
     def whole(self, family: Family, u: np.ndarray) -> np.ndarray:
-        """(n, c, ...) unknowns of a family from those that the axis leaves free."""
+        """Return the unknowns (n, c, ...) of a family from those that the axis leaves free."""
         keep = family.free(self.on_axis)
         if keep.sum() != len(u):
             raise SolidgearError(
@@ -69,17 +69,17 @@ class HarmonicMesh:
         return out
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """The outline of the meridian turned around the axis."""
+        """Return the outline of the meridian turned around the axis."""
         return surface(self, moved)
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
-        """(3 k, n) displacements of some points of the surface by the unknowns of a block."""
+        """Return the displacements (3 k, n) of points of the surface by the unknowns of a block."""
         from solidgear.models.harmonic.drawing import rows  # start-up: of responses alone
 
         return rows(self, name, chosen)
 
     def volume(self) -> None:
-        """None: the mesh is that of a meridian."""
+        """Return None: the mesh is that of a meridian."""
         return None
 
 
@@ -89,7 +89,7 @@ def harmonic_mesh(
     uncut: Meridian | None = None,
     parent: np.ndarray | None = None,
 ) -> HarmonicMesh:
-    """Unknowns of quadrilaterals of some order on a meridian."""
+    """Number the unknowns of quadrilaterals of some order on a meridian."""
     mesh = MeshQuad1(flat.points, flat.cells, sort_t=False)
     element = {1: ElementQuad1, 2: ElementQuad2}.get(order, lambda: ElementQuadP(order))()
     if parent is None:

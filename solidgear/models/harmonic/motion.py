@@ -1,7 +1,7 @@
 """Motion of the mesh of a harmonic solid with a parameter of its scene.
 
 Nodes follow the ends of segments, seats and sections along the axis, linearly between them, and the
-surfaces across it, linearly between the lines of the mesh that runs from joint to joint.
+surfaces across it, linearly between the mesh lines that run from joint to joint.
 """
 
 from __future__ import annotations
@@ -16,12 +16,8 @@ from solidgear.scene.outline import TOUCH
 
 class Motion:
     """Motion of nodes, seats and materials of a harmonic body with one parameter, from the scene a
-    little before and after it.
-
-    Raises
-    ------
-    SolidgearError
-        If places of one line of the mesh move apart and something is held there rigidly.
+    little before and after it; refused where places of one mesh line move apart and a rigid or
+    section port lies there.
     """
 
     def __init__(self, adjoint: HarmonicAdjoint, low, high, step: float):
@@ -32,26 +28,26 @@ class Motion:
         self.segment = self._rate(scene.segments, "segments", names)
         self.station = self._rate(scene.stations, "stations", ("y", "lo", "hi"))
 
-    def _rate(self, of, key: str, names) -> np.ndarray:
-        one, two = getattr(self.low, key), getattr(self.high, key)
-        if not len(one) == len(two) == len(of):
+    def _rate(self, items, key: str, names) -> np.ndarray:
+        low, high = getattr(self.low, key), getattr(self.high, key)
+        if not len(low) == len(high) == len(items):
             raise SolidgearError("the shaft takes another form there")
-        ends = [[[getattr(x, n) for n in names] for x in things] for things in (one, two)]
-        return (np.array(ends[1]) - np.array(ends[0])) / self.step
+        a, b = (np.array([[getattr(x, n) for n in names] for x in side]) for side in (low, high))
+        return (b - a) / self.step
 
     def along(self) -> np.ndarray:
-        """(n,) axial velocity of the nodes."""
+        """Return the axial velocity (n,) of the nodes."""
         adjoint, scene = self.adjoint, self.adjoint.scene
         tol = 1e-9 * scene.length
         marks = {0.0: 0.0} | {s.y1: v[1] for s, v in zip(scene.segments, self.segment)}
         for (s, attachment), (y, lo, hi) in zip(adjoint.stations, self.station):
-            wanted = [(s.y, y)] if attachment == "section" else [(s.lo, lo), (s.hi, hi)]
-            for place, rate in wanted:
+            places = [(s.y, y)] if attachment == "section" else [(s.lo, lo), (s.hi, hi)]
+            for place, rate in places:
                 near = [m for m in marks if abs(m - place) < tol]
-                known = marks[near[0]] if near else None
-                if known is None:
+                mark_rate = marks[near[0]] if near else None
+                if mark_rate is None:
                     marks[place] = rate
-                elif abs(known - rate) > 1e-6 * max(1.0, abs(rate)) and attachment != "average":
+                elif abs(mark_rate - rate) > 1e-6 * max(1.0, abs(rate)) and attachment != "average":
                     raise SolidgearError(
                         f"{s.name} is tied ({attachment}) at a line of the mesh that stays"
                     )
@@ -60,45 +56,45 @@ class Motion:
         return np.interp(adjoint.flat.points[1], self.marks, self.rates)
 
     def radial(self, axial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(4, m) radial velocity of the corners of cells as their own segment has it, and the mean
+        """Return the radial velocity (4, m) of the corners of cells by their segment, and the mean
         (n,) at the nodes.
         """
         adjoint, flat, scene = self.adjoint, self.adjoint.flat, self.adjoint.scene
-        own = np.zeros(flat.cells.shape)
+        by_segment = np.zeros(flat.cells.shape)
         for k, s in enumerate(scene.segments):
             cells = np.flatnonzero(flat.segment == k)
             corner = flat.cells[:, cells]
             t, left, right = adjoint.rings[k]
             y0, y1, *_ = self.segment[k]
             rate = (1 - t) * self._across(k, 0, left) + t * self._across(k, 1, right)
-            # what slides along a cone follows it
+            # a node that slides along a cone follows it
             slope = (right - left) / s.length
-            own[:, cells] = rate + slope * (axial[corner] - (1 - t) * y0 - t * y1)
+            by_segment[:, cells] = rate + slope * (axial[corner] - (1 - t) * y0 - t * y1)
         count, total = np.zeros((2, flat.points.shape[1]))
         for k in range(len(scene.segments)):
             # once a segment, however many cells of it meet there
             cells = np.flatnonzero(flat.segment == k)
             nodes, first = np.unique(flat.cells[:, cells].ravel(), return_index=True)
             count[nodes] += 1
-            total[nodes] += own[:, cells].ravel()[first]
-        return own, total / count
+            total[nodes] += by_segment[:, cells].ravel()[first]
+        return by_segment, total / count
 
     def _across(self, k: int, end: int, r: np.ndarray) -> np.ndarray:
-        """Radial velocity on an end of a segment, at radii r."""
+        """Return the radial velocity on an end of a segment, at radii r."""
         segments = self.adjoint.scene.segments
         sides = [(k, end)] + [(j, 1 - end) for j in (k + 2 * end - 1,) if 0 <= j < len(segments)]
         marks: dict[float, float] = {}
-        for j, at in sides:
+        for j, side_end in sides:
             for name, column in (("inner", 4), ("outer", 2)):
-                place = getattr(segments[j], f"{name}{at}")
+                place = getattr(segments[j], f"{name}{side_end}")
                 if not any(abs(place - m) < TOUCH for m in marks):
-                    marks[place] = self.segment[j, column + at]
+                    marks[place] = self.segment[j, column + side_end]
         marks.setdefault(0.0, 0.0)
         places = np.array(sorted(marks))
         return np.interp(r, places, [marks[m] for m in places])
 
-    def of(self, push: Push) -> float:
-        """Derivative of a number by the parameter, but for what acts on its ports."""
+    def derivative(self, push: Push) -> float:
+        """Return the derivative of a number by the parameter, without actions on its ports."""
         return self._shape(push) + self._matter(push)
 
     def _shape(self, push: Push) -> float:
@@ -108,30 +104,26 @@ class Motion:
             self.move()
         total = float((push.nodes * self.velocity).sum() + push.planes @ self.station[:, 0])
         total += float((push.ends * self.slip).sum())
-        for felt, bulge in zip(push.surface, self.bulge):
-            total += float((felt * bulge).sum())
+        for by_surface, bulge in zip(push.surface, self.bulge):
+            total += float((by_surface * bulge).sum())
         return total
 
     def move(self) -> None:
+        """Set the velocity of the nodes, the slip of seat ends and the bulge of surfaces beyond it."""
         adjoint, flat = self.adjoint, self.adjoint.flat
         axial = self.along()
-        own, mean = self.radial(axial)
+        by_segment, mean = self.radial(axial)
         self.velocity = np.array([mean, axial])
         seats = self.station[:, 1:] - np.array(
             [np.interp([s.lo, s.hi], self.marks, self.rates) for s, _ in adjoint.stations]
         )
         averaged = np.array([a == "average" for _, a in adjoint.stations])
         self.slip = np.where(averaged[:, None], seats, 0.0)
-        rest = own - mean[flat.cells]
-        self.bulge = [
-            rest[list(ends)][:, adjoint.sides[side]].T for side, ends in ((1, (1, 2)), (0, (0, 3)))
-        ]
-        bulging = {
-            float(y)
-            for y in flat.points[1][flat.cells[[1, 2]][:, adjoint.sides[1]]][
-                np.abs(self.bulge[0].T) > 1e-9
-            ]
-        }
+        beyond = by_segment - mean[flat.cells]
+        outer, bore = beyond[[1, 2]][:, adjoint.sides[1]], beyond[[0, 3]][:, adjoint.sides[0]]
+        self.bulge = [outer.T, bore.T]
+        surface_y = flat.points[1][flat.cells[[1, 2]][:, adjoint.sides[1]]]
+        bulging = {float(y) for y in surface_y[np.abs(outer) > 1e-9]}
         for s, attachment in adjoint.stations:
             tol = 1e-9 * adjoint.scene.length
             if attachment != "section" and any(s.lo - tol <= y <= s.hi + tol for y in bulging):
@@ -139,11 +131,12 @@ class Motion:
 
     def _matter(self, push: Push) -> float:
         out = 0.0
-        for k, (one, two) in enumerate(zip(self.low.segments, self.high.segments)):
-            if one.material == two.material:
+        for k, segments in enumerate(zip(self.low.segments, self.high.segments)):
+            a, b = (segment.material for segment in segments)
+            if a == b:
                 continue
-            mu = [x.material.shear_modulus for x in (one, two)]
-            lame = [2 * m * x.material.nu / (1 - 2 * x.material.nu) for m, x in zip(mu, (one, two))]
+            mu = [m.shear_modulus for m in (a, b)]
+            lame = [2 * g * m.nu / (1 - 2 * m.nu) for g, m in zip(mu, (a, b))]
             out += push.lame[k] * (lame[1] - lame[0]) + push.shear[k] * (mu[1] - mu[0])
-            out += push.density[k] * (two.material.density - one.material.density)
+            out += push.density[k] * (b.density - a.density)
         return out / self.step

@@ -32,32 +32,22 @@ from solidgear.scene import Scene
 class Patch:
     """Patch of a shaft that teeth touch."""
 
-    #: first, last: its ends along the shaft, m
-    first: float
-    last: float
+    first: float  #: lower end along the shaft, m
+    last: float  #: upper end, m
     angle: float  #: of its middle, rad; 0 on the z axis, a quarter turn on the x axis
     arc: float  #: of the circumference, rad
     inside: bool = False  #: on the inner surface, as of a ring
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3) radial, tangential and axial direction at its middle, as columns x y z."""
+        """Radial, tangential and axial direction (3, 3) at its middle, as columns x y z."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return np.array([[s, c, 0.0], [0.0, 0.0, 1.0], [c, -s, 0.0]])
 
 
 class PatchMotion:
-    """Mean motion of a patch of a harmonic solid, harmonic by harmonic.
-
-    Parameters
-    ----------
-    body : Body
-        Of the harmonic solid.
-
-    Raises
-    ------
-    SolidgearError
-        If the body is no harmonic solid, or the shaft has no such surface there.
+    """Mean motion of a patch of a harmonic solid, harmonic by harmonic; refused for other bodies,
+    and where the shaft has no such surface.
     """
 
     def __init__(self, scene: Scene, body: Body, patch: Patch):
@@ -71,20 +61,22 @@ class PatchMotion:
         self._mean = self._along()
 
     def _along(self) -> np.ndarray:
-        """(n,) mean over the meridian of the patch, weighted by area, of a scalar unknown."""
+        """Return the mean (n,) of a scalar unknown over the meridian of the patch, weighted by
+        area.
+        """
         work, first, last = self._work, self.patch.first, self.patch.last
         inside = self.patch.inside
-        cells, side_of, at = (
-            (work.flat.inner, [0, 3], 0.0) if inside else (work.flat.outer, [1, 2], 1.0)
-        )
-        ends = work.flat.points[1][work.flat.cells[side_of][:, cells]]
+        cells, corners, radial = work.flat.outer, [1, 2], 1.0
+        if inside:
+            cells, corners, radial = work.flat.inner, [0, 3], 0.0
+        ends = work.flat.points[1][work.flat.cells[corners][:, cells]]
         out, area = np.zeros(work.n), 0.0
-        for cell, (one, other) in zip(cells, ends.T):
+        for cell, (y0, y1) in zip(cells, ends.T):
             # the share of the cell's side that lies on the patch
-            low, high = np.clip((np.array([first, last]) - one) / (other - one), 0.0, 1.0)
+            low, high = np.clip((np.array([first, last]) - y0) / (y1 - y0), 0.0, 1.0)
             if high - low < 1e-9:
                 continue
-            points = np.vstack([np.full_like(work.g, at), low + (high - low) * work.g])
+            points = np.vstack([np.full_like(work.g, radial), low + (high - low) * work.g])
             nodes = work.flat.points[:, work.flat.cells[:, [cell]]]
             t = tabulate(CORNERS, nodes, work.element, points)
             side = np.linalg.norm(t.tangent[:, :, :, 1], axis=2)[0]
@@ -99,11 +91,11 @@ class PatchMotion:
         return out / area
 
     def rows(self, n: int) -> np.ndarray:
-        """Mean radial, tangential and axial motion (3, m), of the even part, the odd one, the even one, on
-        the unknowns (p, q, w) of the block of n >= 1 waves.
+        """Return the mean radial (even), tangential (odd) and axial (even) motion (3, m) on the
+        unknowns (p, q, w) of the block of n >= 1 waves.
         """
         half = n * self.patch.arc / 2
         # u_r = p + q, u_t = p - q, u_y = w
         parts = np.array([[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
-        every = np.einsum("k,ic->ikc", self._mean * np.sinc(half / np.pi), parts)
-        return every.reshape(3, -1)[:, Family(n).free(self._work.geometry.on_axis).ravel()]
+        full_rows = np.einsum("k,ic->ikc", self._mean * np.sinc(half / np.pi), parts)
+        return full_rows.reshape(3, -1)[:, Family(n).free(self._work.geometry.on_axis).ravel()]

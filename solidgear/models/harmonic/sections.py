@@ -46,9 +46,9 @@ def from_cells(
     parts: tuple[Part, ...],
     unknowns: int,
 ) -> Sections:
-    """Sections of a block on meridian cells, by their (nb, ne) degrees of freedom and densities
-    (ne,), kg/m3: one part a component, with so many unknowns at each scalar degree of freedom,
-    numbered together.
+    """Return the sections of a block on meridian cells, by their degrees of freedom (nb, ne) and
+    densities (ne,), kg/m3: one part a component, with so many unknowns at each scalar degree of
+    freedom, numbered together.
     """
     n = int(dofs.max()) + 1
     x, w = gauss(order + 2)
@@ -65,10 +65,10 @@ def from_cells(
             a, b = np.meshgrid(x, along, indexing="ij")
             weight = np.outer(w, np.tile(w / count, count)).ravel()
             points = np.array([a.ravel(), b.ravel()])
-            for some, t in _tabulated(shapes, pieces == count, points):
-                r, dm = t.x[0].ravel(), (t.det * weight * density[some, None]).ravel()
+            for cells, t in _tabulated(shapes, pieces == count, points):
+                r, dm = t.x[0].ravel(), (t.det * weight * density[cells, None]).ravel()
                 hat = hats(np.clip(t.x[1].ravel(), stations[0], stations[-1]), stations)
-                value = _at_points(t.value, dofs[:, some], n)
+                value = _at_points(t.value, dofs[:, cells], n)
                 for k, part in enumerate(parts):
                     mass = part.factor * dm * r**part.weight
                     field = part.sign * r**part.power
@@ -83,15 +83,15 @@ def from_cells(
 
 
 def _tabulated(shapes: Shapes, wanted: np.ndarray, points: np.ndarray):
-    """Yields (cells, tabulated basis) for those of a mask, a batch of one shape at a time."""
+    """Yield (cells, tabulated basis) for the cells of a mask, a batch of one shape at a time."""
     for kind in shapes.kinds:
         basis = shapes.tabulation(kind, points)
-        for some in batches(kind.cells[wanted[kind.cells]], 8 * 12 * points.shape[1]):
-            yield some, basis.on(shapes.nodes(kind, some))
+        for cells in batches(kind.cells[wanted[kind.cells]], 8 * 12 * points.shape[1]):
+            yield cells, basis.on(shapes.nodes(kind, cells))
 
 
 def _at_points(value: np.ndarray, dofs: np.ndarray, n: int) -> sp.csr_matrix:
-    """(cells * points, n) values of the basis at the points of every cell."""
+    """Return the values (cells * points, n) of the basis at the points of every cell."""
     nb, nq = value.shape
     cells = dofs.shape[1]
     data = np.broadcast_to(value.T, (cells, nq, nb)).ravel()

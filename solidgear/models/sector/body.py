@@ -29,7 +29,7 @@ from solidgear.models.kinds import CYCLIC
 from solidgear.models.sector.cyclic import cyclic_blocks
 from solidgear.models.sector.half import half_sector_blocks, half_sector_solid
 from solidgear.models.sector.mesh import seats, sector_solid
-from solidgear.models.size import Size, of_mesh
+from solidgear.models.size import Size, size_of_mesh
 from solidgear.models.solid.block import body_of, free_block, mesh_facts
 from solidgear.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.models.solid.plan import tetrahedra_plan
@@ -56,9 +56,9 @@ def sector(
     count: int | None = None,
     half: bool = True,
 ) -> Body:
-    """Free body of a shaft that repeats itself around the axis, from one sector of it; options as in
-    :data:`~solidgear.models.options.SECTOR_OPTIONS`, and `count` sectors around, by default as many
-    as features have in common.
+    """Build the free body of a shaft that repeats itself around the axis, from one sector of it; options
+    as in :data:`~solidgear.models.options.SECTOR_OPTIONS`, and `count` sectors around, by default the
+    number that features have in common.
 
     Teeth are resolved, also those that the scene smears for other models, unless the scene resolves
     other features: then the segment of revolution stands for smeared ones here too. The mean motion
@@ -67,72 +67,64 @@ def sector(
     solved where features are even about a plane, as straight teeth are, and holes that lie evenly
     with them: the whole sector then has the same elements and their images.
 
-    Returns
-    -------
-    Body
-        Of half a sector blocks ``axial``, ``torsion``, ``bending_z`` and its twin; of a whole one
-        ``cyclic_0`` of axial motion and torsion, and ``cyclic_1`` of bending in both planes.
-
-    Raises
-    ------
-    SolidgearError
-        Features without a common sector, a harmonic index that is too high, or a seat without
-        faces; MeshError where meshing fails.
+    Half a sector gives blocks ``axial``, ``torsion``, ``bending_z`` and its twin; a whole one
+    ``cyclic_0`` of axial motion and torsion, and ``cyclic_1`` of bending in both planes. Features
+    without a common sector, a harmonic index that is too high and a seat without faces are refused.
     """
-    own = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    wanted = [*attached_stations(scene.stations, attachments)]
+    sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+    ties = [*attached_stations(scene.stations, attachments)]
     features = cyclic_features(scene)
     ends = (scene.port.lo, scene.port.hi) if material_port else ()
-    made = meshed_sector(scene, wanted, features, ends, count=count, **own)
-    high = [h for h in ovalising if 2 * h >= made.count]
+    meshed = meshed_sector(scene, ties, features, ends, count=count, **sizes)
+    high = [h for h in ovalising if 2 * h >= meshed.count]
     if high:
         raise SolidgearError(
-            f"sector: ovalising {high[0]} is not below half of the {made.count} sectors"
+            f"sector: ovalising {high[0]} is not below half of the {meshed.count} sectors"
         )
     if not half:
-        made = mirrored(made)
-    mesh, blocks_of = _solved_part(made)
-    facets = seats(mesh, made.straight, scene, features)
+        meshed = mirrored(meshed)
+    mesh, blocks_of = _solved_part(meshed)
+    facets = seats(mesh, meshed.straight, scene, features)
 
     def parts_of(station, attachment):
         if material_port and attachment == "average" and station is scene.port:
-            y = made.straight[1][made.mesh.t]
+            y = meshed.straight[1][meshed.mesh.t]
             inside = (y > station.lo - 1e-9) & (y < station.hi + 1e-9)
             return mesh.over_cells(np.flatnonzero(inside.all(axis=0))), None
-        found = facets(station, attachment)
-        if not len(found):
+        seat = facets(station, attachment)
+        if not len(seat):
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
-        held = mesh.facet_unknowns(found) if attachment == "rigid" else None
-        return mesh.over_facets(found), held
+        rigid_nodes = mesh.facet_unknowns(seat) if attachment == "rigid" else None
+        return mesh.over_facets(seat), rigid_nodes
 
-    blocks = blocks_of(scene, wanted, parts_of, ovalising)
-    facts = _facts(made, mesh, features, refinement) | {
-        "sectors": made.count,
-        "solved_part": "half a sector" if made.half else "a whole sector",
+    blocks = blocks_of(scene, ties, parts_of, ovalising)
+    facts = _facts(meshed, mesh, features, refinement) | {
+        "sectors": meshed.count,
+        "solved_part": "half a sector" if meshed.half else "a whole sector",
         "pair_tolerance": PAIRS,
     }
-    return body_of(scene, wanted, blocks, facts, mesh, "sector")
+    return body_of(scene, ties, blocks, facts, mesh, "sector")
 
 
-def _solved_part(made: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Block, ...]]]:
-    """The mesh of a sector, or of its half, and what makes blocks of it."""
-    if made.half:
-        half = half_sector_solid(made)
+def _solved_part(meshed: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Block, ...]]]:
+    """Return the mesh of a sector, or of its half, and the function that makes blocks of it."""
+    if meshed.half:
+        half = half_sector_solid(meshed)
         return half, partial(half_sector_blocks, half)
-    mesh = sector_solid(made)
-    return mesh, lambda scene, *given: cyclic_blocks(mesh, scene, mesh.sector, *given)
+    mesh = sector_solid(meshed)
+    return mesh, partial(cyclic_blocks, mesh, mesh.sector)
 
 
-def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Body:
-    """Free body, in one block, of the same shaft in full: all sectors, copies of one mesh with the
-    ``size`` and ``graded_size`` of :func:`sector`.
+def whole(scene: Any, wanted: Sequence, *, refinement: float, **sizes: Any) -> Body:
+    """Build the free body, in one block, of the same shaft in full: all sectors, copies of one mesh
+    with the ``size`` and ``graded_size`` of :func:`sector`.
     """
     features = cyclic_features(scene)
-    mesh, segment, made = whole_mesh(scene, wanted, refinement=refinement, **own)
+    mesh, segment, meshed = whole_mesh(scene, wanted, refinement=refinement, **sizes)
     solid = _isoparametric(mesh, "tet10", segment)
     block = free_block(solid, scene, wanted, seats(solid, mesh.p, scene, features))
-    facts = _facts(made, solid, features, refinement) | {
-        "sectors": made.count,
+    facts = _facts(meshed, solid, features, refinement) | {
+        "sectors": meshed.count,
         "pair_tolerance": 1e-6,
     }
     return body_of(scene, wanted, (block,), facts, solid)
@@ -141,23 +133,24 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **own: Any) -> Bod
 def whole_mesh(
     scene: Any, wanted: Sequence, **sizes: Any
 ) -> tuple[MeshTet2, np.ndarray, SectorMesh]:
-    """The mesh of all sectors, the segment of each element, and the sector that it is copied from;
-    parameters as for :func:`whole`.
+    """Return the mesh of all sectors, the segment of each element, and the sector that it is copied
+    from; parameters as for :func:`whole`.
     """
-    made = mirrored(meshed_sector(scene, wanted, cyclic_features(scene), **sizes))
-    return (*replicated(made), made)
+    meshed = mirrored(meshed_sector(scene, wanted, cyclic_features(scene), **sizes))
+    return (*replicated(meshed), meshed)
 
 
 def cyclic_features(scene: Any) -> tuple[Any, ...]:
-    """Features of a scene that repeat themselves around the axis: those that are resolved, or,
-    where there are none, teeth that the scene smears for other models.
+    """Return the features of a scene that repeat themselves around the axis: the resolved ones, or,
+    without any, teeth that the scene smears for other models.
     """
-    every = tuple(f for f in getattr(scene, "features", ()) if f.sort == CYCLIC)
-    return tuple(f for f in every if not f.smeared) or every
+    cyclic = tuple(f for f in getattr(scene, "features", ()) if f.sort == CYCLIC)
+    return tuple(f for f in cyclic if not f.smeared) or cyclic
 
 
 def no_sector(scene: Any) -> str:
-    """Reason why the features of a scene have no sector that can be meshed, or nothing.
+    """Return the reason why the features of a scene have no sector that can be meshed; empty if they
+    have one.
 
     Examples
     --------
@@ -172,20 +165,20 @@ def no_sector(scene: Any) -> str:
 
 
 def not_together(scene: Any) -> str:
-    """Reason why teeth and bolt circles of a scene cannot be drawn beside what is cut out of it, or
-    nothing.
+    """Return the reason why teeth and bolt circles of a scene cannot be meshed beside its cuts;
+    empty if they can.
     """
     features = resolved(scene)
     around = [f for f in features if f.sort == CYCLIC]
     toothed = {f.segment: f for f in around if f.toothed}
     for teeth in toothed.values():
-        called = f'{teeth.what} "{teeth.name}"'
+        label = f'{teeth.what} "{teeth.name}"'
         if teeth.spiral_angle:
-            return f"a mesh with {called} is twisted, and what is cut beside it would be with it"
+            return f"a mesh with {label} is twisted, and what is cut beside it would be with it"
         pitch, first = 2 * math.pi / teeth.count, next(iter(toothed.values()))
-        apart = (middle(teeth, 1) - middle(first, 1) + pitch / 2) % pitch - pitch / 2
-        if abs(apart) > SAME_ANGLE:
-            return f'{called} does not lie evenly about the middle of {first.what} "{first.name}"'
+        difference = (middle(teeth, 1) - middle(first, 1) + pitch / 2) % pitch - pitch / 2
+        if abs(difference) > SAME_ANGLE:
+            return f'{label} does not lie evenly about the middle of {first.what} "{first.name}"'
     for cut in features:
         if cut.sort != CYCLIC and cut.segment in toothed:
             teeth = toothed[cut.segment]
@@ -194,32 +187,32 @@ def not_together(scene: Any) -> str:
 
 
 def _edge_in_teeth(outline: Outline[Segment], features: Sequence[Any]) -> str:
-    """Reason why fillets and chamfers beside teeth cannot be drawn, or nothing: they stand on the face
-    below the roots, or leave one above the tips.
+    """Return the reason why fillets and chamfers beside teeth cannot be meshed, empty if they can:
+    they stand on the face below the roots, or leave one above the tips.
     """
     toothed = {f.segment: f for f in features if f.toothed}
     for c in outline.corners:
-        called, owner = f'{c.kind} "{c.name}"', outline.segments[c.owner]
+        label, owner = f'{c.kind} "{c.name}"', outline.segments[c.owner]
         if owner.name in toothed:
-            return f'{called} runs along the teeth of "{owner.name}": a sector holds none there'
+            return f'{label} runs along the teeth of "{owner.name}": a sector holds none there'
         if not 0 < c.joint < len(outline.segments):
             continue
         s = outline.segments[c.joint if c.side < 0 else c.joint - 1]
         if s.name not in toothed:
             continue
         if c.surface == "bore":
-            return f'{called} is in the bore, at the teeth of "{s.name}": a sector holds none there'
+            return f'{label} is in the bore, at the teeth of "{s.name}": a sector holds none there'
         pitch, r = s.outer0 if c.side < 0 else s.outer1, c.on_face[0]
         root, tip = toothed[s.name].land * pitch, toothed[s.name].tip * pitch
         least = SMALLEST * pitch
         if c.root and r > root - least:
             return (
-                f'{called} reaches {r:.6g} m from the axis, where the roots of "{s.name}" lie at '
+                f'{label} reaches {r:.6g} m from the axis, where the roots of "{s.name}" lie at '
                 f"{root:.6g} m: a sector needs it to end below {root - least:.6g} m"
             )
         if not c.root and r < tip + least:
             return (
-                f'{called} begins {r:.6g} m from the axis, where the tips of "{s.name}" lie at '
+                f'{label} begins {r:.6g} m from the axis, where the tips of "{s.name}" lie at '
                 f"{tip:.6g} m: a sector needs it to begin above {tip + least:.6g} m"
             )
     return ""
@@ -228,7 +221,7 @@ def _edge_in_teeth(outline: Outline[Segment], features: Sequence[Any]) -> str:
 def meshed_sector(
     scene, wanted, features, ends=(), *, size=None, graded_size=None, refinement=1.0, count=None
 ) -> SectorMesh:
-    """The mesh of one sector of a scene, divided at the planes ``ends`` too; parameters as for
+    """Mesh one sector of a scene, divided at the planes ``ends`` too; parameters as for
     :func:`sector`.
     """
     sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
@@ -238,13 +231,15 @@ def meshed_sector(
     return sector_mesh(scene.outline, features, **plan, refinement=refinement, count=count)
 
 
-def sectors_around(scene, given: Mapping[str, Any]) -> int:
-    """Number of sectors of a scene: what its features have in common, or what was asked for."""
-    return given.get("count") or max(1, sectors_of(cyclic_features(scene)))
+def sectors_around(scene, options: Mapping[str, Any]) -> int:
+    """Return the number of sectors of a scene: the number asked for, or that which its features
+    have in common.
+    """
+    return options.get("count") or max(1, sectors_of(cyclic_features(scene)))
 
 
 def halved(scene: Any, count: int) -> bool:
-    """True where the middle of one of so many sectors can lie in a mirror plane of all features.
+    """Return True where the middle of one of so many sectors can lie in a mirror plane of all features.
 
     Examples
     --------
@@ -268,43 +263,44 @@ def sector_size(
     """Mesh one sector and count; parameters as for :func:`sector`.
 
     A wave around takes as many complex unknowns as the sector has, or, of half a sector, real ones.
-    Motions that are alike in all sectors are real, and of half a sector fall into two.
+    Motions that are equal in all sectors are real, and of half a sector fall into two.
     """
     wanted = [*attached_stations(scene.stations, attachments)]
     ends = (scene.port.lo, scene.port.hi) if material_port else ()
-    made = meshed_sector(scene, wanted, cyclic_features(scene), ends, count=count, **sizes)
-    made = made if half else mirrored(made)
-    mesh: Any = _solved_part(made)[0]
-    (_, entries), *_ = of_mesh(mesh.mesh, basis_of("tet10")).matrices
-    n, own = mesh.nodes.shape[1], mesh.sector
-    axis, waves = len(own.axis), 1 + len(ovalising)
-    if made.half:
-        planes = len(own.middle) + len(own.cut)
+    meshed = meshed_sector(scene, wanted, cyclic_features(scene), ends, count=count, **sizes)
+    meshed = meshed if half else mirrored(meshed)
+    mesh: Any = _solved_part(meshed)[0]
+    (_, entries), *_ = size_of_mesh(mesh.mesh, basis_of("tet10")).matrices
+    n, nodes = mesh.nodes.shape[1], mesh.sector
+    axis, waves = len(nodes.axis), 1 + len(ovalising)
+    if meshed.half:
+        planes = len(nodes.middle) + len(nodes.cut)
         rows = 6 * (n - planes - axis) + 3 * planes + axis
         # the two planes of bending are twins, of one matrix
         matrices, twins = [(rows // 2, entries)] * 2 + [(rows, 2 * entries)] * waves, rows
     else:
-        rows = 3 * (n - len(own.slave) - axis) + axis
+        rows = 3 * (n - len(nodes.slave) - axis) + axis
         matrices, twins = [(rows, entries)] + [(2 * rows, 4 * entries)] * waves, 0
-    total = sum(count for count, _ in matrices) + twins + rows % 2 * made.half
-    return Size(total, tuple(matrices), sum(held for _, held in matrices))
+    odd = rows % 2 if meshed.half else 0  # axial motion and torsion are halves of the rows
+    total = sum(count for count, _ in matrices) + twins + odd
+    return Size(total, tuple(matrices), sum(count for _, count in matrices))
 
 
 def rough_sector(scene, wanted, *, refinement: float, count: int | None = None, **sizes) -> float:
-    """Roughly how many tetrahedra there will be in half a sector, without meshing; parameters as for
+    """Estimate the number of tetrahedra in half a sector, without meshing; parameters as for
     :func:`meshed_sector`.
     """
     plan = tetrahedra_plan(scene, wanted, refinement=refinement, around=16, **sizes)
     features = cyclic_features(scene)
     fine = [fine_lines(hole) for *_, hole in hole_sizes(scene.segments, features, refinement)]
     around = count or max(1, sectors_of(features))
-    own = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.outline, fine=fine, **own) / (2 * around)
+    plan_sizes = {name: plan[name] for name in ("circles", "size", "graded_size")}
+    return rough_cells(scene.outline, fine=fine, **plan_sizes) / (2 * around)
 
 
-def _facts(made: SectorMesh, mesh: SolidMesh, features, refinement: float) -> dict[str, Any]:
+def _facts(meshed: SectorMesh, mesh: SolidMesh, features, refinement: float) -> dict[str, Any]:
     return {
-        **mesh_facts(mesh, made.quality, made.parts),
+        **mesh_facts(mesh, meshed.quality, meshed.parts),
         "refinement": refinement,
         "features": [f.name for f in features],
     }

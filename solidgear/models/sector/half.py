@@ -3,7 +3,7 @@ matrices are real.
 
 With ``v_k = Re(e^{i k h alpha} V)`` as in :mod:`solidgear.models.sector.cyclic` and the mirror S of the
 middle plane, ``conj(S V(S x))`` meets the same conditions on the cut faces as V does. So every
-eigenspace has a basis of motions that are their own image: ``V = a + i b`` with a symmetric and b
+eigenspace has a basis of motions that equal their image: ``V = a + i b`` with a symmetric and b
 antisymmetric. On the middle plane a stays in the plane and b moves across it. On the cut face, at
 half the angle of the sector,
 
@@ -12,9 +12,8 @@ half the angle of the sector,
 with the directions r along the radius and t around: both conditions of the whole sector in one.
 Inside a and b do not meet. On the axis h = 0 leaves y to a, and h = 1 one number, ``z + i x``.
 
-What is left are as many real unknowns as the whole sector has complex ones, and one of every pair
-of twins: the other one is ``-i V``. With h = 0 a (axial) and b (torsion) are blocks of their own;
-with h = 1 the unknowns are bending in the plane of y and z, and the block in the plane of x and y
+There are as many real unknowns as the whole sector has complex ones, and one of every pair of
+twins: the other one is ``-i V``. With h = 0 a (axial) and b (torsion) are separate blocks; with h = 1 the unknowns are bending in the plane of y and z, and the block in the plane of x and y
 mirrors it (Thomas 1979 solves the pair at once).
 """
 
@@ -55,45 +54,32 @@ class HalfSector:
     """Places of the nodes of half a sector."""
 
     count: int  #: sectors around, at least 3
-    #: middle, cut, axis: nodes on the middle plane and on the cut face without the axis, and on the
-    #: axis
-    middle: np.ndarray
-    cut: np.ndarray
-    axis: np.ndarray
+    middle: np.ndarray  #: nodes on the middle plane without the axis
+    cut: np.ndarray  #: nodes on the cut face without the axis
+    axis: np.ndarray  #: nodes on the axis
     turn: float = 0.0  #: angle of the middle of the sector, rad
 
     @property
     def angle(self) -> float:
-        """Of the whole sector, rad."""
+        """Angle of the whole sector, rad."""
         return 2 * np.pi / self.count
 
 
 def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarray]:
-    """Motions of half a sector that go with one harmonic index.
+    """Return the basis (6 nodes, m) of motions of half a sector with harmonic index h, below half the
+    number of sectors, and the node (m,) of each unknown.
 
-    Parameters
-    ----------
-    nodes : int
-        Of the half.
-    h : int
-        Below half the number of sectors.
-
-    Returns
-    -------
-    basis : (6 nodes, m) sparse
-        a, then b, from the unknowns; its columns are orthonormal. With h = 0 each of them is in one
-        of both.
-    node : (m,) ndarray of int
-        The node that each unknown belongs to.
+    Rows are a, then b; columns are orthonormal. With h = 0 each column is in one of both.
 
     Examples
     --------
     Three real unknowns on the cut face, as on the middle plane; on the axis one or none:
 
-    >>> none = np.zeros(0, int)
-    >>> cut = HalfSector(5, none, np.array([0]), none)
-    >>> middle, axis = (HalfSector(5, *own) for own in ((np.array([0]), none, none), (none, none, np.array([0]))))
-    >>> [[basis(own, 1, h)[0].shape[1] for h in (0, 1, 2)] for own in (cut, middle, axis)]
+    >>> none, node = np.zeros(0, int), np.array([0])
+    >>> cut = HalfSector(5, middle=none, cut=node, axis=none)
+    >>> middle = HalfSector(5, middle=node, cut=none, axis=none)
+    >>> axis = HalfSector(5, middle=none, cut=none, axis=node)
+    >>> [[basis(half, 1, h)[0].shape[1] for h in (0, 1, 2)] for half in (cut, middle, axis)]
     [[3, 3, 3], [3, 3, 3], [1, 1, 0]]
     """
     inside = np.setdiff1d(np.arange(nodes), np.r_[half.middle, half.cut, half.axis])
@@ -116,18 +102,18 @@ def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarr
         (half.axis, on_axis.get(h, np.zeros((6, 0)))),
     )
     rows, columns, values, node, size = [], [], [], [], 0
-    for own, motions in kinds:
+    for members, motions in kinds:
         wide = motions.shape[1]
         place = 3 * nodes * (np.arange(6) // 3) + np.arange(6) % 3
-        i = 3 * own[:, None, None] + place[:, None]
-        j = size + wide * np.arange(len(own))[:, None, None] + np.arange(wide)
+        i = 3 * members[:, None, None] + place[:, None]
+        j = size + wide * np.arange(len(members))[:, None, None] + np.arange(wide)
         i, j, v = np.broadcast_arrays(i, j, motions)
-        some = v != 0.0
-        rows.append(i[some])
-        columns.append(j[some])
-        values.append(v[some])
-        node.append(np.repeat(own, wide))
-        size += wide * len(own)
+        nonzero = v != 0.0
+        rows.append(i[nonzero])
+        columns.append(j[nonzero])
+        values.append(v[nonzero])
+        node.append(np.repeat(members, wide))
+        size += wide * len(members)
     entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
     return sp.csr_matrix(entries, shape=(6 * nodes, size)), np.concatenate(node)
 
@@ -139,7 +125,7 @@ def half_sector_blocks(
     parts_of: Callable[[Any, str], Any],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
-    """Blocks of a whole part from the mesh of half a sector, as by
+    """Return the blocks of a whole part from the mesh of half a sector, as by
     :func:`solidgear.models.sector.cyclic.cyclic_blocks`: ``axial``, ``torsion``, ``bending_z`` and
     its mirror image ``bending_x``, and ``ovalising_h`` without ports, which stands for its twin as
     well.
@@ -149,28 +135,28 @@ def half_sector_blocks(
     rigid = rigid_motions(mesh.nodes)
     seats = []
     for station, attachment in wanted:
-        pieces, held = parts_of(station, attachment)
+        pieces, rigid_nodes = parts_of(station, attachment)
         gram, loads = weighed(pieces, station.y, n)
-        seats.append((station, held, _around(gram, half), loads))
-    both = [sp.block_diag([x, x], format="csr") for x in (k, m)]
+        seats.append((station, rigid_nodes, _around(gram, half), loads))
+    doubled = [sp.block_diag([x, x], format="csr") for x in (k, m)]
     blocks: list[Block] = []
     still, node = basis(half, n, 0)
     # a holds axial motion, b torsion: the columns of each
     turning = np.asarray(abs(still[3 * n :]).sum(axis=0)).ravel() > 0
-    for name, own, one in (("axial", ~turning, 0), ("torsion", turning, 1)):
-        t = still[3 * n * one : 3 * n * (one + 1)][:, own]
-        blocks.append(_block(name, (k, m), t, node[own], mesh, rigid, seats))
+    for name, columns, part in (("axial", ~turning, 0), ("torsion", turning, 1)):
+        t = still[3 * n * part : 3 * n * (part + 1)][:, columns]
+        blocks.append(_block(name, (k, m), t, node[columns], mesh, rigid, seats))
     t, node = basis(half, n, 1)
-    bending = _block("bending_z", both, t, node, mesh, rigid, seats)
+    bending = _block("bending_z", doubled, t, node, mesh, rigid, seats)
     blocks += [bending, bending.mirrored("bending_x", (0, 5), len(blocks), (1.0, -1.0))]
     for h in harmonics:
         t, node = basis(half, n, h)
-        blocks.append(_block(f"ovalising_{h}", both, t, node, mesh, rigid, ()))
+        blocks.append(_block(f"ovalising_{h}", doubled, t, node, mesh, rigid, ()))
     return tuple(blocks)
 
 
 def _around(gram: np.ndarray, half: HalfSector) -> np.ndarray:
-    """The Gram matrix of a whole seat from that of its part on the half."""
+    """Return the Gram matrix of a whole seat from that of its part on the half."""
     gram = gram + _MIRROR6 @ gram @ _MIRROR6
     turns = [rotation(1, k * half.angle) for k in range(half.count)]
     return sum(turn @ gram @ turn.T for turn in turns)
@@ -182,12 +168,12 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
     energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
     stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
     ports = []
-    for station, held, gram, loads in seats:
-        if held is not None:
-            ports.append(Attached(station.y, held=np.isin(node, held)))
+    for station, rigid_nodes, gram, loads in seats:
+        if rigid_nodes is not None:
+            ports.append(Attached(station.y, held=np.isin(node, rigid_nodes)))
             continue
-        own = gram[np.ix_(components, components)]
-        motion = np.linalg.solve(own, energy * (t.T @ _in_parts(loads, components)).T)
+        block_gram = gram[np.ix_(components, components)]
+        motion = np.linalg.solve(block_gram, energy * (t.T @ _in_parts(loads, components)).T)
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
         ports.append(Attached(station.y, motion))
     block = Block(
@@ -204,13 +190,17 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
 
 
 def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
-    """Rigid motions, or loads on them, of a whole part as a, and with waves b below it.
+    """Return rigid motions, or loads on them, of a whole part as a, and with waves b below it.
 
     Seen in turned axes a translation along z becomes ``e^{i k alpha} (z + i x)``, and the axis of a
     tilt about x turns the other way, from x to -z.
     """
-    own = six[:, list(components)]
-    return np.vstack([own, six[:, [0, 5]] * (1.0, -1.0)]) if components == (2, 3) else own
+    block_columns = six[:, list(components)]
+    return (
+        np.vstack([block_columns, six[:, [0, 5]] * (1.0, -1.0)])
+        if components == (2, 3)
+        else block_columns
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,29 +210,29 @@ class HalfSectorSolid(PieceSolid):
     sector: HalfSector
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """All copies of the half and of its image, each with its phase."""
+        """Return all copies of the half and of its image, each with its phase."""
         half, parts = self.sector, []
         for name, vector in moved.items():
             a, b = (
-                solid_surface(self, part).displacement for part in _real_and_not(self, name, vector)
+                solid_surface(self, part).displacement for part in _even_and_odd(self, name, vector)
             )
             parts.append((name, a, b))
-        rest = solid_surface(self, None)
+        undeformed = solid_surface(self, None)
         copies = []
         for k in range(half.count):
             angle = k * half.angle + half.turn
             turn = rotation(1, angle)[:3, :3]
             for side, image in ((1.0, np.eye(3)), (-1.0, np.diag(_MIRROR))):
-                local = np.zeros(rest.points.shape)
+                local = np.zeros(undeformed.points.shape)
                 for name, a, b in parts:
                     of_a, of_b = _phases(name, angle)
                     local += of_a * a + side * of_b * b
                 copies.append((turn @ image, local))
-        return copied(rest, copies)
+        return copied(undeformed, copies)
 
 
-def _real_and_not(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """a and b of the vector of a block."""
+def _even_and_odd(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return a and b of the vector of a block."""
     size = 3 * mesh.nodes.shape[1]
     zero = np.zeros(size)
     if name == "axial":
@@ -251,8 +241,8 @@ def _real_and_not(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.nd
 
 
 def _phases(name: str, angle: float) -> tuple[float, float]:
-    """Of a and b in a copy at some angle: the real part of ``e^{i h angle} (a + i b)``, times -i in
-    the plane of x.
+    """Return the factors of a and b in a copy at an angle: the real part of ``e^{i h angle} (a + i
+    b)``, times -i in the plane of x.
     """
     if name in ("axial", "torsion"):
         return 1.0, 1.0
@@ -262,18 +252,20 @@ def _phases(name: str, angle: float) -> tuple[float, float]:
     return np.cos(h * angle), -np.sin(h * angle)
 
 
-def half_sector_solid(made: SectorMesh) -> HalfSectorSolid:
-    """The isoparametric mesh of half a sector, its planes found."""
-    plain = _isoparametric(made.mesh, "tet10", made.segment)
-    outside = made.mesh.boundary_facets()
-    x, _, z = made.mesh.p[:, made.mesh.facets[:, outside]]
-    tolerance = MATCH * np.ptp(made.mesh.p[1])
-    c, s = np.cos(np.pi / made.count), np.sin(np.pi / made.count)
-    planes = [outside[(np.abs(away) < tolerance).all(axis=0)] for away in (x, x * c - z * s)]
-    middle, cut = (plain.facet_unknowns(own) for own in planes)
+def half_sector_solid(meshed: SectorMesh) -> HalfSectorSolid:
+    """Return the isoparametric mesh of half a sector, with the nodes of its planes."""
+    plain = _isoparametric(meshed.mesh, "tet10", meshed.segment)
+    outside = meshed.mesh.boundary_facets()
+    x, _, z = meshed.mesh.p[:, meshed.mesh.facets[:, outside]]
+    tolerance = MATCH * np.ptp(meshed.mesh.p[1])
+    c, s = np.cos(np.pi / meshed.count), np.sin(np.pi / meshed.count)
+    planes = [
+        outside[(np.abs(distance) < tolerance).all(axis=0)] for distance in (x, x * c - z * s)
+    ]
+    middle, cut = (plain.facet_unknowns(facets) for facets in planes)
     axis = np.intersect1d(middle, cut)
     half = HalfSector(
-        made.count, np.setdiff1d(middle, axis), np.setdiff1d(cut, axis), axis, made.turn
+        meshed.count, np.setdiff1d(middle, axis), np.setdiff1d(cut, axis), axis, meshed.turn
     )
     return HalfSectorSolid(
         plain.mesh,

@@ -1,4 +1,4 @@
-"""The isoparametric mesh of a sector: what repeats itself, its seats, and pictures of all copies."""
+"""The isoparametric mesh of a sector, its seats, and drawings of all copies."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from solidgear.models.solid.seat_faces import Seats
 
 
 def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[Any]) -> Facets:
-    """Facets of seats, in a sector or the whole: on what is left of surfaces of revolution, and
-    flanks, tips and roots of teeth; of the (3, nv) places of straight vertices only y and the
-    radius count.
+    """Return the function that gives facets of seats, in a sector or the whole: on the rest of
+    surfaces of revolution, and on flanks, tips and roots of teeth; of the places (3, nv) of straight
+    vertices only y and the radius count.
     """
     toothed = {f.segment: f for f in features if f.toothed}
     tolerance = 1e-7 * scene.length
@@ -32,22 +32,22 @@ def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[
     y, r = straight[1, corners], np.hypot(*straight[[0, 2]][:, corners])
 
     def facets(station, attachment):
-        found = on_cylinder(station, attachment)
+        on_revolution = on_cylinder(station, attachment)
         if attachment == "section":
-            return found
+            return on_revolution
         low, high = y.min(axis=0), y.max(axis=0)
-        on = np.zeros(len(mesh.boundary), bool)
+        on_teeth = np.zeros(len(mesh.boundary), bool)
         for s in scene.segments:
             if s.name in toothed:
                 teeth = toothed[s.name]
                 pitch = s.outer0 + (s.outer1 - s.outer0) * (y - s.y0) / s.length
                 # no chord of a root runs deeper; bores and holes do
                 least = teeth.land * (1 - 1e-6)
-                here = (low > s.y0 - tolerance) & (high < s.y1 + tolerance)
-                on |= here & (r > least * pitch).all(axis=0)
+                on_segment = (low > s.y0 - tolerance) & (high < s.y1 + tolerance)
+                on_teeth |= on_segment & (r > least * pitch).all(axis=0)
         inside = (low >= station.lo - tolerance) & (high <= station.hi + tolerance)
         steep = high - low > tolerance
-        return np.union1d(found, mesh.boundary[inside & steep & on])
+        return np.union1d(on_revolution, mesh.boundary[inside & steep & on_teeth])
 
     return facets
 
@@ -67,7 +67,7 @@ class PieceSolid(SolidMesh):
         return np.setdiff1d(self.mesh.boundary_facets(), self.inner)
 
     def volume(self) -> None:  # type: ignore[override]
-        """No mesh of the whole part."""
+        """Return None: there is no mesh of the whole part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,40 +77,40 @@ class SectorSolid(PieceSolid):
     sector: Sector
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """All copies of the sector, each with its phase."""
+        """Return all copies of the sector, each with its phase."""
         parts = {}
         for name, vector in moved.items():
             h = int(name.removeprefix("cyclic_"))
             pieces = (vector,) if h == 0 else (vector[::2], vector[1::2])
             parts[h] = [solid_surface(self, piece).displacement for piece in pieces]
-        rest = solid_surface(self, None)
+        undeformed = solid_surface(self, None)
         copies = []
         for k in range(self.sector.count):
             angle = k * self.sector.angle
-            local = np.zeros(rest.points.shape)
+            local = np.zeros(undeformed.points.shape)
             for h, fields in parts.items():
                 for factor, field in zip((np.cos(h * angle), -np.sin(h * angle)), fields):
                     local += factor * field
             copies.append((rotation(1, angle)[:3, :3], local))
-        return copied(rest, copies)
+        return copied(undeformed, copies)
 
 
-def sector_solid(made: SectorMesh) -> SectorSolid:
-    """The isoparametric mesh of a sector, its cut faces matched; MeshError if they carry different
-    meshes.
+def sector_solid(meshed: SectorMesh) -> SectorSolid:
+    """Return the isoparametric mesh of a sector, its cut faces matched; MeshError if they carry
+    different meshes.
     """
-    plain = _isoparametric(made.mesh, "tet10", made.segment)
-    low, high, axis = cut_vertices(made)
-    outside = made.mesh.boundary_facets()
+    plain = _isoparametric(meshed.mesh, "tet10", meshed.segment)
+    low, high, axis = cut_vertices(meshed)
+    outside = meshed.mesh.boundary_facets()
     inner, sides = [], []
-    for own in (low, high):
-        on = np.zeros(plain.nodes.shape[1], bool)
-        on[own] = on[axis] = True
-        inner.append(outside[on[made.mesh.facets[:, outside]].all(axis=0)])
+    for vertices in (low, high):
+        on_face = np.zeros(plain.nodes.shape[1], bool)
+        on_face[vertices] = on_face[axis] = True
+        inner.append(outside[on_face[meshed.mesh.facets[:, outside]].all(axis=0)])
         sides.append(plain.facet_unknowns(inner[-1]))
     on_axis = np.intersect1d(sides[0], sides[1])
     master, slave = (np.setdiff1d(side, on_axis) for side in sides)
-    master = matched(plain.nodes, made.count, master, slave)
+    master = matched(plain.nodes, meshed.count, master, slave)
     return SectorSolid(
         plain.mesh,
         plain.name,
@@ -119,5 +119,5 @@ def sector_solid(made: SectorMesh) -> SectorSolid:
         plain.nodes,
         plain.segment,
         np.concatenate(inner),
-        Sector(made.count, master, slave, on_axis),
+        Sector(meshed.count, master, slave, on_axis),
     )

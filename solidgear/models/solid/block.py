@@ -1,4 +1,4 @@
-"""From a volume mesh, whatever made it, to a free block with ports."""
+"""Free block with ports from a volume mesh."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
 PLANES = (([0, 1, 2], (-1, 1, 1)), ([0, 1, 2], (1, 1, -1)), (SWAPPED, (1, 1, 1)))
-#: facets of a mesh that carry a station attached in some way
+#: facets of a mesh that carry a station, by its attachment
 Facets = Callable[[Any, str], np.ndarray]
 
 
 def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> Facets:
-    """Facets of the seats and sections of a body of revolution, within a tolerance, m, by station
-    and attachment.
+    """Return the function that gives the facets of seats and sections of a body of revolution, within
+    a tolerance, m, by station and attachment.
     """
 
     def facets(station, attachment):
@@ -40,30 +40,30 @@ def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> F
     return facets
 
 
-#: of the sagitta of an edge, how far its middle node may lie off the surface; where elements keep the
-#: volume it is a fiftieth at most, and the floor of a feature is all of it away
+#: share of the sagitta of an edge by which its middle node may lie off the surface; where elements keep
+#: the volume it is a fiftieth at most, and the floor of a feature is all of it away
 BEYOND = 0.1
 
 
 def edges_of(mesh: SolidMesh, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges (m, f) between the (c, f) corners of facets, -1 for a diagonal of a quadrilateral,
-    which is no edge; and their middle nodes (3, m, f), m, a corner for a diagonal.
+    """Return the edges (m, f) between the corners (c, f) of facets, -1 for a diagonal of a
+    quadrilateral, which is no edge; and their middle nodes (3, m, f), m, a corner for a diagonal.
     """
-    at = np.zeros(mesh.mesh.edges.shape[1], int)
-    at[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
+    middle = np.zeros(mesh.mesh.edges.shape[1], int)
+    middle[mesh.mesh.t2e] = mesh.dofs[len(mesh.mesh.t) : len(mesh.mesh.t) + len(mesh.mesh.t2e)]
     # of four corners of a quadrilateral two pairs are its diagonals
-    one, other = np.array(_pairs(corners)).T
-    edge = edge_places(mesh.mesh.edges, np.array([corners[one], corners[other]]))
-    return edge, np.where(edge >= 0, mesh.nodes[:, at[edge]], mesh.mesh.p[:, corners[one]])
+    i, j = np.array(_pairs(corners)).T
+    edge = edge_places(mesh.mesh.edges, np.array([corners[i], corners[j]]))
+    return edge, np.where(edge >= 0, mesh.nodes[:, middle[edge]], mesh.mesh.p[:, corners[i]])
 
 
 def _pairs(corners: np.ndarray) -> list[tuple[int, int]]:
-    """Places of any two corners of a facet."""
+    """Return the places of any two corners of a facet."""
     return [(i, j) for i in range(len(corners)) for j in range(i)]
 
 
 def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
-    """Radii (m, f) halfway between the ends of the edges of facets, m, in the order of
+    """Return the radii (m, f) halfway between the ends of the edges of facets, m, in the order of
     :func:`edges_of`.
     """
     p = mesh.mesh.p[[0, 2]]
@@ -72,7 +72,7 @@ def chords(mesh: SolidMesh, corners: np.ndarray) -> np.ndarray:
 
 
 def rigid_motions(nodes: np.ndarray) -> np.ndarray:
-    """(3 n, 6) unit rigid motions about the origin of (3, n) nodes, m, node by node."""
+    """Return the unit rigid motions (3 n, 6) about the origin of nodes (3, n), m, node by node."""
     n = nodes.shape[1]
     rigid: np.ndarray = np.zeros((n, 3, 6))
     rigid[:, :, :3] = np.eye(3)
@@ -86,23 +86,13 @@ def rigid_motions(nodes: np.ndarray) -> np.ndarray:
 
 
 def mirrored(nodes: np.ndarray, hair: float) -> tuple[np.ndarray, tuple[Reflection, ...]]:
-    """Mirror planes x = 0, z = 0 and x = z that the nodes of a mesh have.
+    """Return nodes (3, n), m, with the mirror planes x = 0, z = 0 and x = z that they have; nodes nearer
+    than ``hair``, m, to each other are one.
 
-    Parameters
-    ----------
-    nodes : (3, n) ndarray
-        m.
-    hair : float
-        Nodes nearer than this to each other are one, m.
-
-    Returns
-    -------
-    nodes : (3, n) ndarray
-        Moved by the rounding that kept images from lying where they should: beside the thickness of
-        a thin cell that is a hundred times the rounding of a matrix.
-    reflections : tuple of (partner, sign)
-        As :class:`~solidgear.body.Block` takes them; none for a plane in which a node has no image,
-        nor for x = z without the others.
+    Nodes are moved by the rounding that kept images from lying where they should: beside the thickness
+    of a thin cell that is a hundred times the rounding of a matrix. Reflections are as
+    :class:`~solidgear.body.Block` takes them; none for a plane in which a node has no image, nor for
+    x = z without the others.
 
     Examples
     --------
@@ -110,23 +100,23 @@ def mirrored(nodes: np.ndarray, hair: float) -> tuple[np.ndarray, tuple[Reflecti
     >>> partner, sign
     (array([3, 4, 5, 0, 1, 2]), array([-1.,  1.,  1., -1.,  1.,  1.]))
     """
-    found: list[Reflection] = []
+    reflections: list[Reflection] = []
     for order, sign in PLANES:
         turn = np.array(sign)[:, None]
         places = np.rint(nodes / hair).astype(np.int64)
-        seen = places[order] * turn
-        here, there = np.lexsort(places), np.lexsort(seen)
-        if not np.array_equal(places[:, here], seen[:, there]):
+        images = places[order] * turn
+        by_place, by_image = np.lexsort(places), np.lexsort(images)
+        if not np.array_equal(places[:, by_place], images[:, by_image]):
             continue
-        if order == SWAPPED and len(found) < 2:
+        if order == SWAPPED and len(reflections) < 2:
             continue
         partner = np.empty(nodes.shape[1], int)
-        partner[here] = there
+        partner[by_place] = by_image
         nodes = (nodes + turn * nodes[:, partner][order]) / 2
-        found.append(
+        reflections.append(
             ((3 * partner[:, None] + order).ravel(), np.tile(np.array(sign, float), len(partner)))
         )
-    return nodes, tuple(found)
+    return nodes, tuple(reflections)
 
 
 def free_block(
@@ -139,27 +129,12 @@ def free_block(
     materials: Sequence[Any] | None = None,
     reflections: tuple[Reflection, ...] = (),
 ) -> Block:
-    """The free block of a mesh, of all six components, with its ports.
+    """Build the free block of a mesh, of all six components, with its ports; refuse a seat without
+    faces.
 
-    Parameters
-    ----------
-    mesh : SolidMesh
-        Each element with the segment whose material it has.
-    scene : Scene
-    wanted : sequence of (station, attachment)
-    facets_of : callable
-        From :func:`seat_facets`, say.
-    clipped : bool
-        Facets may reach beyond the ends of their seat, which then end where they are said to.
-    materials : sequence of Material, optional
-        That the elements name; by default those of the segments.
-    reflections : tuple of (partner, sign)
-        From :func:`mirrored`.
-
-    Raises
-    ------
-    SolidgearError
-        If no face lies on a seat.
+    `facets_of` is that of :func:`seat_facets`, say; `clipped`: facets may reach beyond the ends of
+    their seat, where integrals stop; `materials` are those that the elements name, by default those of
+    the segments; `reflections` are from :func:`mirrored`.
     """
     k, m = _matrices(mesh, materials or [segment.material for segment in scene.segments])
     n = mesh.nodes.shape[1]
@@ -167,20 +142,20 @@ def free_block(
     for station, attachment in wanted:
         facets = facets_of(station, attachment)
         if not len(facets):
-            where = "section" if attachment == "section" else "seat"
-            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {where}")
+            face = "section" if attachment == "section" else "seat"
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {face}")
         place, patch = point_of(station), getattr(station, "patch", None)
         cut = clipped and attachment != "section" and patch is None
-        within = (station.lo, station.hi) if cut else None
+        span = (station.lo, station.hi) if cut else None
         if attachment == "rigid":
             mask = np.zeros((n, 3), bool)
             mask[mesh.facet_unknowns(facets)] = True
-            if within is not None:
+            if span is not None:
                 y, hair = mesh.nodes[1], 1e-7 * scene.length
-                mask[(y < within[0] - hair) | (y > within[1] + hair)] = False
+                mask[(y < span[0] - hair) | (y > span[1] + hair)] = False
             ports.append(Attached(place, held=mask.ravel()))
         else:
-            ports.append(Attached(place, _mean(mesh, facets, place, n, within=within)))
+            ports.append(Attached(place, _mean(mesh, facets, place, n, within=span)))
     block = Block(
         "full",
         tuple(range(6)),
@@ -200,16 +175,16 @@ def body_of(
     blocks: tuple[Block, ...],
     facts: dict[str, Any],
     drawing: Drawing,
-    fidelity: str = "solid",
+    model: str = "solid",
 ) -> Body:
-    """The body of some blocks of a volume mesh, with their stations."""
+    """Return the body of some blocks of a volume mesh, with their stations."""
     points = [point_of(station) for station, _ in wanted]
     ports = tuple(Port(s.name, y, a, x, z) for (s, a), (x, y, z) in zip(wanted, points))
-    return Body(fidelity, blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
+    return Body(model, blocks, ports, elastic_scale(scene), scene.length, facts, drawing)
 
 
 def mesh_facts(solid: SolidMesh, quality: MeshQuality, copies: int = 1) -> dict[str, Any]:
-    """Facts of a mesh of which so many copies make the body, with the quality of one."""
+    """Return the facts of a mesh of which so many copies make the body, with the quality of one."""
     return {
         "element": solid.name,
         "elements": quality.n_elements * copies,

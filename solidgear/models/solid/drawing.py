@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The boundary at rest, and how the motion of its points follows from that of the nodes."""
+    """Boundary at rest, and the motion of its points by that of the nodes."""
 
     points: np.ndarray  #: (n, 3) m
     quads: np.ndarray
@@ -26,57 +26,55 @@ class Outline:
     lines: np.ndarray
     #: values of the basis in a face, and the unknowns of elements that have such a face
     parts: list[tuple[np.ndarray, np.ndarray]]
-    first: np.ndarray  #: (n,) where each point is found among all points of all faces
+    first: np.ndarray  #: (n,) place of each point among all points of all faces
 
 
 def solid_surface(geometry: SolidMesh, vector: np.ndarray | None) -> Surface:
-    """The boundary of the volume mesh; faces of second order are divided, so that curved ones look
-    curved.
+    """Return the boundary of the volume mesh; faces of second order are divided, so that curved
+    ones look curved.
     """
-    rest = geometry.outline
-    if vector is None:
-        moved = np.zeros_like(rest.points)
-    else:
-        moved = _on_faces(rest.parts, vector.reshape(-1, 3))[rest.first]
-    return Surface(rest.points, moved, rest.quads, rest.triangles, rest.lines)
+    still = geometry.outline
+    moved = np.zeros_like(still.points)
+    if vector is not None:
+        moved = _on_faces(still.parts, vector.reshape(-1, 3))[still.first]
+    return Surface(still.points, moved, still.quads, still.triangles, still.lines)
 
 
-def copied(rest: Surface, copies: Iterable[tuple[np.ndarray, np.ndarray]]) -> Surface:
-    """Copies of a surface by orthogonal maps (3, 3), each with the displacements (n, 3) of its points
-    before it is mapped; faces of an image in a mirror turn round.
+def copied(surface: Surface, copies: Iterable[tuple[np.ndarray, np.ndarray]]) -> Surface:
+    """Return copies of a surface by orthogonal maps (3, 3), each with the displacements (n, 3) of
+    its points before it is mapped; faces of an image in a mirror turn round.
     """
     points, moved, faces, triangles, lines = [], [], [], [], []
     for k, (to, displacement) in enumerate(copies):
-        around = slice(None, None, 1 if np.linalg.det(to) > 0 else -1)
-        shift = k * len(rest.points)
-        points.append(rest.points @ to.T)
+        order = slice(None, None, 1 if np.linalg.det(to) > 0 else -1)
+        shift = k * len(surface.points)
+        points.append(surface.points @ to.T)
         moved.append(displacement @ to.T)
-        faces.append(shift + rest.faces[:, around])
-        triangles.append(shift + rest.triangles[:, around])
-        lines.append(shift + rest.lines)
-    return Surface(*(np.vstack(every) for every in (points, moved, faces, triangles, lines)))
+        faces.append(shift + surface.faces[:, order])
+        triangles.append(shift + surface.triangles[:, order])
+        lines.append(shift + surface.lines)
+    return Surface(*(np.vstack(parts) for parts in (points, moved, faces, triangles, lines)))
 
 
 def _on_faces(parts: Iterable[tuple[np.ndarray, np.ndarray]], field: np.ndarray) -> np.ndarray:
-    """A field of the nodes at all points of all faces."""
+    """Return a field of the nodes at all points of all faces."""
     return np.concatenate(
         [np.einsum("bq,bef->eqf", value, field[dofs]).reshape(-1, 3) for value, dofs in parts]
     )
 
 
 def on_nodes(geometry: SolidMesh) -> sp.csr_matrix:
-    """A scalar field at all points of the boundary by its values at the nodes."""
-    found, size = [], geometry.nodes.shape[1]
+    """Return the matrix of a scalar field at all points of the boundary by its values at the nodes."""
+    matrices, size = [], geometry.nodes.shape[1]
     for value, dofs in geometry.outline.parts:
-        at = np.arange(dofs.shape[1] * value.shape[1]).reshape(1, -1, value.shape[1])
-        entry = np.broadcast_arrays(value[:, None], at, dofs[:, :, None])
-        places = entry[1].ravel(), entry[2].ravel()
-        found.append(sp.csr_matrix((entry[0].ravel(), places), (at.size, size)))
-    return sp.vstack(found).tocsr()[geometry.outline.first]
+        rows = np.arange(dofs.shape[1] * value.shape[1]).reshape(1, -1, value.shape[1])
+        v, i, j = np.broadcast_arrays(value[:, None], rows, dofs[:, :, None])
+        matrices.append(sp.csr_matrix((v.ravel(), (i.ravel(), j.ravel())), (rows.size, size)))
+    return sp.vstack(matrices).tocsr()[geometry.outline.first]
 
 
 def outline(geometry: SolidMesh) -> Outline:
-    """Outline that all surfaces of a mesh share, whatever moves it."""
+    """Return the outline that all surfaces of a mesh share, however it moves."""
     refdom, element, dofs = geometry.mesh.refdom, geometry.element, geometry.dofs
     linear = len(dofs) == refdom.nnodes
     # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
@@ -89,13 +87,13 @@ def outline(geometry: SolidMesh) -> Outline:
     # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).
     a = np.repeat(np.arange(corners), m)
     b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
-    parts, keys, faces, lines, done = [], [], [], [], 0
+    parts, keys, faces, lines, count = [], [], [], [], 0
     for place, elements in geometry.local_facets(geometry.boundary):
         points, s, t = geometry.on_facet(place, grid.T / m)
         parts.append((reference(element, points)[0], dofs[:, elements]))
-        serial = done + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
-        done += serial.size
-        # A point inside a face is its own; one on an edge is named by the edge's vertices, so that
+        serial = count + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
+        count += serial.size
+        # A point inside a face is unique; one on an edge is named by the vertices of the edge, so that
         # neighbours share it.
         key = np.stack([-1 - serial, 0 * serial, 0 * serial], axis=-1)
         va, vb = (geometry.mesh.t[refdom.facets[place]][c][:, elements].T for c in (a, b))
@@ -112,15 +110,15 @@ def outline(geometry: SolidMesh) -> Outline:
         np.concatenate(keys), axis=0, return_index=True, return_inverse=True
     )
     number = number.ravel()
-    found = {corners: number[np.concatenate(faces)]}
+    by_corners = {corners: number[np.concatenate(faces)]}
     edges = np.unique(np.sort(number[np.concatenate(lines)], axis=1), axis=0)
-    quads, triangles = (found.get(n, np.zeros((0, n), int)) for n in (4, 3))
+    quads, triangles = (by_corners.get(n, np.zeros((0, n), int)) for n in (4, 3))
     return Outline(_on_faces(parts, geometry.nodes.T)[first], quads, triangles, edges, parts, first)
 
 
 def _grid(m: int, corners: int):
-    """Points (i, j), cells and rim (from the first corner on) of a face divided into m pieces along
-    each edge.
+    """Return points (i, j), cells and rim (from the first corner on) of a face divided into m
+    pieces along each edge.
     """
     i, j = (g.ravel() for g in np.meshgrid(np.arange(m + 1), np.arange(m + 1), indexing="ij"))
     n = m + 1

@@ -24,8 +24,8 @@ from solidgear.scene.shaft import resolved
 
 
 def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
-    """The mesh of a scene with features; ``plan`` holds planes, circles and sizes, and ``edges``
-    asks for smaller elements at the re-entrant edges of features.
+    """Mesh a scene with features; ``plan`` holds planes, circles and sizes, and ``edges`` asks for
+    smaller elements at the re-entrant edges of features.
     """
     assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
     return featured_mesh(
@@ -39,29 +39,29 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
 
 
 def featured_body(
-    scene: Any, wanted: Sequence, made: FeaturedMesh, refinement: float, *, plain: bool = False
+    scene: Any, wanted: Sequence, cut_mesh: FeaturedMesh, refinement: float, *, plain: bool = False
 ) -> Body:
-    """Free body of a meshed scene with its features cut out or, `plain`, left in: two blocks where
-    there is a mirror plane, one where there is none. SolidgearError if no face is left of a seat,
-    MeshError for inverted elements.
+    """Build the free body of a meshed scene with its features cut out or, `plain`, left in: two
+    blocks where there is a mirror plane, one where there is none; refuse a seat without faces and
+    inverted elements.
     """
-    keep = np.ones(len(made.cut), bool) if plain else ~made.cut
-    mesh = made.mesh if plain else submesh(made.mesh, keep)
-    quality = replace(check_mesh(mesh), straightened=made.quality.straightened)
-    solid = _isoparametric(mesh, "tet10", made.segment[keep])
+    keep = np.ones(len(cut_mesh.cut), bool) if plain else ~cut_mesh.cut
+    mesh = cut_mesh.mesh if plain else submesh(cut_mesh.mesh, keep)
+    quality = replace(check_mesh(mesh), straightened=cut_mesh.quality.straightened)
+    solid = _isoparametric(mesh, "tet10", cut_mesh.segment[keep])
     facets = _facets(solid, scene)
-    if made.plane is None:
+    if cut_mesh.plane is None:
         blocks: tuple[Block, ...] = (free_block(solid, scene, wanted, facets),)
         drawing: SolidMesh | HalfDrawing = solid
     else:
-        blocks = half_blocks(solid, scene, wanted, facets, made.plane)
-        drawing = HalfDrawing(solid, made.plane)
+        blocks = half_blocks(solid, scene, wanted, facets, cut_mesh.plane)
+        drawing = HalfDrawing(solid, cut_mesh.plane)
     facts = {
-        **mesh_facts(solid, quality, copies=1 if made.plane is None else 2),
+        **mesh_facts(solid, quality, copies=1 if cut_mesh.plane is None else 2),
         "refinement": refinement,
         "features": [f.name for f in resolved(scene)],
-        "mirror_plane": "none" if made.plane is None else f"{'xyz'[made.plane]} = 0",
-        # nothing promises twins: what is split is split
+        "mirror_plane": "none" if cut_mesh.plane is None else f"{'xyz'[cut_mesh.plane]} = 0",
+        # no symmetry promises twins
         "round": False,
         "pair_tolerance": 0.0,
     }
@@ -69,10 +69,10 @@ def featured_body(
 
 
 def _facets(solid: SolidMesh, scene: Any) -> Facets:
-    """Facets of seats on what is left of surfaces of revolution, and on teeth."""
-    around = [f for f in resolved(scene) if f.sort == CYCLIC]
-    if not around:
+    """Return the facets of seats on the rest of surfaces of revolution, and on teeth."""
+    cyclic = [f for f in resolved(scene) if f.sort == CYCLIC]
+    if not cyclic:
         return Seats(solid, scene.segments, clipped=False)
     from solidgear.models.sector.mesh import seats  # slow to import, and seldom needed
 
-    return seats(solid, solid.mesh.p, scene, around)
+    return seats(solid, solid.mesh.p, scene, cyclic)

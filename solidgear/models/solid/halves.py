@@ -33,9 +33,9 @@ PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]
 def half_blocks(
     mesh: SolidMesh, scene: Any, wanted: Sequence, facets_of: Facets, axis: int
 ) -> tuple[Block, Block]:
-    """The symmetric and the antisymmetric block of a whole part from the mesh of its half, whose
-    cut faces lie in the plane at right angles to an axis, 0 or 2; SolidgearError if no face of the
-    half lies on a seat.
+    """Return the symmetric and the antisymmetric block of a whole part from the mesh of its half,
+    whose cut faces lie in the plane at right angles to an axis, 0 or 2; refuse a seat without faces
+    on the half.
     """
     k, m = _matrices(mesh, [segment.material for segment in scene.segments])
     m = m.tocsr()
@@ -43,32 +43,33 @@ def half_blocks(
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
     on_plane = np.abs(mesh.nodes[axis]) < 1e-9 * scene.length
     facets = [facets_of(station, attachment) for station, attachment in wanted]
-    for (station, _), found in zip(wanted, facets):
-        if not len(found):
+    for (station, _), faces in zip(wanted, facets):
+        if not len(faces):
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
     seats = [
-        None if attachment == "rigid" else weighed(mesh.over_facets(found), station.y, n)
-        for (station, attachment), found in zip(wanted, facets)
+        None if attachment == "rigid" else weighed(mesh.over_facets(faces), station.y, n)
+        for (station, attachment), faces in zip(wanted, facets)
     ]
     across = np.zeros(3, bool)
     across[axis] = True
     blocks = []
-    for (name, own), held in zip(PARTS[axis], (across, ~across)):
-        free = np.flatnonzero(~(on_plane[:, None] & held).ravel())
+    for (name, components), fixed in zip(PARTS[axis], (across, ~across)):
+        free = np.flatnonzero(~(on_plane[:, None] & fixed).ravel())
         ports = []
-        for (station, _), found, seat in zip(wanted, facets, seats):
+        for (station, _), faces, seat in zip(wanted, facets, seats):
             if seat is None:
                 mask = np.zeros((n, 3), bool)
-                mask[mesh.facet_unknowns(found)] = True
+                mask[mesh.facet_unknowns(faces)] = True
                 ports.append(Attached(station.y, held=mask.ravel()[free]))
             else:
-                ports.append(Attached(station.y, rigid_part(*seat, own)[:, free]))
+                gram, loads = seat
+                ports.append(Attached(station.y, rigid_part(gram, loads, components)[:, free]))
         block = Block(
             name,
-            own,
+            components,
             (2 * k[free][:, free]).tocsr(),
             (2 * m[free][:, free]).tocsr(),
-            rigid[free][:, list(own)],
+            rigid[free][:, list(components)],
             y[free],
             planar=False,
             expand=sp.identity(3 * n, format="csc")[:, free].tocsr(),
@@ -82,17 +83,17 @@ class HalfDrawing:
     """A whole part drawn from the mesh of its half."""
 
     mesh: SolidMesh
-    axis: int  #: at right angles to the plane
+    axis: int  #: at right angles to the mirror plane
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """Both halves, the second as a mirror image of the first."""
+        """Return both halves, the second as a mirror image of the first."""
         first, second = self._halves(moved)
-        here, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
+        surface, image = self.mesh.surface({"full": first}), self.mesh.surface({"full": second})
         mirror = np.diag(self._flip)
-        return copied(here, [(np.eye(3), here.displacement), (mirror, image.displacement)])
+        return copied(surface, [(np.eye(3), surface.displacement), (mirror, image.displacement)])
 
     def _halves(self, moved: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Unknowns of the half, and of the other one before it is turned over."""
+        """Return the unknowns of the half, and of the other one before it is turned over."""
         kinds = dict(zip((name for name, _ in PARTS[self.axis]), (1.0, -1.0)))
         zero = np.zeros(3 * self.mesh.nodes.shape[1])
         first = sum((vector for name, vector in moved.items() if name in kinds), zero)
@@ -105,19 +106,19 @@ class HalfDrawing:
 
     @property
     def nodes(self) -> np.ndarray:
-        """(3, 2 n) nodes of both halves, m; those in the plane are there twice."""
+        """Nodes (3, 2 n) of both halves, m; those in the plane are there twice."""
         return np.hstack([self.mesh.nodes, self._flip[:, None] * self.mesh.nodes])
 
     @property
     def dofs(self) -> np.ndarray:
-        """(nb, 2 ne) nodes of the elements of both halves."""
+        """Nodes (nb, 2 ne) of the elements of both halves."""
         return np.hstack([self.mesh.dofs, self.mesh.nodes.shape[1] + self.mesh.dofs])
 
     def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
-        """(2 n, 3) displacements of the nodes."""
+        """Return the displacements (2 n, 3) of the nodes."""
         first, second = (half.reshape(-1, 3) for half in self._halves(moved))
         return np.vstack([first, second * self._flip])
 
     def volume(self) -> Volume | None:
-        """No single mesh of the whole part."""
+        """Return None: there is no single mesh of the whole part."""
         return None

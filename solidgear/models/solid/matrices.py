@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def _matrices(m: SolidMesh, materials: Sequence[Material]):
-    """Stiffness (3n, 3n) and consistent mass of a solid of isotropic materials."""
+    """Assemble stiffness (3n, 3n) and consistent mass of a solid of isotropic materials."""
     points, weights = _cell_rule(m.name)
     basis = Tabulation(m.element, m.element, points)
     nb, nq = basis.value.shape
@@ -38,16 +38,18 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]):
     for index, material in enumerate(materials):
         nu, mu, rho = material.nu, material.shear_modulus, material.density
         lame = 2 * mu * nu / (1 - 2 * nu)
-        here = m.segment == index
-        for part in batches(np.flatnonzero(here & is_straight), 8 * 20 * nb * nb):
+        members = m.segment == index
+        for part in batches(np.flatnonzero(members & is_straight), 8 * 20 * nb * nb):
             inverse, det = inverted(jac[:, :, part])
             along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
             tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
             stiffness.add(part, tensor @ slopes)
             mass.add(part, np.outer(rho * det, weights @ products))
-        for part in batches(np.flatnonzero(here & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)):
+        for part in batches(
+            np.flatnonzero(members & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)
+        ):
             places = m.nodes[:, m.dofs[:, part]]
-            # from a node of each: places would round what the nodes of a thin cell differ in
+            # from a node of each: absolute places would round the differences in a thin cell
             t = basis.on(places - places[:, :1])
             dv = t.det * weights
             g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
@@ -58,8 +60,8 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]):
 
 
 def _elastic(gram, lame: float, mu: float):
-    """Isotropic stiffness from the integrals of products of gradients, components (3, 3, ...) of
-    row and column first.
+    """Return the isotropic stiffness from the integrals of products of gradients, components (3, 3,
+    ...) of row and column first.
     """
     out = lame * gram
     shear = mu * gram
@@ -71,22 +73,23 @@ def _elastic(gram, lame: float, mu: float):
 
 
 def _mean(m: SolidMesh, facets, place, n, within=None) -> sp.csr_matrix:
-    """(6, 3n) area-weighted least-squares rigid motion of facets about a point, or the axis point at
-    some y; of their parts between two places along y where these are given.
+    """Return the area-weighted least-squares rigid motion (6, 3n) of facets about a point, or the axis
+    point at some y; of their parts between two places along y where these are given.
     """
-    return rigid_part(*weighed(m.over_facets(facets, within), place, n), tuple(range(6)))
+    gram, loads = weighed(m.over_facets(facets, within), place, n)
+    return rigid_part(gram, loads, tuple(range(6)))
 
 
 def rigid_part(gram: np.ndarray, loads: np.ndarray, components: tuple[int, ...]) -> sp.csr_matrix:
-    """(c, 3n) least-squares rigid motion, some components of it, from :func:`weighed`."""
-    own = list(components)
-    g = np.linalg.solve(gram[np.ix_(own, own)], loads.T[own])
+    """Return some components (c, 3n) of the least-squares rigid motion from :func:`weighed`."""
+    chosen = list(components)
+    g = np.linalg.solve(gram[np.ix_(chosen, chosen)], loads.T[chosen])
     g[np.abs(g) < 1e-14 * np.abs(g).max(axis=1, keepdims=True)] = 0.0
     return sp.csr_matrix(g)
 
 
 def weighed(pieces, place: float | Sequence[float], n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Normal equations of the rigid motion about a place (m) that is nearest to the motion of some
+    """Return the normal equations of the rigid motion about a place (m) nearest to the motion of some
     pieces, of :meth:`SolidMesh.over_facets` or :meth:`SolidMesh.over_cells`, of a mesh of n nodes.
 
     With gram (6, 6) and loads (3 n, 6) the rigid motion of displacements u is ``gram^-1 loads' u``.
@@ -108,7 +111,7 @@ _CROSS = np.stack([cross_matrix(e) for e in np.eye(3)], axis=-1)
 
 
 def _cell_rule(name):
-    """Quadrature of an element: points and weights."""
+    """Return the quadrature of an element: points and weights."""
     degree = ELEMENTS[name].degree
     if name.startswith("tet"):
         return get_quadrature(RefTet, degree)  # the rules in use have positive weights only

@@ -33,28 +33,28 @@ class SolidMesh:
     mesh: Mesh  #: topology; its geometry is that of ``nodes`` for second-order elements
     name: str  #: ``tet10`` and so on
     element: Element
-    dofs: np.ndarray  #: (nb, ne)
+    dofs: np.ndarray  #: (nb, ne) nodes of every element
     nodes: np.ndarray  #: (3, n) m
-    segment: np.ndarray  #: (ne,)
+    segment: np.ndarray  #: (ne,) that every element lies in
 
     def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
-        """(n, 3) displacements of the nodes."""
+        """Return the displacements (n, 3) of the nodes."""
         return moved["full"].reshape(-1, 3)
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
-        """The boundary of the mesh."""
+        """Return the boundary of the mesh, moved."""
         return solid_surface(self, moved.get("full"))
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
-        """(3 k, n) displacements of some points of the surface by those of the nodes."""
+        """Return the displacements (3 k, n) of points of the surface by those of the nodes."""
         # start-up: of responses at points alone
         from solidgear.models.solid.drawing import on_nodes
 
-        own = on_nodes(self)[chosen].toarray()
-        return np.einsum("kj,xy->kxjy", own, np.eye(3)).reshape(3 * len(chosen), -1)
+        values = on_nodes(self)[chosen].toarray()
+        return np.einsum("kj,xy->kxjy", values, np.eye(3)).reshape(3 * len(chosen), -1)
 
     def volume(self) -> Volume:
-        """The mesh itself."""
+        """Return the mesh itself."""
         return Volume(self.name, self.nodes, self.dofs, self.element.doflocs)
 
     @cached_property
@@ -68,27 +68,28 @@ class SolidMesh:
         return outline(self)
 
     def local_facets(self, facets: np.ndarray):
-        """Group facets by their place in the element they are seen from: yields (place, elements)."""
+        """Group facets by their place in the element they are seen from; yield (place, elements)."""
         elements = self.mesh.f2t[0, facets]
         place = (self.mesh.t2f[:, elements] == facets).argmax(axis=0)
         for p in np.unique(place):
             yield p, elements[place == p]
 
-    def on_facet(self, place: int, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Reference points of an element by two coordinates (2, q) in one of its facets, and the sides
-        of the facet along which these run.
+    def on_facet(
+        self, place: int, coordinates: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the reference points of an element by two coordinates (2, q) in one of its facets,
+        and the sides of the facet along which these run.
         """
         corners = self.mesh.refdom.p[:, self.mesh.refdom.facets[place]]
         s, t = corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0]
-        return corners[:, :1] + np.outer(s, at[0]) + np.outer(t, at[1]), s, t
+        return corners[:, :1] + np.outer(s, coordinates[0]) + np.outer(t, coordinates[1]), s, t
 
     def tabulate(self, points, elements):
         """Tabulate basis and geometry on some elements."""
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
 
     def over_facets(self, facets: np.ndarray, within: tuple[float, float] | None = None):
-        """Quadrature on facets: yields (values (nb, q), x (3, e, q), area weights (e, q), unknowns
-        (nb, e)).
+        """Yield quadrature on facets: values (nb, q), x (3, e, q), area weights (e, q), unknowns (nb, e).
 
         Of facets that reach beyond the two places ``within`` along y, only the part between counts:
         they are divided into pieces, and of a piece its share between.
@@ -99,9 +100,8 @@ class SolidMesh:
             across = (y.min(axis=0) < within[0] - hair) | (y.max(axis=0) > within[1] + hair)
             yield from self.over_facets(facets[~across])
             facets = facets[across]
-        ref, weights = (
-            _facet_rule(self.mesh.refdom) if within is None else _pieces(self.mesh.refdom)
-        )
+        rule = _facet_rule if within is None else _pieces
+        ref, weights = rule(self.mesh.refdom)
         for place, elements in self.local_facets(facets):
             points, s, t = self.on_facet(place, ref)
             tab = self.tabulate(points, elements)
@@ -117,23 +117,23 @@ class SolidMesh:
             yield tab.value, tab.x, area, self.dofs[:, elements]
 
     def over_cells(self, elements: np.ndarray):
-        """Quadrature over elements: yields the same with volume for area."""
+        """Yield quadrature over elements, as of facets with volume for area."""
         points, weights = get_quadrature(self.mesh.refdom, 5)
         tab = self.tabulate(points, elements)
         yield tab.value, tab.x, tab.det * weights, self.dofs[:, elements]
 
     def facet_unknowns(self, facets: np.ndarray) -> np.ndarray:
-        """Unknowns that do not vanish on some facets."""
+        """Return the unknowns that do not vanish on some facets."""
         ref, _ = _facet_rule(self.mesh.refdom)
-        found = []
+        unknown_parts = []
         for place, elements in self.local_facets(facets):
             points, _, _ = self.on_facet(place, ref)
             alive = np.abs(reference(self.element, points)[0]).max(axis=1) > 1e-9
-            found.append(self.dofs[alive][:, elements].ravel())
-        return np.unique(np.concatenate(found))
+            unknown_parts.append(self.dofs[alive][:, elements].ravel())
+        return np.unique(np.concatenate(unknown_parts))
 
     def seat(self, station, segments, tol: float) -> np.ndarray:
-        """Facets of the outer lateral surface between the ends of a seat."""
+        """Return the facets of the outer lateral surface between the ends of a seat."""
         p = self.mesh.p[:, self.mesh.facets[:, self.boundary]]
         y, r = p[1], np.hypot(p[0], p[2])
         inside = (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)
@@ -145,18 +145,18 @@ class SolidMesh:
         return self.boundary[inside & steep & near]
 
     def section(self, y0: float, tol: float) -> np.ndarray:
-        """Facets in the plane of a cross-section."""
+        """Return the facets in the plane of a cross-section."""
         y = self.mesh.p[1, self.mesh.facets]
         return np.flatnonzero(np.abs(y - y0).max(axis=0) < tol)
 
 
 def basis_of(name: str) -> Element:
-    """The basis of an element by its name."""
+    """Return the basis of an element by its name."""
     return getattr(skfem.element, ELEMENTS[name].basis)()
 
 
 def _isoparametric(mesh, name, segment) -> SolidMesh:
-    """Unknowns and nodes of an element type on the geometry of a mesh."""
+    """Number the unknowns and place the nodes of an element type on the geometry of a mesh."""
     element = basis_of(name)
     dofs = unknowns(mesh, element)
     geometry = mesh.elem()
@@ -167,14 +167,14 @@ def _isoparametric(mesh, name, segment) -> SolidMesh:
 
 
 def _facet_rule(refdom):
-    """Quadrature on a facet in two local coordinates."""
+    """Return quadrature on a facet in two local coordinates."""
     if refdom is RefTet:
         return get_quadrature(RefTri, 6)
     return gauss_box(4, 2)
 
 
 def _pieces(refdom):
-    """Middles and sizes of equal pieces of a facet, in two local coordinates."""
+    """Return middles and sizes of equal pieces of a facet, in two local coordinates."""
     if refdom is RefTet:
         i, j, third = np.meshgrid(*(range(PIECES),) * 2, (1 / 3, 2 / 3), indexing="ij")
         inside = (i + j < PIECES - 1) | ((i + j == PIECES - 1) & (third < 0.5))
@@ -186,7 +186,9 @@ def _pieces(refdom):
 
 
 def _profile(segments, inner: bool = False):
-    """Breakpoints of the outer (inner) radius; doubled a hair apart at steps, as np.interp needs."""
+    """Return breakpoints of the outer (inner) radius; doubled a hair apart at steps, as np.interp
+    needs.
+    """
     hair = 1e-12 * segments[-1].y1
     y, r = [], []
     for s in segments:

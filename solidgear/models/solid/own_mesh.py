@@ -1,4 +1,4 @@
-"""A solid body from a mesh of one's own."""
+"""A solid body from a mesh that is given."""
 
 from __future__ import annotations
 
@@ -32,35 +32,15 @@ def solid_body(
     materials: Sequence[Material] | None = None,
     patches: Mapping[str, np.ndarray] | None = None,
 ) -> Body:
-    """The free body of a mesh, with ports on cylinders and cones of its surface, or on patches.
+    """Build the free body of a mesh, with ports on cylinders and cones of its surface, or on patches.
 
-    Parameters
-    ----------
-    mesh : skfem mesh
-        Of tetrahedra or hexahedra, m; y is the axis.
-    shaft : Shaft
-        A scene, or what has the same ``segments``, ``stations`` and ``length``: stations are looked
-        for on the outer surface of the segments, and each element has the material of the segment
-        that its middle lies in.
-    element : str
-        One of :data:`solidgear.elements.ELEMENTS`.
-    wanted : sequence of (station, attachment), optional
-        Ports; by default the stations with the attachments they have.
-    clipped : bool
-        Where faces reach beyond the ends of a seat, integrals stop there; else only whole faces
-        within the seat count.
-    facts : mapping, optional
-        More of them for ``body.mesh``.
-    owner : (ne,) ndarray of int, optional
-        Place of each element's material among ``materials``; by default that of the segment which
-        its middle lies in.
-    patches : mapping of str to (n,) ndarray of int, optional
-        Facets of the patches that stations without an axis lie on.
-
-    Raises
-    ------
-    SolidgearError
-        If no face lies on a seat, or faces are missing from one; MeshError for inverted elements.
+    `mesh` is of tetrahedra or hexahedra, m, with y the axis. Stations of the `shaft` are looked for on
+    the outer surface of its segments; `wanted` are other stations with their attachments. `clipped`:
+    integrals stop at the ends of a seat where faces reach beyond it, else only whole faces within the
+    seat count. `owner` (ne,) is the place of each element's material among `materials`; by default
+    each has that of the segment in which its middle lies. `patches` are facets of the patches that
+    stations without an axis lie on; `facts` are added to ``body.mesh``. A seat without faces, or with
+    faces missing, and inverted elements are refused.
 
     Examples
     --------
@@ -87,10 +67,11 @@ def solid_body(
         return seats(station, attachment) if patch is None else (patches or {})[patch.name]
 
     block = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
-    own = {
+    all_facts = {
         **mesh_facts(solid, quality),
-        # nothing promises twins: what is split is split
+        # no symmetry promises twins
         "round": False,
         "pair_tolerance": 0.0,
+        **(facts or {}),
     }
-    return body_of(shaft, wanted, (block,), {**own, **(facts or {})}, solid)
+    return body_of(shaft, wanted, (block,), all_facts, solid)

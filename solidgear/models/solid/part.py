@@ -40,12 +40,12 @@ def part_body(
     around: int,
     coarser: int,
 ) -> Body:
-    """Free body, in one block, of the part of a scene with a ``body``; sizes as for
-    :func:`solidgear.models.solid.body.solid`, while a mesh file is the mesh that it is, or one of
-    those coarser than it.
+    """Build the free body, in one block, of the part of a scene with a ``body``; sizes as for
+    :func:`solidgear.models.solid.body.solid`, while a mesh file is meshed already, and ``coarser``
+    counts back in its list.
 
-    SolidgearError where the file has changed since the scene was read, or no face lies on a seat;
-    MeshError where it cannot be meshed.
+    Refused where the file has changed since the scene was read, where no face lies on a seat, and
+    where it cannot be meshed.
     """
     file = scene.body
     source = _read(file, coarser)
@@ -54,41 +54,41 @@ def part_body(
     named = tuple(g.name for g in file.groups if g.name)
     materials = file.materials(scene.material) if file.groups else None
     if file.kind == "mesh":
-        found = _apart(source, file_mesh, source.path, source.sha256, place, named)
-        # elements of first order are taken as the shape only, since they lock in bending: on a rod of
-        # 16 faces around tetrahedra miss the deflection by -7.7 %, those of second order with straight
-        # sides by +2.3 %, which is what the flat faces take from the section; a thin bar of eight-node
-        # bricks vibrates at 3.3 times its frequency, of twenty nodes on the same cells within 0.1 %
-        element = SOLVED_AS.get(found.element, found.element)
-        if element != found.element:
-            facts["file_element"] = found.element
+        part = _meshed(source, file_mesh, source.path, source.sha256, place, named)
+        # elements of first order give the shape only, since they lock in bending: on a rod of 16 faces
+        # around tetrahedra miss the deflection by -7.7 %, those of second order with straight sides by
+        # +2.3 %, the loss of section by flat faces; a thin bar of eight-node bricks vibrates at 3.3
+        # times its frequency, of twenty nodes on the same cells within 0.1 %
+        element = SOLVED_AS.get(part.element, part.element)
+        if element != part.element:
+            facts["file_element"] = part.element
         free = file.edges is not None
         if free:
             wanted = [(s, a) for s, a in wanted if s.patch is not None]
         for station, _ in wanted:
-            if free and station.patch.name not in found.patches:
+            if free and station.patch.name not in part.patches:
                 raise SolidgearError(
                     f"{source.name} has no group of surfaces {station.patch.name!r}"
                 )
         body = solid_body(
-            found.mesh,
+            part.mesh,
             scene,
             element=element,
             wanted=wanted,
             clipped=True,
-            facts=facts | {"axis": not free, "cell_sizes": cell_sizes(found.mesh)},
-            owner=found.owner if materials else None,
+            facts=facts | {"axis": not free, "cell_sizes": cell_sizes(part.mesh)},
+            owner=part.owner if materials else None,
             materials=materials,
-            patches=found.patches,
+            patches=part.patches,
         )
         return replace(body, scale=_rough_scale(file, scene.material)) if free else body
     plan = step_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
     )
-    filling, owner = _apart(
+    filling, owner = _meshed(
         file, isolated, step.mesh, file.path, place, plan, named, seconds=MESH_SECONDS
     )
-    # four times what the arcs lose by themselves
+    # four times the loss of volume by the arcs
     rtol = max(2e-3, 15.0 / plan["around"] ** 4 * 4)
     quality = check_filling(filling, volume=file.volume, rtol=rtol)
     facts["straightened"] = quality.straightened
@@ -105,7 +105,9 @@ def part_body(
 
 
 def _read(file: Any, coarser: int) -> Any:
-    """The file of a part, or of one of its coarser meshes, as long as it is what the scene has read."""
+    """Return the file of a part, or of one of its coarser meshes; refuse it where it has changed
+    since the scene was read.
+    """
     if coarser > len(file.coarser):
         raise SolidgearError(
             f"solid: coarser = {coarser}, and the scene lists {len(file.coarser)} meshes coarser than "
@@ -122,16 +124,16 @@ def _read(file: Any, coarser: int) -> Any:
 
 
 def _rough_scale(file: Any, material: Any) -> float:
-    """Lowest elastic eigenvalue, rad^2/s^2, of a rod as long as a body and of its volume, or of half
-    a wave of shear along it.
+    """Estimate the lowest elastic eigenvalue, rad^2/s^2, of a rod as long as a body and of its
+    volume, or of half a wave of shear along it.
     """
     length = max(file.edges)
     wave = material.E / material.density * (4.73 / length) ** 4 * file.volume / length
     return min(wave / (4 * math.pi), (math.pi / length) ** 2 * material.E / material.density / 3)
 
 
-def _apart(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
-    """Mesh of a file, made in a process of its own."""
+def _meshed(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
+    """Call a mesher, with its errors as those of the file."""
     try:
         return function(*arguments, **limits)
     except IsolatedError as error:
@@ -141,8 +143,8 @@ def _apart(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
 
 
 def step_plan(scene: Any, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
-    """Cuts and sizes of the mesh of a STEP part for :func:`solidgear.meshing.step.mesh`, those of
-    the round part inside it; sizes as for :func:`solidgear.models.solid.body.solid`.
+    """Return cuts and sizes of the mesh of a STEP part for :func:`solidgear.meshing.step.mesh`,
+    those of the round part inside it; sizes as for :func:`solidgear.models.solid.body.solid`.
     """
     plan = tetrahedra_plan(
         scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
@@ -164,10 +166,12 @@ def step_plan(scene: Any, wanted: Sequence, *, size, graded_size, refinement, ar
 
 
 def _radii(scene, y: float) -> list[float]:
-    """Radius of a circle around the outer surface; none where the surface ends or steps there."""
+    """Return the radius of a circle around the outer surface; none where the surface ends or steps
+    there.
+    """
     near = 1e-6 * scene.length
-    here = [s for s in scene.segments if s.y0 - near < y < s.y1 + near]
-    radii = [s.radius_at(min(max(y, s.y0), s.y1))[1] for s in here]
+    segments = [s for s in scene.segments if s.y0 - near < y < s.y1 + near]
+    radii = [s.radius_at(min(max(y, s.y0), s.y1))[1] for s in segments]
     if y < near or y > scene.length - near or max(radii) - min(radii) > near:
         return []
     return radii[:1]

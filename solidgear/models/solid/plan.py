@@ -24,15 +24,10 @@ def hexahedra_layout(
     around,
     refinement,
 ):
-    """Mesh lines of :func:`solidgear.models.solid.body.solid` in hexahedra and cells around, before anything is
-    meshed; parameters as there.
+    """Return the mesh lines of :func:`solidgear.models.solid.body.solid` in hexahedra and the cells
+    around, before anything is meshed; parameters as there.
     """
-    countable(
-        "solid",
-        scene,
-        size or relative_size * scene.outline.least_radius,
-        refinement,
-    )
+    countable("solid", scene, size or relative_size * scene.outline.least_radius, refinement)
     grading = Grading(
         layers,
         edge_layers,
@@ -51,7 +46,7 @@ def hexahedra_layout(
 
 
 def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) -> float:
-    """Roughly how many tetrahedra there will be in a scene with its cuts; ``plan`` is that of
+    """Estimate the number of tetrahedra in a scene with its cuts; ``plan`` is that of
     :func:`tetrahedra_plan`, and ``edges`` asks for smaller ones at re-entrant edges.
     """
     radii = {s.name: s.outer0 for s in scene.segments}
@@ -62,28 +57,20 @@ def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) 
 
 
 def usual_size(scene) -> float:
-    """Element edge of tetrahedra at refinement 1, away from everything, m."""
+    """Return the element edge of tetrahedra at refinement 1, away from singular places, m."""
     return scene.outline.largest_radius / 3
 
 
 def turns_of(around: int, refinement: float) -> int:
-    """Hexahedra around at some refinement."""
+    """Return the hexahedra around at some refinement."""
     return max(8, 4 * int(round(around * refinement / 4)))
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
-    """Arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations ``wanted``
-    with their attachments.
+    """Return the arguments of :func:`~solidgear.meshing.tetrahedra.tetrahedra` for the stations
+    ``wanted`` with their attachments.
     """
-    size = (
-        countable(
-            "solid",
-            scene,
-            size or usual_size(scene),
-            refinement,
-        )
-        / refinement
-    )
+    size = countable("solid", scene, size or usual_size(scene), refinement) / refinement
     graded_size = (graded_size / refinement) if graded_size else size / 4
     planes = sorted({s.y for s, a in wanted if a == "section"})
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})

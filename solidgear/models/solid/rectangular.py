@@ -25,7 +25,7 @@ CELLS = 4
 def block_body(
     scene: Any, wanted: Sequence, *, element: str, size: float | None, refinement: float
 ) -> Body:
-    """Free body, in one block, of a scene with a ``body`` that is a block; sizes as for
+    """Build the free body, in one block, of a scene with a ``body`` that is a block; sizes as for
     :func:`solidgear.models.solid.body.solid`.
     """
     mesh = block_mesh(scene, wanted, element, size, refinement)
@@ -45,11 +45,11 @@ def block_body(
 def block_mesh(
     scene: Any, wanted: Sequence, element: str, size: float | None, refinement: float
 ) -> Mesh:
-    """Boxes with a line at every section, as many along every edge as it is long beside the shortest,
-    or of one size.
+    """Return boxes with a line at every section, their number along an edge by its length beside the
+    shortest, or of one size; tetrahedra are refused.
 
     Meshes whose refinements are one twice the other are nested, so that frequencies fall from one
-    to the next. SolidgearError for tetrahedra.
+    to the next.
     """
     if not element.startswith("hex"):
         raise SolidgearError(
@@ -60,15 +60,15 @@ def block_mesh(
     sizes = [size or edge / CELLS / max(1, round((edge / least) ** 0.5)) for edge in (x, y, z)]
     along = sorted({0.0, y, *(s.y for s, _ in wanted if s.patch is None)})
     places = (-x / 2, x / 2), along, (-z / 2, z / 2)
-    lines = [_divided(own, cell, refinement) for own, cell in zip(places, sizes)]
-    assemblable(prod(len(own) - 1 for own in lines), 27)
+    lines = [_divided(marks, cell, refinement) for marks, cell in zip(places, sizes)]
+    assemblable(prod(len(line) - 1 for line in lines), 27)
     boxes = MeshHex.init_tensor(*lines)
     # scikit-fem's are left-handed, and x mirrors
     return MeshHex(boxes.p * [[-1.0], [1.0], [1.0]], boxes.t)
 
 
 def _divided(places: Sequence[float], size: float, refinement: float) -> np.ndarray:
-    """Lines at some places and evenly between."""
+    """Return lines at some places and evenly between."""
     out = [np.array([places[0]])]
     for a, b in zip(places, places[1:]):
         cells = max(1, round(refinement * ceil((b - a) / size - 1e-9)))

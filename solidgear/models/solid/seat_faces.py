@@ -1,4 +1,4 @@
-"""Faces of seats in meshes of tetrahedra, and in those of one's own.
+"""Faces of seats in meshes of tetrahedra, and in given meshes.
 
 A face lies on a surface of revolution if its corners do and its middle nodes lie between the chords of
 its edges and the surface: meshers straighten edges where elements would fold, and such faces are as much
@@ -23,21 +23,17 @@ from solidgear.models.solid.mesh import SolidMesh
 
 #: distance of a node from a surface of revolution, over its radius, at which it is on it
 ON_SURFACE = 2e-5
-#: share of the edges around a surface that are curved, from which plane faces are those of something else
+#: share of curved edges around a surface from which plane faces do not belong to it
 CURVED = 0.3
-#: distance from a surface, over its radius, at which a face would be meant to be on it
+#: distance from a surface, over its radius, within which a face is meant to be on it
 MEANT = 2e-4
 #: share of a seat that faces close to it, but off it, may have
 LOST = 0.01
 
 
 class Seats:
-    """Faces of seats on what there is of a surface of revolution, and of sections.
-
-    Parameters
-    ----------
-    clipped : bool
-        Whether to take facets that reach beyond the ends of a seat.
+    """Faces of seats on the rest of a surface of revolution, and of sections; ``clipped`` takes facets
+    that reach beyond the ends of a seat.
     """
 
     def __init__(self, mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> None:
@@ -47,44 +43,42 @@ class Seats:
         self.corners = mesh.mesh.facets[:, mesh.boundary]
         self.y = mesh.mesh.p[1, self.corners]
         self.r = np.hypot(*mesh.mesh.p[[0, 2]][:, self.corners])
-        self._known: dict[Any, tuple[np.ndarray, np.ndarray]] = {}
+        self._by_segment: dict[Any, tuple[np.ndarray, np.ndarray]] = {}
 
     def __call__(self, station, attachment: str) -> np.ndarray:
-        """Facets that carry a station attached in some way.
-
-        Raises
-        ------
-        SolidgearError
-            Without a section at the station, or where faces that were meant to be on its seat are
-            not: their corners are, or all but are, and they are no plane floor of something else.
+        """Return the facets that carry a station; refuse a station without a section, and faces
+        that were meant to be on its seat and are not: their corners are, or all but are, and they
+        are no plane floor of a feature.
         """
         if attachment == "section":
-            found = self.mesh.section(station.y, 1e-7 * self.length)
-            if not len(found):
+            section = self.mesh.section(station.y, 1e-7 * self.length)
+            if not len(section):
                 raise SolidgearError(
                     f"port {station.name!r}: the mesh has no section at y = {station.y:.6g} m; "
                     "use attachment 'average' or 'rigid'"
                 )
-            return found
+            return section
         near = self._near(station)
-        on, meant = np.zeros(len(near), bool), np.zeros(len(near), bool)
+        on_seat, meant = np.zeros(len(near), bool), np.zeros(len(near), bool)
         hair = 1e-7 * self.length
         for s in self.segments:
             if s.y1 > station.lo + hair and s.y0 < station.hi - hair:
-                counted, floors = self._sorted(s)
-                on |= near & counted
+                lateral, floors = self._sorted(s)
+                on_seat |= near & lateral
                 meant |= near & ~floors & self._along(s, MEANT)
-        lost, there = (self.area(part, station) for part in (meant & ~on, on))
-        # where nothing is found another sentence says so
-        if there > 0 and lost > LOST * (lost + there):
+        lost, area = (self.area(part, station) for part in (meant & ~on_seat, on_seat))
+        # a seat without any face is refused in another sentence
+        if area > 0 and lost > LOST * (lost + area):
             raise SolidgearError(
-                f"port {station.name!r}: {100 * lost / (lost + there):.2g} % of the faces of its seat "
-                f"are not on it: their nodes lie off the surface by more than {self._why()}"
+                f"port {station.name!r}: {100 * lost / (lost + area):.2g} % of the faces of its seat "
+                f"are not on it: their nodes lie off the surface by more than {self._reason()}"
             )
-        return self.mesh.boundary[on]
+        return self.mesh.boundary[on_seat]
 
-    def _why(self) -> str:
-        """Reason why nodes lie off a surface and what helps, in a mesh of one's own or of a drawn part."""
+    def _reason(self) -> str:
+        """Return the reason why nodes lie off a surface, and the remedy, in a given mesh or one of
+        a drawn part.
+        """
         if self.clipped:
             return (
                 f"the digits of a mesh file explain ({ON_SURFACE:g} of the radius); write the mesh "
@@ -96,15 +90,17 @@ class Seats:
         )
 
     def area(self, chosen: np.ndarray, station) -> float:
-        """Area of some facets of the boundary between the ends of a seat, m^2."""
+        """Return the area of some facets of the boundary between the ends of a seat, m^2."""
         facets = self.mesh.boundary[chosen]
         if not len(facets):
             return 0.0
-        within = (station.lo, station.hi) if self.clipped else None
-        return float(sum(a.sum() for _, _, a, _ in self.mesh.over_facets(facets, within)))
+        span = (station.lo, station.hi) if self.clipped else None
+        return float(sum(a.sum() for _, _, a, _ in self.mesh.over_facets(facets, span)))
 
     def _near(self, station) -> np.ndarray:
-        """Facets within the ends of a seat, or, of those to be clipped, that reach into it."""
+        """Return the facets within the ends of a seat, or, of those to be clipped, that reach into
+        it.
+        """
         hair = 1e-7 * self.length
         low, high = self.y.min(axis=0), self.y.max(axis=0)
         if self.clipped:
@@ -112,50 +108,54 @@ class Seats:
         return (low > station.lo - hair) & (high < station.hi + hair)
 
     def _along(self, s, near: float) -> np.ndarray:
-        """Facets with all corners near the surface of a segment, those across the axis left out."""
+        """Return the facets with all corners near the surface of a segment, those across the axis
+        left out.
+        """
         hair, outer = 1e-7 * self.length, _outer(s, self.y)
         inside = (self.y > s.y0 - hair) & (self.y < s.y1 + hair)
-        on = inside & (np.abs(self.r - outer) < near * outer)
-        return on.all(axis=0) & (np.ptp(self.y, axis=0) > hair)
+        close = inside & (np.abs(self.r - outer) < near * outer)
+        return close.all(axis=0) & (np.ptp(self.y, axis=0) > hair)
 
     def _sorted(self, s) -> tuple[np.ndarray, np.ndarray]:
-        """Facets on the surface of a segment, and plane floors with their corners on it."""
-        if s not in self._known:
-            self._known[s] = _lateral(self.mesh, self.corners, self._along(s, ON_SURFACE), s)
-        return self._known[s]
+        """Return the facets on the surface of a segment, and plane floors with their corners on it."""
+        if s not in self._by_segment:
+            self._by_segment[s] = _lateral(self.mesh, self.corners, self._along(s, ON_SURFACE), s)
+        return self._by_segment[s]
 
 
 def _outer(s, y):
-    """Radius of the surface of a segment, m."""
+    """Return the radius of the surface of a segment, m."""
     return s.outer0 + (s.outer1 - s.outer0) * (y - s.y0) / (s.y1 - s.y0)
 
 
-def _lateral(mesh: SolidMesh, corners, on, s) -> tuple[np.ndarray, np.ndarray]:
-    """Of facets with all corners on the surface of a segment, those that lie on it, and plane floors."""
-    floors = np.zeros(len(on), bool)
-    if not mesh.element.edge_dofs or not on.any():
-        return on, floors
-    own = np.flatnonzero(on)
-    edge, places = edges_of(mesh, corners[:, own])
+def _lateral(mesh: SolidMesh, corners, candidates, s) -> tuple[np.ndarray, np.ndarray]:
+    """Return, of facets with all corners on the surface of a segment, those that lie on it, and
+    plane floors.
+    """
+    floors = np.zeros(len(candidates), bool)
+    if not mesh.element.edge_dofs or not candidates.any():
+        return candidates, floors
+    chosen = np.flatnonzero(candidates)
+    edge, places = edges_of(mesh, corners[:, chosen])
     outer = _outer(s, places[1])
-    sagitta = np.abs(outer - chords(mesh, corners[:, own]))
+    sagitta = np.abs(outer - chords(mesh, corners[:, chosen]))
     inwards = outer - np.hypot(places[0], places[2])
     hair = ON_SURFACE * outer + BEYOND * sagitta
     bent = (np.abs(inwards) < hair) | (edge < 0)
-    # curved edges along the axis may lie off by a little of what those around are curved by
+    # curved edges along the axis may lie off by a little of the sagitta of those around
     near, deep = hair.max(axis=0), sagitta.max(axis=0)
     between = ((inwards > -near) & (inwards < deep + near) | (edge < 0)).all(axis=0)
     around = (sagitta > hair) & (edge >= 0)
-    counted = np.zeros(len(on), bool)
+    lateral = np.zeros(len(candidates), bool)
     # in a mesh without curved edges every face is plane
     if (bent & around).sum() > CURVED * around.sum():
-        floors[own] = ~bent.all(axis=0) & _plane(mesh, corners[:, own], edge, places, ~bent)
-    counted[own] = between
-    return counted & ~floors, floors
+        floors[chosen] = ~bent.all(axis=0) & _plane(mesh, corners[:, chosen], edge, places, ~bent)
+    lateral[chosen] = between
+    return lateral & ~floors, floors
 
 
 def _plane(mesh: SolidMesh, corners, edge, places, straight) -> np.ndarray:
-    """True where facets that share straight edges lie in one plane with all their nodes."""
+    """Return True where facets that share straight edges lie in one plane with all their nodes."""
     count = corners.shape[1]
     m, f = np.nonzero(straight)
     _, number = np.unique(edge[m, f], return_inverse=True)

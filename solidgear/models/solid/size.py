@@ -9,10 +9,10 @@ import numpy as np
 
 from solidgear.elements import SOLVED_AS
 from solidgear.kernel.room import assemblable
-from solidgear.meshing.featured import submesh
+from solidgear.meshing.featured import FeaturedMesh, submesh
 from solidgear.meshing.hexahedra import straight_hexahedra
 from solidgear.models.kinds import BODIES, CUTS, CYCLIC
-from solidgear.models.size import Size, coupled, of_mesh
+from solidgear.models.size import Size, coupled, size_of_mesh
 from solidgear.models.solid.body import _tets
 from solidgear.models.solid.featured import meshed
 from solidgear.models.solid.mesh import basis_of
@@ -38,8 +38,8 @@ def solid_size(
     """Mesh the 3D solid of a scene and count; parameters as for
     :func:`solidgear.models.solid.body.solid`.
 
-    In place of a part from a STEP file its round part is meshed, at the same sizes; a mesh file
-    tells how many of everything it has.
+    In place of a part from a STEP file its round part is meshed, at the same sizes; a mesh file is
+    counted as it is.
     """
     wanted = [*attached_stations(scene.stations, attachments)]
     sorts = {f.sort for f in resolved(scene)}
@@ -49,35 +49,35 @@ def solid_size(
         return _of_file(file)
     if BODIES in sorts:
         mesh = block_mesh(scene, wanted, element, size, refinement)
-        return of_mesh(mesh, basis_of(element))
+        return size_of_mesh(mesh, basis_of(element))
     if sorts == {CYCLIC}:
         from solidgear.models.sector.body import whole_mesh  # slow to import, and seldom needed
 
         mesh, _, _ = whole_mesh(scene, wanted, **sizes)
-        return of_mesh(mesh, basis_of("tet10"))
+        return size_of_mesh(mesh, basis_of("tet10"))
     if CUTS in sorts:
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
         return cut_size(meshed(scene, plan, refinement, half))
     if element.startswith("tet"):
         mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
-        return of_mesh(mesh, basis_of(element))
+        return size_of_mesh(mesh, basis_of(element))
     grading |= {"around": around, "size": size, "refinement": refinement}
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
     mesh, _, _ = straight_hexahedra(scene, plan, turns)
     rigid = any(a == "rigid" for _, a in wanted)
-    return of_mesh(mesh, basis_of(element), mirrors=not rigid)
+    return size_of_mesh(mesh, basis_of(element), mirrors=not rigid)
 
 
-def cut_size(made: Any) -> Size:
-    """Of a :class:`~solidgear.meshing.featured.FeaturedMesh` without what is cut out of it."""
-    mesh = submesh(made.mesh, ~made.cut)
-    if made.plane is None:
-        return of_mesh(mesh, basis_of("tet10"))
-    both = of_mesh(mesh, basis_of("tet10"), parts=2)
+def cut_size(meshed: FeaturedMesh) -> Size:
+    """Count a mesh without its cuts."""
+    mesh = submesh(meshed.mesh, ~meshed.cut)
+    if meshed.plane is None:
+        return size_of_mesh(mesh, basis_of("tet10"))
+    halves = size_of_mesh(mesh, basis_of("tet10"), parts=2)
     # of a node on the mirror plane one half has one component and the other two
-    on_plane = int((np.abs(mesh.doflocs[made.plane]) < 1e-9).sum())
-    return replace(both, unknowns=both.unknowns - 3 * on_plane)
+    on_plane = int((np.abs(mesh.doflocs[meshed.plane]) < 1e-9).sum())
+    return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
 
 
 def _of_file(file: Any) -> Size:

@@ -1,4 +1,4 @@
-"""Guards: what will not hold for a scene, reported before its numbers are used.
+"""Guards: checks of whether models hold for a scene, reported before its numbers are used.
 
 A guard is a function of a :class:`~solidgear.studies.guards.probe.Probe` that yields notices.  Limits were
 measured by the scripts of ``validation/stability``; the name of the script stands beside its

@@ -12,8 +12,8 @@ from solidgear.scene import Scene
 from solidgear.studies.guards.notice import Notice, Notices, slip_in_units
 from solidgear.studies.guards.probe import Probe
 
-# wrong_units.py says which slips leave one of these; stiffness begins where no machine is known: of
-# 1 MN/m, as of soft rolling, film and magnetic bearings, under a shaft of 240 mm
+# wrong_units.py lists the slips that leave one of these ranges; stiffness begins below that of any
+# machine: 1 MN/m, as of soft rolling, film and magnetic bearings, under a shaft of 240 mm
 SOUND = {
     "E in Pa": (1e8, 1.5e12),
     "density in kg/m^3": (500.0, 25e3),
@@ -26,8 +26,8 @@ SOUND = {
 
 
 def units(probe: Probe) -> Notices:
-    """Orders of magnitude that a slip in units moves: of the materials, then of the bearings, then
-    of what comes of both.
+    """Yield a notice on an order of magnitude that a slip in units moves: of materials, else of
+    bearings, else of the first frequency.
     """
     scene = probe.scene
     mean = float(np.mean([2 * s.outer0 for s in scene.segments]))
@@ -44,18 +44,18 @@ def units(probe: Probe) -> Notices:
         k = np.diag(b.stiffness)
         local = scene.segments[0].material.E * mean
         if k[1] > 0:
-            where = f"bearing {b.name!r} in {DOF_NAMES[1]}"
-            bearings.append(("axial stiffness over E d", k[1] / local, where))
+            place = f"bearing {b.name!r} in {DOF_NAMES[1]}"
+            bearings.append(("axial stiffness over E d", k[1] / local, place))
         for axis, tilt in ((0, 5), (2, 3)):
             if k[axis] > 0:
-                where = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
-                bearings.append(("stiffness over E d", k[axis] / local, where))
+                place = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
+                bearings.append(("stiffness over E d", k[axis] / local, place))
                 if k[tilt] > 0:
                     bearings.append(
                         (
                             "lever sqrt(tilt / radial stiffness) over d",
                             np.sqrt(k[tilt] / k[axis]) / mean,
-                            where,
+                            place,
                         )
                     )
     first = (
@@ -64,29 +64,29 @@ def units(probe: Probe) -> Notices:
         else []
     )
     # What is wrong early moves all that comes after it.
-    for found in (materials, bearings, first):
-        legend = "d: mean diameter" if found is bearings else ""
-        if sentence := slip_in_units(found, SOUND, legend):
+    for numbers in (materials, bearings, first):
+        legend = "d: mean diameter" if numbers is bearings else ""
+        if sentence := slip_in_units(numbers, SOUND, legend):
             yield Notice("caution", (), sentence)
             return
 
 
 def doubtful_data(probe: Probe) -> Notices:
-    """Bearings whose numbers were assumed or identified."""
+    """Yield a notice on bearings whose numbers were assumed or identified."""
     doubtful: dict[str, list[str]] = {}
     for b in probe.scene.bearings:
         if b.status in ("identified", "assumed", "estimated") and not b.hold:
             doubtful.setdefault(b.status, []).append(repr(b.name))
     if doubtful:
-        told = (
+        bearings = ", ".join(
             f"bearing{'s' if len(names) > 1 else ''} {listed(names)} ({status})"
             for status, names in doubtful.items()
         )
-        yield Notice("caution", (), f"data not measured or published: {', '.join(told)}")
+        yield Notice("caution", (), f"data not measured or published: {bearings}")
 
 
 def free_motions(probe: Probe) -> Notices:
-    """Rigid motions that no bearing resists."""
+    """Yield notices on rigid motions that no bearing resists."""
     free = probe.supports.unresisted(probe.body).shape[1]
     if free != 1:  # turning is free
         yield Notice("fact", (), f"rigid motions that no bearing resists: {free}")
@@ -100,18 +100,20 @@ def free_motions(probe: Probe) -> Notices:
 
 
 # strong_coupling.py: below 1e-12 of the diagonal a direction is taken as free; a coupling written
-# with four digits tells no less than 1e-3
+# with four digits shows no less than 1e-3
 FREE, FOUR_DIGITS = 1e-12, 1e-3
 
 
 def oblique_softness(probe: Probe) -> Notices:
-    """Bearings whose stiffness in one oblique direction is a small difference of large entries."""
+    """Yield notices on bearings whose stiffness in one oblique direction is a small difference of
+    large entries.
+    """
     for b in probe.scene.bearings:
-        on = np.diag(b.stiffness) > 0
-        if not on.any():
+        stiff = np.diag(b.stiffness) > 0
+        if not stiff.any():
             continue
-        d = np.sqrt(np.diag(b.stiffness)[on])
-        least = float(np.linalg.eigvalsh(b.stiffness[np.ix_(on, on)] / np.outer(d, d))[0])
+        d = np.sqrt(np.diag(b.stiffness)[stiff])
+        least = float(np.linalg.eigvalsh(b.stiffness[np.ix_(stiff, stiff)] / np.outer(d, d))[0])
         if least < FOUR_DIGITS and b.catalogue is not None:
             share = "no stiffness"
             if least >= FREE:
@@ -125,23 +127,27 @@ def oblique_softness(probe: Probe) -> Notices:
                 "solidgear budget tells what the inside leaves open",
             )
         elif least < FOUR_DIGITS:
-            what = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"
+            softness = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"
             yield Notice(
                 "caution",
                 (),
                 f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique "
-                f"direction, which {what}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
+                f"direction, which {softness}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
                 "the entries; check their signs and give more digits",
             )
 
 
 def one_way(probe: Probe) -> Notices:
-    """Bearings with a contact angle that all hold the shaft in the same direction along y."""
+    """Yield a notice where bearings with a contact angle all hold the shaft in the same direction
+    along y.
+    """
     yield from (Notice("caution", (), sentence) for sentence in facing_one_way(probe.scene))
 
 
 def facing_one_way(scene: Scene) -> Iterator[str]:
-    """The sentence on rows that all hold the shaft in the same direction along y, if there is one."""
+    """Yield the sentence on rows that all hold the shaft in the same direction along y, if there is
+    one.
+    """
     rows = [b for b in scene.bearings if b.catalogue and b.catalogue.one_sided]
     ways = {b.catalogue.holds for b in rows if b.catalogue}
     held_otherwise = any(
@@ -150,59 +156,55 @@ def facing_one_way(scene: Scene) -> Iterator[str]:
     )
     if len(rows) > 1 and len(ways) == 1:
         way = ways.pop()
-        alone = (
-            "only other bearings hold it the other way, and feel all their preload"
-            if held_otherwise
-            else "nothing holds it the other way"
-        )
+        opposite = "nothing holds it the other way"
+        if held_otherwise:
+            opposite = "only other bearings hold it the other way, and feel all their preload"
         yield (
             f"the bearings {listed([repr(b.name) for b in rows])} all hold the shaft towards {way}: "
-            f'{alone}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"'
+            f'{opposite}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"'
         )
 
 
 def axial_support(probe: Probe) -> Notices:
-    """Bearings that hold the shaft along y: which by word, none, or several against each other."""
+    """Yield notices on the bearings that hold the shaft along y: named by support, none, or several
+    against each other.
+    """
     bearings = probe.scene.bearings
     floating = [repr(b.name) for b in bearings if b.floats]
     if floating and not any(b.stiffness[1, 1] for b in bearings):
-        one = len(floating) == 1
+        float_ = "floats" if len(floating) == 1 else "float"
         others = "" if len(floating) == len(bearings) else ", and no other bearing holds it there"
         yield Notice(
             "caution",
             (),
-            f"no bearing locates the shaft along y: {listed(floating)} float{'s' * one}{others}; "
+            f"no bearing locates the shaft along y: {listed(floating)} {float_}{others}; "
             'let one hold it, by support = "locating" or by its kind',
         )
         return
-    known = [(b, b.catalogue) for b in bearings if b.catalogue and not b.floats]
-    both = [repr(b.name) for b, data in known if data.both_ways]
-    singles = [(repr(b.name), data.holds) for b, data in known if data.one_sided]
+    fixed = [(b, b.catalogue) for b in bearings if b.catalogue and not b.floats]
+    both_ways = [repr(b.name) for b, data in fixed if data.both_ways]
+    singles = [(repr(b.name), data.holds) for b, data in fixed if data.one_sided]
     if len({way for _, way in singles}) > 1:
-        both.append(" with ".join(name for name, _ in singles))
-    if len(both) > 1:
+        both_ways.append(" with ".join(name for name, _ in singles))
+    if len(both_ways) > 1:
         yield Notice(
             "fact",
             (),
-            f"the bearings {listed(both)} each locate the shaft along y, "
+            f"the bearings {listed(both_ways)} each locate the shaft along y, "
             "which is statically indeterminate: they share its load by clearance and stiffness, and "
             "what warmth and distances of seats press between them is in no number; write "
             'support = "floating" at all but one',
         )
     if any(b.support for b in bearings):
         locating = [repr(b.name) for b in bearings if not b.floats and b.stiffness[1, 1]]
-        yield Notice(
-            "fact",
-            (),
-            f"along y {listed(locating)} locate{'s' if len(locating) == 1 else ''} the shaft"
-            + (
-                f", {listed(floating)} float{'s' if len(floating) == 1 else ''}" if floating else ""
-            ),
-        )
+        text = f"along y {listed(locating)} locate{'s' if len(locating) == 1 else ''} the shaft"
+        if floating:
+            text += f", {listed(floating)} float{'s' if len(floating) == 1 else ''}"
+        yield Notice("fact", (), text)
 
 
 def split_pair(probe: Probe) -> Notices:
-    """A bending pair that the bearings split."""
+    """Yield a notice on a bending pair that the bearings split."""
     split = probe.split
     if split >= 1e-9:
         yield Notice(

@@ -10,8 +10,9 @@ from solidgear.errors import listed
 from solidgear.studies.guards.notice import Notice, Notices, beams
 from solidgear.studies.guards.probe import Probe
 
-# fillets.py: radius over the smaller diameter of a shoulder of 134 on 90 mm, then what a fillet takes
-# from the compliances of a point 15 mm before it in deflection and in tilt, and adds to first bending
+# fillets.py: radius over the smaller diameter of a shoulder of 134 on 90 mm, then the shares that a
+# fillet takes from the compliances of a point 15 mm before it in deflection and in tilt, and adds to
+# first bending
 FILLETS = np.array(
     [
         [0.0, 0.0, 0.0, 0.0],
@@ -24,14 +25,14 @@ NOTICED, LARGE = 0.02, 0.07
 
 
 def fillets(probe: Probe) -> Notices:
-    """Fillets at roots that a beam leaves out, from where a thousandth is at stake."""
+    """Yield notices on fillets at roots that a beam leaves out, from an error of a thousandth on."""
     segments = probe.scene.segments
-    found: dict[str, list[tuple[float, Any]]] = {}
+    by_level: dict[str, list[tuple[float, Any]]] = {}
     for corner in probe.scene.outline.corners:
         ratio = min(corner.axial, corner.radial) / (2 * corner.r)
         if corner.root and corner.surface == "outer" and ratio >= NOTICED:
-            found.setdefault("caution" if ratio >= LARGE else "fact", []).append((ratio, corner))
-    for level, corners in found.items():
+            by_level.setdefault("caution" if ratio >= LARGE else "fact", []).append((ratio, corner))
+    for level, corners in by_level.items():
         places = listed(
             f'{corner.kind} "{corner.name}" at the shoulder of {segments[corner.owner].name!r}, '
             f"y = {1e3 * corner.y:.6g} mm, {ratio:.2g} of the diameter"

@@ -1,4 +1,4 @@
-"""Guards on seats and elements of the solids, and on the machine that is to solve them."""
+"""Guards on seats and elements of the solids, and on the machine that solves them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
 
 
 def narrow_seat(probe: Probe) -> Notices:
-    """Seats that tie like a line, those of one kind in one sentence."""
+    """Yield notices on seats that tie like a line, those of one kind in one sentence."""
     narrow: dict[tuple[float, float], dict[str, float]] = {}
     for s in probe.scene.stations:
         width = (s.hi - s.lo) / probe.diameter(s.y)
@@ -54,18 +54,16 @@ def narrow_seat(probe: Probe) -> Notices:
 
 
 def rigid_seats(probe: Probe) -> Notices:
-    """Motion of numbers by rigid seats, where some are, against averaged ones; they are the stiff
-    bound.
+    """Yield a notice on the change of numbers by rigid seats against averaged ones; rigid seats are
+    the stiff bound.
     """
     chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
     if not probe.scene.bearings or not chosen:
         return
     try:
         stiff = probe.tied("rigid")
-    except (
-        SolidgearError
-    ):  # seats of other bearings touch, and all of them rigid is not what the scene asks for
-        return
+    except SolidgearError:
+        return  # seats of other bearings touch, and the scene does not ask for all of them rigid
     moved = {
         name: value
         for name in (C_ZZ, Quantity("C_thx"), FIRST_BENDING)
@@ -89,7 +87,7 @@ LINEAR = {"tet4": ("tet10", 116), "hex8": ("hex20", 138)}
 
 
 def linear_elements(probe: Probe) -> Notices:
-    """Elements that answer curvature with shear."""
+    """Yield notices on elements that answer curvature with shear."""
     element, file = probe.body.mesh.get("element"), probe.whole.body
     if file is not None and file.element in SOLVED_AS:
         yield Notice(
@@ -115,7 +113,7 @@ def linear_elements(probe: Probe) -> Notices:
 
 
 def hexahedra_at_fillets(probe: Probe) -> Notices:
-    """Hexahedra whose layers do not converge beside fillets as error bars ask."""
+    """Yield a notice on hexahedra whose layers do not converge beside fillets as error bars ask."""
     element, corners = str(probe.body.mesh.get("element", "")), probe.scene.outline.corners
     if probe.body.fidelity == "solid" and element.startswith("hex") and corners:
         names = ", ".join(f'{c.kind} "{c.name}"' for c in corners)
@@ -127,7 +125,7 @@ def hexahedra_at_fillets(probe: Probe) -> Notices:
         )
 
 
-# nearly_incompressible.py: what the bending compliance lacks, over nu
+# nearly_incompressible.py: share that the bending compliance lacks, over nu
 NU = np.array([0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999])
 LOCKING = {
     "tet4": (0.079, 0.103, 0.142, 0.309, 0.712, 0.947, 0.993),
@@ -141,27 +139,29 @@ LOCKED, SOFT = 0.01, 0.45
 
 
 def nearly_incompressible(probe: Probe) -> Notices:
-    """Elements that lock as nu goes to 1/2; the harmonic solid from order 2 on does not."""
-    usual = {"solid": _element_of_solid(probe), "harmonic": "Q5"} | (
-        {probe.body.fidelity: probe.body.mesh["element"]} if probe.body.fidelity in solids() else {}
-    )
+    """Yield notices on elements that lock as nu goes to 1/2; the harmonic solid from order 2 on
+    does not.
+    """
+    by_model = {"solid": _element_of_solid(probe), "harmonic": "Q5"}
+    if probe.body.fidelity in solids():
+        by_model[probe.body.fidelity] = probe.body.mesh["element"]
     if without_axis(probe.whole):
-        del usual["harmonic"]
-    for material, where in _soft_materials(probe):
-        for model, element in usual.items():
+        del by_model["harmonic"]
+    for material, owner in _soft_materials(probe):
+        for model, element in by_model.items():
             error = locking(element, material.nu)
             if error > LOCKED:
                 yield Notice(
                     beyond(error, probe.scene.ask.tolerance),
                     (model,),
-                    f"nu = {material.nu:g} of {where}: element {element} locks and is about "
+                    f"nu = {material.nu:g} of {owner}: element {element} locks and is about "
                     f"{100 * error:.2g} % too stiff in bending, limit {100 * LOCKED:g} %; use "
                     f"{_locks_less(probe, material.nu)}",
                 )
 
 
 def _element_of_solid(probe: Probe) -> str:
-    """Element of the 3D solid of a scene: that of its mesh file, or the one that it asks for."""
+    """Return the element of the 3D solid of a scene: that of its mesh file, or its default."""
     file = probe.whole.body
     if file is not None and file.element:
         return SOLVED_AS.get(file.element, file.element)
@@ -169,26 +169,28 @@ def _element_of_solid(probe: Probe) -> str:
 
 
 def locking(element: str, nu: float) -> float:
-    """Share of the bending compliance that an element lacks; 0 of those that were not measured."""
+    """Return the share of the bending compliance that an element lacks; 0 for elements that were
+    not measured.
+    """
     if element not in LOCKING:
         return 0.0
     return float(np.exp(np.interp(-np.log(0.5 - nu), -np.log(0.5 - NU), np.log(LOCKING[element]))))
 
 
 def _soft_materials(probe: Probe) -> Iterator[tuple[Material, str]]:
-    """Materials that are nearly incompressible, and what is of them."""
+    """Yield nearly incompressible materials, each with the part made of it."""
     body = probe.whole.body
     if body is not None and without_axis(probe.whole):
         groups = [g.label for g in body.groups] or [body.name]
         named = list(zip(body.materials(probe.whole.material), groups))
     else:
         named = [(s.material, f"segment {s.name!r}") for s in probe.scene.segments]
-    first = {material: where for material, where in reversed(named)}
-    yield from ((material, where) for material, where in first.items() if material.nu >= SOFT)
+    first_owner = {material: owner for material, owner in reversed(named)}
+    yield from ((material, owner) for material, owner in first_owner.items() if material.nu >= SOFT)
 
 
 def _locks_less(probe: Probe, nu: float) -> str:
-    """Advice in place of an element that locks."""
+    """Return advice in place of an element that locks."""
     if not without_axis(probe.whole):
         return "the harmonic solid of order 3 or more"
     body = probe.whole.body
@@ -197,7 +199,7 @@ def _locks_less(probe: Probe, nu: float) -> str:
 
 
 def uniform_at_shoulder(probe: Probe) -> Notices:
-    """A harmonic mesh that is not graded towards a re-entrant corner."""
+    """Yield a notice on a harmonic mesh that is not graded towards a re-entrant corner."""
     angle, exponent = sharpest_corner(probe.scene)
     if probe.body.mesh.get("layers") == 0 and not probe.body.mesh.get("plain") and exponent < 1:
         yield Notice(
@@ -209,11 +211,13 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
         )
 
 
-GOOD_TO = 1.5  # of the laws, whose estimate over what analysis or measurement say is 0.75 to 1.35
+GOOD_TO = 1.5  # of the laws, whose estimates are 0.75 to 1.35 of analysis or measurement
 
 
 def memory(probe: Probe) -> Notices:
-    """Factor of the 3D solid: by whom, and whether it will fit."""
+    """Yield notices on the factor of the 3D solid: which program makes it, and whether it fits into
+    memory.
+    """
     try:
         size = probe.solid_size
     except SolidgearError as error:
@@ -221,7 +225,10 @@ def memory(probe: Probe) -> Notices:
         return
     largest = max(unknowns for unknowns, _ in size.matrices)
     absent, forced = [], os.environ.get("SOLIDGEAR_BACKEND")
-    for name in (forced,) if forced in BACKENDS else FASTEST if largest > SMALL else ("superlu",):
+    candidates = FASTEST if largest > SMALL else ("superlu",)
+    if forced in BACKENDS:
+        candidates = (forced,)
+    for name in candidates:
         if not missing(name):
             break
         absent.append(INSTALL[name])
@@ -231,25 +238,25 @@ def memory(probe: Probe) -> Notices:
     if LADDER["harmonic"].unfit(probe.whole):
         smaller = " or ".join([*(m for m in probe.solids if m != "solid"), "a coarser mesh"])
     # a mesh file is the only mesh there is
-    only = probe.body.fidelity == "solid" or getattr(probe.meshed.body, "one_mesh", False)
-    which = "the" if only else "the default"
+    single = probe.body.fidelity == "solid" or getattr(probe.meshed.body, "one_mesh", False)
+    article = "the" if single else "the default"
     yield Notice(
         "fact",
         ("solid",),
-        f"{which} 3D solid, {size.unknowns} unknowns, is factored by {name} in about {need:.0f} MB"
-        + "".join(f"; faster: {way}" for way in absent[:1]),
+        f"{article} 3D solid, {size.unknowns} unknowns, is factored by {name} in about {need:.0f} MB"
+        + (f"; faster: {absent[0]}" if absent else ""),
     )
     if free is not None and GOOD_TO * need > free:
         yield Notice(
             "avoid" if need > free else "caution",
             ("solid",),
-            f"{which} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and "
+            f"{article} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and "
             f"{free:.0f} MB are free; use {smaller}",
         )
 
 
 def renderer(probe: Probe) -> Notices:
-    """Tell whether pictures can be drawn at all."""
+    """Yield a notice where no pictures can be drawn."""
     if find_spec("pyvista") is None:
         yield Notice(
             "fact",

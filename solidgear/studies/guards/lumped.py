@@ -20,56 +20,57 @@ ENERGY = 0.95
 
 
 def effective_mass(probe: Probe) -> Notices:
-    """Lumped model that there is, and whether the first mode is nearly the static shape it rests
-    on.
+    """Yield a notice where there is no lumped model, or where the first mode is not nearly the
+    static shape it rests on.
     """
     try:
-        point, found = probe.lumped
+        point, variants = probe.lumped
     except SolidgearError as error:
         yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
         return
-    if not found["thesis"].feasible and probe.scene.ask.lumped:
+    thesis = variants["thesis"]
+    if not thesis.feasible and probe.scene.ask.lumped:
         yield Notice(
             "fact",
             ("lumped",),
-            f"the published equations of effective mass have no solution here ({found['thesis'].verdict})",
+            f"the published equations of effective mass have no solution here ({thesis.verdict})",
         )
     better = probe.instead("the beam", *LADDER.of(BEAM))
-    whose = "its beam" if probe.beam_fits else "the beam of the plain part"
-    matched, why, level = found["mode-matched"], [], "caution"
+    beam = "its beam" if probe.beam_fits else "the beam of the plain part"
+    matched, reasons, level = variants["mode-matched"], [], "caution"
     if not (matched.feasible and matched.first):
-        off = found["guyan"].frequency_error
-        assert off is not None  # its mass is always positive definite
-        level = beyond(off, probe.scene.ask.tolerance)
+        error = variants["guyan"].frequency_error
+        assert error is not None  # its mass is always positive definite
+        level = beyond(error, probe.scene.ask.tolerance)
         lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
-        why.append(
+        reasons.append(
             f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
-            f"{against(off, 'higher', 'lower')} that of {whose}"
+            f"{against(error, 'higher', 'lower')} that of {beam}"
         )
     if point.static_share < ENERGY:
-        why.append(
+        reasons.append(
             f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.3g} "
             f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
             "elsewhere, and a lumped model is good for stiffness only"
         )
-    if why:
-        yield Notice(level, ("lumped",), f"{'; '.join(why)}; use {better}")
+    if reasons:
+        yield Notice(level, ("lumped",), f"{'; '.join(reasons)}; use {better}")
 
 
 def lumped_against_solid(probe: Probe) -> Notices:
-    """First bending of the lumped model, of its beam and of lumping together, held against a light
-    harmonic solid.
+    """Yield a notice on first bending of the lumped model, with the errors of its beam and of
+    lumping, against a light harmonic solid.
     """
     try:
-        _, found = probe.lumped
+        _, variants = probe.lumped
     except SolidgearError:
         return  # `effective_mass` says so
-    variant, solid = preferred(found), probe.solution("harmonic")
-    own = None if variant is None else found[variant].frequency_hz
+    variant, solid = preferred(variants), probe.solution("harmonic")
+    frequency = None if variant is None else variants[variant].frequency_hz
     truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
-    if not truth or own is None:
+    if not truth or frequency is None:
         return
-    gap = own / truth - 1
+    gap = frequency / truth - 1
     bars = solid.error_bars.get(SCENE, {})
     bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
     kind = gap_verdict(gap, bar, tolerance)
@@ -98,13 +99,15 @@ HOLDS, DRIFTS = 0.39, 0.63
 
 
 def frequency_range(probe: Probe) -> Notices:
-    """The range asked for against the first mode that a condensed model cannot have."""
-    asked = probe.scene.ask.max_frequency
-    if asked and (pole := probe.fixed_interface) and asked > HOLDS * pole:
+    """Yield a notice where the range asked for reaches towards the first mode that a condensed
+    model cannot have.
+    """
+    highest = probe.scene.ask.max_frequency
+    if highest and (pole := probe.fixed_interface) and highest > HOLDS * pole:
         yield Notice(
-            "avoid" if asked > pole else "caution",
+            "avoid" if highest > pole else "caution",
             ("lumped",),
-            f"{asked:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
+            f"{highest:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
             f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
             f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
             f"{probe.instead(BEAM_OR_SOLID, *beams())} above",

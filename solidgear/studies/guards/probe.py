@@ -1,7 +1,5 @@
 """Quick solutions that the guards of a scene share: both beams, a light harmonic solid, lumped
-models.
-
-Everything is solved when a guard first asks for it, and once.
+models; each is solved once, when a guard first asks for it.
 """
 
 from __future__ import annotations
@@ -27,7 +25,7 @@ from solidgear.ladder import build
 from solidgear.ladder.meshes import HARMONIC
 from solidgear.ladder.model import BEAM, SOLID
 from solidgear.ladder.registry import LADDER
-from solidgear.models.size import Size, of_body
+from solidgear.models.size import Size, size_of_body
 from solidgear.quantity import FIRST_BENDING
 from solidgear.reduction.effective_mass import Synthesis, synthesise
 from solidgear.reduction.lumped_point import LumpedPoint
@@ -40,13 +38,14 @@ if TYPE_CHECKING:
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8
-#: share of the tolerance that bars of the light harmonic solid are wanted within, and its meshes
-#: where the first leaves a beam open: what stays so is said
-SHARE, LIGHT = 4.0, 2
+#: error bars of the light harmonic solid are wanted within the tolerance divided by this
+SHARE = 4.0
+#: its meshes where the first leaves open whether a beam is within the tolerance
+LIGHT = 2
 #: a clamp this much stiffer than the shaft on its bearings moves a frequency by about the inverse
 CLAMP = 1e6
 
-#: options of beams that guards have to know of
+#: options of beams that guards have to know
 SOFT = ("shoulder",)
 
 #: components of the two bending planes, and the signs by which one matrix is the other
@@ -56,14 +55,8 @@ X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
 class Probe:
     """Quick solutions of one scene.
 
-    Parameters
-    ----------
-    body : Body
-        The body the user asked for; it is read, not solved.
-    solutions : dict of str to Solution, optional
-        What is solved already.
-    whole : Scene, optional
-        With the features that ``scene`` leaves out; by default there are none.
+    `body` is the body the user asked for, read and not solved; `solutions` are there already; `whole`
+    is the scene with the features that `scene` leaves out, by default none.
     """
 
     def __init__(
@@ -76,12 +69,12 @@ class Probe:
         self.scene, self.body, self.whole = scene, body, whole or scene
         self.supports = as_supports(scene).on_stations(scene.stations)
         self.solutions = dict(solutions or {})
-        self.meshes: dict[str, int] = {}  # of what is solved here
+        self.meshes: dict[str, int] = {}  # number, of models solved here
         self.tied, self.gaps = cache(self._tied), cache(self._gaps)
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
-        """Advice in place of a model that does not hold: the usual advice, or, where features of the scene
-        forbid the models that it speaks of, by default the harmonic solid, those that hold them.
+        """Return advice in place of a model that does not hold: `usual`, or, where features of the
+        scene forbid the models it names (by default the harmonic solid), the models that hold them.
         """
         if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
             return usual
@@ -89,7 +82,7 @@ class Probe:
 
     @property
     def beam_fits(self) -> bool:
-        """Tell whether a beam models the scene; else a lumped model rests on a solid."""
+        """True where a beam models the scene; else a lumped model rests on a solid."""
         return any(not LADDER[m].unfit(self.whole) for m in LADDER.of(BEAM))
 
     @property
@@ -99,37 +92,28 @@ class Probe:
 
     @property
     def main(self) -> str:
-        """Name of the main lumped point where there are several, else nothing: for sentences."""
+        """Name of the main lumped point where there are several, else empty: for sentences."""
         return self.scene.port.name if self.scene.further_ports else ""
 
     def diameter(self, y: float) -> float:
-        """Outer diameter of the shaft at y, the larger one at a step, m."""
+        """Return the outer diameter of the shaft at y, the larger one at a step, m."""
         return 2 * max(
             s.radius_at(y)[1] for s in self.scene.segments if s.y0 - TOUCH <= y <= s.y1 + TOUCH
         )
 
     @cached_property
     def parts(self) -> list[tuple[float, float, float]]:
-        """Shaft between its steps: (first y, last y, greatest outer diameter) of every part, m."""
-        ends = (0.0, *self.scene.steps, self.scene.length)
-        return [
-            (
-                a,
-                b,
-                2
-                * max(
-                    max(s.outer0, s.outer1)
-                    for s in self.scene.segments
-                    if s.y0 > a - TOUCH and s.y1 < b + TOUCH
-                ),
-            )
-            for a, b in pairwise(ends)
-        ]
+        """Parts of the shaft between its steps: (first y, last y, greatest outer diameter), m."""
+        parts = []
+        for a, b in pairwise((0.0, *self.scene.steps, self.scene.length)):
+            segments = [s for s in self.scene.segments if s.y0 > a - TOUCH and s.y1 < b + TOUCH]
+            parts.append((a, b, 2 * max(max(s.outer0, s.outer1) for s in segments)))
+        return parts
 
     def solution(self, model: str, most: int = 1) -> Solution:
-        """A beam, or the harmonic solid on so many meshes at most."""
-        known = self.solutions.get(model)
-        if known is None or self.meshes.get(model, most) < most:
+        """Return the solution of a beam, or of the harmonic solid on at most so many meshes."""
+        solution = self.solutions.get(model)
+        if solution is None or self.meshes.get(model, most) < most:
             options = {name: True for name in SOFT if self.asked(model).get(name)}
             self.solutions[model] = study(
                 self.scene, model, options, share=SHARE, most=most, evidence=False
@@ -138,29 +122,31 @@ class Probe:
         return self.solutions[model]
 
     def asked(self, model: str) -> Mapping[str, Any]:
-        """Facts of the mesh of a model, as far as the user has asked for it."""
+        """Return facts of the mesh of a model, as far as the user has asked for it."""
         if self.body.fidelity == model:
             return self.body.mesh
         return self.solutions[model].body.mesh if model in self.solutions else {}
 
     def _tied(self, attachment: str) -> Values:
-        """Numbers of a harmonic solid, on one mesh for all, with one attachment (``rigid``: at the
-        bearings).
+        """Compute the numbers of a harmonic solid, on one mesh for all, with one attachment
+        (``rigid``: at the bearings).
         """
         scene = attached(self.scene, attachment)
         n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
         return solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC).quantities
 
     def _gaps(self, model: str) -> list[Deviation]:
-        """Deviations of a beam from the light solid in what is judged, the largest first."""
+        """Return deviations of a beam from the light solid in the judged quantities, the largest
+        first.
+        """
         for most in (1, LIGHT):
             pair = {model: self.solution(model), "harmonic": self.solution("harmonic", most)}
             names = judged(self.scene)
-            found = [g for g in deviations(pair, "harmonic") if g.quantity in names]
-            kinds = {g.standing(self.scene.ask.tolerance) for g in found}
+            gaps = [g for g in deviations(pair, "harmonic") if g.quantity in names]
+            kinds = {g.standing(self.scene.ask.tolerance) for g in gaps}
             if BEYOND in kinds or OPEN not in kinds:
                 break
-        return sorted(found, key=lambda g: -g.size)
+        return sorted(gaps, key=lambda g: -g.size)
 
     @property
     def first_bending(self) -> float | None:
@@ -184,8 +170,8 @@ class Probe:
 
     @cached_property
     def fixed_interface(self) -> float | None:
-        """First bending (Hz) of the Timoshenko beam on its bearings with the lumped point held;
-        None without a lumped model.
+        """First bending of the Timoshenko beam on its bearings with the lumped point held, Hz; None
+        without a lumped model.
         """
         try:
             point, _ = self.lumped
@@ -201,14 +187,14 @@ class Probe:
                 point.stiffness[1, 1],
             ]
         )
-        held = Supports(
+        clamped = Supports(
             (*self.supports.ports, self.scene.port.name),
             sla.block_diag(self.supports.stiffness, clamp),
         )
         return next(
             (
                 m.frequency_hz
-                for m in modes(self.solution(LUMPED_ON).body, held, FEW).modes
+                for m in modes(self.solution(LUMPED_ON).body, clamped, FEW).modes
                 if m.family == "bending" and m.frequency_hz > 0
             ),
             None,
@@ -216,21 +202,14 @@ class Probe:
 
     @cached_property
     def ovalising(self) -> dict[int, float]:
-        """Lowest frequency (Hz) of families of two waves around and more, as far as they are
-        solved; bearings do not enter.
+        """Lowest frequency of families of two waves around and more that are solved, Hz; bearings
+        do not enter.
         """
         harmonic = self.solutions.get("harmonic")
-        solved = (
-            [
-                r
-                for r in harmonic.modes.evidence.get("families", [])
-                if (r["n"] or 0) > 1 and r["counted"]
-            ]
-            if harmonic
-            else []
-        )
-        if solved:
-            return {r["n"]: r["lowest_hz"] for r in solved if r["lowest_hz"]}
+        families = harmonic.modes.evidence.get("families", []) if harmonic else []
+        counted = [row for row in families if (row["n"] or 0) > 1 and row["counted"]]
+        if counted:
+            return {row["n"]: row["lowest_hz"] for row in counted if row["lowest_hz"]}
         blocks = build(self.scene, "harmonic", **HARMONIC, ovalising=(2, 3)).blocks[-2:]
         lowest = [
             spla.eigsh(
@@ -248,27 +227,27 @@ class Probe:
     @cached_property
     def split(self) -> float:
         """Relative distance of the two first bending frequencies of the Timoshenko beam; 0 where
-        all bearings, with what they stand in, are alike in x and z.
+        all bearings, with their housings, are alike in x and z.
         """
-        held = self.supports.stiffness
+        stiffness = self.supports.stiffness
         count = len(self.supports.ports)
         first = 6 * np.arange(count)[:, None]
         x, z = (first + X).ravel(), (first + Z).ravel()
         signs = np.tile(SIGNS, (count, count))
-        uneven = np.abs(held[np.ix_(x, x)] * signs - held[np.ix_(z, z)]).max(initial=0.0)
-        uneven = max(uneven, np.abs(held[np.ix_(x, z)]).max(initial=0.0))
+        uneven = np.abs(stiffness[np.ix_(x, x)] * signs - stiffness[np.ix_(z, z)]).max(initial=0.0)
+        uneven = max(uneven, np.abs(stiffness[np.ix_(x, z)]).max(initial=0.0))
         if uneven == 0.0:
             return 0.0
         body = self.solution("timoshenko").body
-        found = modes(body, self.supports, FEW).modes
-        bent = [m for m in found if m.family == "bending" and m.frequency_hz > 0]
+        elastic = [m for m in modes(body, self.supports, FEW).modes if m.frequency_hz > 0]
+        bent = [m for m in elastic if m.family == "bending"]
         if len(bent) > 1 and bent[0].multiplicity == 1:
             return bent[1].frequency_hz / bent[0].frequency_hz - 1
         return bent[0].split if bent else 0.0
 
     @cached_property
     def cells_around(self) -> int:
-        """Cells around of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
+        """Cells around the axis of a 3D solid of hexahedra (of tetrahedra, an upper bound)."""
         volume = self.body.geometry.volume() if self.body.geometry else None
         assert volume is not None  # asked of 3D solids only
         corners = 8 if volume.element.startswith("hex") else 4
@@ -279,14 +258,14 @@ class Probe:
 
     @cached_property
     def solid_size(self) -> Size:
-        """Of the 3D solid: of the body if it is one, else of the mesh that the scene has by default,
-        with all that is cut out of it.
+        """Size of the 3D solid: that of the body if it is one, else of the default mesh of the
+        scene with all its cuts.
         """
         if self.body.fidelity == "solid":
-            return of_body(self.body)
+            return size_of_body(self.body)
         return LADDER["solid"].size(self.meshed, {})
 
     @property
     def meshed(self) -> Scene:
-        """Scene that a 3D solid is of: all of it, or its plain part where no mesh holds all."""
+        """Scene that the 3D solid models: all of it, or its plain part where no mesh holds all."""
         return self.scene if LADDER["solid"].unfit(self.whole) else self.whole

@@ -4,7 +4,7 @@ Measured on an overhung pinion with 10 to 45 teeth of several proportions, strai
 degrees, by cyclic sectors (`python -m validation.teeth`): the cone is too stiff, by up to 0.05 of
 the depth of a tooth over the pitch radius, most in tilt. Frequencies are off by up to half of the share
 of polar inertia, or of mass, that the cone lacks of the whole shaft, in closed form, and by a
-quarter of what the stiffness is.
+quarter of the error of the stiffness.
 """
 
 from __future__ import annotations
@@ -32,19 +32,15 @@ def _smeared(scene: Scene) -> list[Any]:
 
 
 def _lacking(scene: Scene) -> tuple[float, float]:
-    """Mass (kg) and polar inertia (kg m^2) that cones lack of all smeared teeth."""
-    of = {s.name: s for s in scene.segments}
-    parts = [lacking(f, of[f.segment]) for f in _smeared(scene)]
+    """Return mass (kg) and polar inertia (kg m^2) that cones lack of all smeared teeth."""
+    by_name = {s.name: s for s in scene.segments}
+    parts = [lacking(f, by_name[f.segment]) for f in _smeared(scene)]
     return sum(mass for mass, _ in parts), sum(polar for _, polar in parts)
 
 
 def expected(scene: Scene) -> tuple[float, float]:
-    """Errors of a shaft whose smeared teeth are a cone.
-
-    Returns
-    -------
-    stiffness, frequency : float
-        Relative, at most, as far as measured.
+    """Return the largest errors measured of a shaft whose smeared teeth are a cone: of stiffness and
+    of frequencies, relative.
 
     Examples
     --------
@@ -55,20 +51,15 @@ def expected(scene: Scene) -> tuple[float, float]:
     >>> [round(e, 3) for e in expected(pinion.with_changes(features=(teeth,)))]
     [0.016, 0.019]
     """
-    own = mass_properties(Outline(scene.segments))
+    whole = mass_properties(Outline(scene.segments))
     stiffness = max(STIFFER * (f.tip - f.root) for f in _smeared(scene))
     mass, polar = _lacking(scene)
-    share = max(abs(mass) / own.mass, abs(polar) / own.iyy)
+    share = max(abs(mass) / whole.mass, abs(polar) / whole.iyy)
     return stiffness, INERTIA * share + BY_STIFFNESS * stiffness
 
 
 def smearing(scene: Scene) -> Notices:
-    """Smeared teeth, what they cost, and whether they need a model in 3D.
-
-    Yields
-    ------
-    Notice
-    """
+    """Yield a notice on smeared teeth: the errors they cause, and whether they need a model in 3D."""
     if not _smeared(scene):
         return
     stiffness, frequency = expected(scene)

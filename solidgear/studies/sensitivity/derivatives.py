@@ -62,7 +62,7 @@ class Derivatives:
         moves = _shape(low) != _shape(high)
         if self.model == "harmonic" and self._straight:
             moved = Motion(self._harmonic, low, high, step)
-            return np.array([moved.of(push) for push in self._harmonic.pushes])
+            return np.array([moved.derivative(push) for push in self._harmonic.pushes])
         if moves and self.model != "harmonic":
             raise SolidgearError(
                 f"the {self.model} model meshes every shape anew, and no mesh follows it"
