@@ -269,10 +269,10 @@ def builds_until(monkeypatch):
     options that each was asked for with.
     """
     from solidgear.errors import SolidgearError
-    from solidgear.judge import climb
+    from solidgear.judge import question
 
     def limit(count: int) -> list[dict]:
-        real, calls = climb.build, []
+        real, calls = question.build, []
 
         def build(scene, model, **options):
             calls.append(options)
@@ -280,7 +280,7 @@ def builds_until(monkeypatch):
                 raise SolidgearError("12000 MB are needed, 3000 MB are free")
             return real(scene, model, **options)
 
-        monkeypatch.setattr(climb, "build", build)
+        monkeypatch.setattr(question, "build", build)
         return calls
 
     return limit

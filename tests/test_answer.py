@@ -11,10 +11,11 @@ import pytest
 import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.cli.answer import _absent, sentences
-from solidgear.judge import climb as climbing
+from solidgear.judge import question
 from solidgear.judge.answer import answer
-from solidgear.judge.climb import Climb
 from solidgear.judge.quantities import change
+from solidgear.judge.question import FamilySolver
+from solidgear.judge.refinement import Refinement, refine
 from solidgear.judge.solving import Numbers, solve
 from solidgear.ladder.harmonic import Harmonic
 from solidgear.ladder.meshes import Sequence
@@ -27,6 +28,11 @@ ROOT = Path(__file__).parent.parent
 SCENES = ["pinion_overhung", "shaft_stepped", "shaft_hollow", "pinion_straddle"]
 C_YY = Quantity("C_yy")
 ALL = ("C_zz", "C_z,thx", "C_thx", "C_yy", "K_zz", "bending 1", "bending 2", "axial 1")
+
+
+def begun(scene, model, wanted, tol):
+    """A refinement without a mesh yet."""
+    return Refinement(scene, model, wanted, tol, plan=model.meshes_of(scene, {}))
 
 
 @pytest.fixture(scope="module")
@@ -178,16 +184,11 @@ def test_a_mode_above_the_highest_frequency_of_the_scene_is_judged():
 def test_a_coupling_stands_in_the_middle_of_its_bar(scenes, truth):
     """Its two ends are what the mesh says and what its softest relative does."""
     scene = scenes["pinion_overhung"]
-    climb = Climb(
-        scene,
-        LADDER["harmonic"],
-        tuple(map(Quantity, ("C_z,thx", "C_zz", "C_thx"))),
-        0.02,
-        lambda _: None,
-    )
-    climb.run()
-    value, *diagonal = climb.values()
-    bar = climb.error_bars["C_z,thx"]
+    wanted = tuple(map(Quantity, ("C_z,thx", "C_zz", "C_thx")))
+    refinement = begun(scene, LADDER["harmonic"], wanted, 0.02)
+    refine(refinement, FamilySolver(refinement), lambda _: None, "harmonic")
+    value, *diagonal = refinement.values()
+    bar = refinement.error_bars["C_z,thx"]
     assert value.value == bar.middle != bar.values[-1]
     assert abs(bar.values[-1] / value.value - 1) > 1e-5
     assert abs(bar.values[-1] - value.value) <= value.bar * value.size < bar.width * value.size
@@ -217,13 +218,14 @@ def test_what_holds_a_bar_back_is_named(two_meshes):
 
 
 def test_what_a_finer_mesh_finds_less_sure_again_is_solved_on(scenes):
-    climb = Climb(scenes["shaft_stepped"], MESHES, (C_ZZ, K_ZZ), 1e-3, lambda _: None)
+    refinement = begun(scenes["shaft_stepped"], MESHES, (C_ZZ, K_ZZ), 1e-3)
+    solver = FamilySolver(refinement)
     left = {C_ZZ: 0.0, K_ZZ: 0.0}
 
     def level(c, k):
-        climb.levels.append(Numbers({C_ZZ: c, K_ZZ: k}, left))
-        climb.judge()
-        return [q for _, names in climb._questions() for q in names]
+        refinement.levels.append(Numbers({C_ZZ: c, K_ZZ: k}, left))
+        solver.judge()
+        return list(solver.asked())
 
     level(1.0, 1.1)
     assert level(1.0, 1.0) == ["K_zz"]  # C_zz has not moved
@@ -284,29 +286,29 @@ def test_a_finer_mesh_that_fails_leaves_the_answer_of_the_one_before(scenes, bui
 
 
 def test_a_model_that_cannot_be_built_is_passed_over(scenes, monkeypatch):
-    real = climbing.build
+    real = question.build
 
     def build(scene, model, **options):
         if model == "harmonic":
             raise sg.SolidgearError("a keyway is no body of revolution")
         return real(scene, model, **options)
 
-    monkeypatch.setattr(climbing, "build", build)
+    monkeypatch.setattr(question, "build", build)
     found = answer(scenes["shaft_stepped"], 0.3, "C_zz")
     assert found.rung == "solid"
     assert any(s.rung == "harmonic" and "keyway" in s.why for s in found.steps)
 
 
 def test_a_frequency_that_rises_is_rounding_and_widens_the_bar(scenes):
-    climb = Climb(scenes["shaft_stepped"], MESHES, (FIRST_BENDING,), 1e-6, lambda _: None)
+    refinement = begun(scenes["shaft_stepped"], MESHES, (FIRST_BENDING,), 1e-6)
     known = {FIRST_BENDING: 1e-12}
     for value in (101.0, 100.0, 100.1):
-        climb.levels.append(Numbers({FIRST_BENDING: value}, known))
-    climb.judge()
-    assert climb.bar(FIRST_BENDING) >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
-    climb.levels[-1] = Numbers({FIRST_BENDING: 99.999}, known)
-    climb.judge()
-    assert climb.bar(FIRST_BENDING) < 1e-3
+        refinement.levels.append(Numbers({FIRST_BENDING: value}, known))
+    refinement.judge()
+    assert refinement.bar(FIRST_BENDING) >= 2 * 1e-3 * 0.99  # twice a rise of 0.1 %
+    refinement.levels[-1] = Numbers({FIRST_BENDING: 99.999}, known)
+    refinement.judge()
+    assert refinement.bar(FIRST_BENDING) < 1e-3
 
 
 def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
@@ -320,7 +322,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     c_zz, c_yy = 1.03 * plain[2, 2], 1.0001 * plain[1, 1]
 
     def climb(tol):
-        made = Climb(scene, LADDER["corrected"], (C_ZZ, C_YY), tol, lambda _: None)
+        made = begun(scene, LADDER["corrected"], (C_ZZ, C_YY), tol)
         for off in (1e-5, 0.0):
             made.levels.append(Numbers({C_ZZ: c_zz * (1 + off), C_YY: c_yy * (1 + off)}, {}))
             made.sizes.append(None)
@@ -332,14 +334,14 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     floor = safety.share * safety.shrinks**2 * 0.03 / 1.03
     stuck = climb(0.7 * floor)
     assert stuck.floors()["C_zz"] == pytest.approx(floor, rel=0.02)
-    assert "sure of a quantity to a share of what features change" in stuck._in_vain()
-    assert "of C_zz at best" in stuck._in_vain()
-    assert not climb(1.4 * floor)._in_vain()
+    assert "sure of a quantity to a share of what features change" in stuck.in_vain()
+    assert "of C_zz at best" in stuck.in_vain()
+    assert not climb(1.4 * floor).in_vain()
     # something else is open that a finer mesh will narrow: for that alone it is solved
     stuck.levels[0] = Numbers({C_ZZ: c_zz, C_YY: c_yy * 1.01}, {})
     stuck.judge()
-    assert not stuck._in_vain()
-    assert [q for _, names in stuck._questions() for q in names] == ["C_yy"]
+    assert not stuck.in_vain()
+    assert FamilySolver(stuck).asked() == ("C_yy",)
 
 
 def test_what_heavy_meshes_cost_is_told_before_they_are_made(monkeypatch):

@@ -25,7 +25,7 @@ from solidgear.bounds.safety import LOCAL
 from solidgear.judge.bars import ErrorBar
 from solidgear.judge.bounded import bounded
 from solidgear.judge.quantities import measure, size
-from solidgear.judge.solving import Statics, searched
+from solidgear.judge.solving import Statics, search_modes
 from solidgear.quantity import Quantity
 from solidgear.scene import STEEL, Fillet, Housing, Material
 from solidgear.scene.coned import coned
@@ -122,7 +122,7 @@ def one(request):
     supports, body = as_supports(scene), sg.build(scene, "harmonic", **FIRST)
     fine = fine_mesh(scene, body)
     found, truth = (
-        searched(one, supports, 8, MODES, spare=True, ovalising=False) for one in (body, fine)
+        search_modes(one, supports, 8, MODES, spare=True, ovalising=False) for one in (body, fine)
     )
     here, there = (condense(one, supports, "p") for one in (body, fine))
     # what the solver leaves of such small bodies is far below
@@ -252,7 +252,9 @@ def test_stiffness_between_two_held_points_lies_between_that_of_both_bodies(two_
 @pytest.mark.long
 @pytest.mark.parametrize("one", ["step"], indirect=True)
 def test_frequencies_of_a_body_that_nothing_holds_lie_within_bounds(one):
-    free = [searched(body, as_supports(()), 8, MODES, spare=True) for body in (one.body, one.fine)]
+    free = [
+        search_modes(body, as_supports(()), 8, MODES, spare=True) for body in (one.body, one.fine)
+    ]
     bounds = harmonic_bounds(one.scene, one.body, statics=False, modes=free[0], wanted=MODES)
     for name in MODES:
         value, exact = (found.named(name) for found in free)

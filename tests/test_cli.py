@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import pytest
 
-from solidgear.judge import climb
+from solidgear.judge import question
 from solidgear.ladder.registry import LADDER
 from solidgear.solve.backends import missing
 from tests.command import strict
@@ -343,7 +343,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
 
     monkeypatch.setattr("solidgear.cli.shared.build", broken)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
-    monkeypatch.setattr(climb, "build", broken)
+    monkeypatch.setattr(question, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")
 
     def unmapped(*_, **__):

@@ -348,7 +348,7 @@ def failing(monkeypatch, model, error):
             raise error
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.judge.tied.build", broken)
+    monkeypatch.setattr("solidgear.judge.study.build", broken)
 
 
 @pytest.mark.long
@@ -402,7 +402,7 @@ def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
             raise MeshError("too coarse to mesh")
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.judge.tied.build", broken)
+    monkeypatch.setattr("solidgear.judge.study.build", broken)
     found = compare(
         overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
     ).results

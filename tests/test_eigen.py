@@ -124,10 +124,10 @@ def test_count_notices_a_lost_mode(scene, solid, lost):
     solved = lowest(on, 10)
     reach = solved.elastic[8].value
     whole = count_below(on, solved, reach)
-    assert whole.found == whole.counted
+    assert whole.computed == whole.existing
     short = replace(solved, elastic=[r for i, r in enumerate(solved.elastic) if i != lost])
     seen = count_below(on, short, reach)
-    assert seen.counted == seen.found + 1
+    assert seen.existing == seen.computed + 1
 
 
 def test_a_lost_mode_is_searched_again(scene, solid, monkeypatch):

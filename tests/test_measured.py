@@ -16,7 +16,7 @@ from solidgear.judge.bounded import mode_bars
 from solidgear.scene.paths import keys_of, with_entry
 from solidgear.scene.toml_file import parse
 from solidgear.scene.uncertain import with_ranges
-from solidgear.solve.adjoint import of_mode
+from solidgear.solve.adjoint import mode_form
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.alignment import Peak, Seen, align
 from solidgear.studies.measured.computed import Computed, computed_up_to
@@ -306,7 +306,7 @@ def test_derivatives_are_those_of_solutions_on_either_side():
         return scene, body, found, np.array([m.frequency_hz for m in found])
 
     scene, body, found, hertz = solved("material.nu", 0.3)
-    forms = [of_mode(body, as_supports(scene), mode) for mode in found]
+    forms = [mode_form(body, as_supports(scene), mode) for mode in found]
     by = Derivatives(scene, body, forms, "harmonic", {"order": 2}).by
     for path, value in {
         "material.nu": 0.3,

@@ -40,11 +40,11 @@ def test_torsion_and_bending_beside_a_flat(stepped):
     flat = Flat(name="f", segment="neck", y=0.10917, length=0.03987, depth=0.005875)
     found = found_with(stepped, flat)
     (one,) = mixtures(found)
-    assert {one.name, one.other} == {"torsion 1", "bending x 3"}
+    assert {one.name, one.partner} == {"torsion 1", "bending x 3"}
     assert 0.35 < one.share < TOSS_UP
-    assert one.sentence.startswith(f"{one.name} and {one.other} (+")
-    first, other = (found.named(n).frequency_hz for n in (one.name, one.other))
-    assert one.apart == pytest.approx(other / first - 1)
+    assert one.sentence.startswith(f"{one.name} and {one.partner} (+")
+    first, other = (found.named(n).frequency_hz for n in (one.name, one.partner))
+    assert one.gap == pytest.approx(other / first - 1)
 
 
 def test_a_shaft_of_revolution_has_none(stepped):

@@ -11,8 +11,8 @@ import pytest
 import solidgear as sg
 from solidgear.judge.quantities import (
     between,
+    canonical_name,
     measure,
-    own_name,
     size,
 )
 from solidgear.judge.recording import recorded
@@ -66,7 +66,7 @@ def test_names_as_they_are_asked(shaft):
         ("C_zz@wheel@wheel", "C_zz"),
         ("C_zz@pinion@pinion", "C_zz@pinion"),
     ):
-        assert own_name(shaft, Quantity(asked)) == told
+        assert canonical_name(shaft, Quantity(asked)) == told
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_a_name_with_the_sign_between_names_is_refused_beside_others(shaft):
     with pytest.raises(sg.SceneError, match="has no @"):
         shaft.with_changes(further_ports=(odd,))
     alone = shaft.with_changes(port=shaft.port.with_changes(name="wh@el"), further_ports=())
-    assert own_name(alone, Quantity("C_zz@wh@el")) == "C_zz"  # nothing to confuse it with
+    assert canonical_name(alone, Quantity("C_zz@wh@el")) == "C_zz"  # nothing to confuse it with
 
 
 def test_measured_terms_are_entries_of_the_matrices(shaft):

@@ -17,7 +17,8 @@ from solidgear.judge import bounded
 from solidgear.judge.answer import answer
 from solidgear.judge.bounded import mode_bars
 from solidgear.judge.quantities import at_points, between, change, measure
-from solidgear.judge.settle import Whole, settle
+from solidgear.judge.refinement import Refinement
+from solidgear.judge.settle import settle
 from solidgear.judge.solving import Numbers, Statics, solve
 from solidgear.ladder.registry import LADDER
 from solidgear.quantity import QUANTITIES
@@ -292,7 +293,10 @@ def test_features_are_held_against_the_plane_that_a_number_is_of():
     assert here.compliance[0, 0] > 1.5 * here.compliance[2, 2]
     of_one = [q for q in QUANTITIES if {q.row, q.column} <= {2, 3}]
     wanted = (*at_points(of_one, ["end"]), *between(of_one, ["pinion", "end"]))
-    climb = Whole(scene, LADDER["corrected"], wanted, 0.01, lambda _: None)
+    plan = LADDER["corrected"].meshes_of(scene, {})
+    climb = Refinement(
+        scene, LADDER["corrected"], wanted, 0.01, plan=plan, whole=True, middles=False
+    )
     values = Statics(here, {"end": there}, both).values()
     climb.levels, climb.sizes = [Numbers(values, {})] * 2, [None] * 2
     climb.judge()

@@ -102,7 +102,7 @@ def test_a_gap_inside_the_summed_bars_is_not_resolved(relative, mine, theirs, ve
     assert gap.verdict == verdict
     assert gap.relative == pytest.approx(relative, abs=1e-15)  # one subtraction
     known = [b for b in (mine, theirs) if b is not None]
-    assert gap.band == (pytest.approx(sum(known), abs=1e-15) if known else None)
+    assert gap.bar == (pytest.approx(sum(known), abs=1e-15) if known else None)
     assert gap.model == "solid" and gap.reference == "harmonic" and gap.quantity.unit == "m/N"
 
 

@@ -15,7 +15,7 @@ from solidgear.judge.singular_places import singular_places
 from solidgear.judge.study import study
 from solidgear.judge.ties import SCENE
 from solidgear.judge.where import ELSEWHERE, recorded_places
-from solidgear.judge.where import where as places_of
+from solidgear.judge.where import error_places as places_of
 from solidgear.quantity import Quantity
 from solidgear.report.where_chart import draw_where
 from tests.command import command

@@ -30,7 +30,7 @@ from solidgear.bounds.loads import Loading
 from solidgear.bounds.patches import local_energies
 from solidgear.bounds.richer_space import RicherSpace
 from solidgear.solve.modes import Mode, ModeSet
-from solidgear.solve.statics import flexibility, of_twin
+from solidgear.solve.statics import flexibility, twin_matrix
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -137,10 +137,10 @@ def harmonic_bounds(
         for block in body.blocks:
             if block.mirror is not None:
                 rows = body.rows(block)
-                of_ports.by_cell[np.ix_(np.arange(cells), rows, rows)] = of_twin(
+                of_ports.by_cell[np.ix_(np.arange(cells), rows, rows)] = twin_matrix(
                     body, block, of_ports.by_cell
                 )
-                of_ports.less[np.ix_(rows, rows)] = of_twin(body, block, of_ports.less)
+                of_ports.less[np.ix_(rows, rows)] = twin_matrix(body, block, of_ports.less)
         body.cache.keep(of_ports)
     by_name: dict[str, _OfMode] = {mode.name: of_modes[id(mode)] for mode in chosen}
     energy = {name: safety * with_tail(e.by_cell.sum(), e.less) for name, e in by_name.items()}

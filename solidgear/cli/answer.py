@@ -20,7 +20,7 @@ from solidgear.judge.open_record import OpenNumbers
 from solidgear.judge.record import WhereRecord
 from solidgear.judge.settle import Settled
 from solidgear.judge.steps import ABOVE, BELOW
-from solidgear.judge.where import where
+from solidgear.judge.where import error_places
 from solidgear.ladder.model import BEAM
 from solidgear.ladder.registry import LADDER
 from solidgear.models.kinds import PARTS
@@ -200,7 +200,7 @@ def _places(scene: Scene, found: Answered) -> WhereRecord:
         raise SolidgearError("nothing that was asked for exists in this scene")
     widest = max(found.values, key=lambda value: value.bar)
     solved = [step for step in _solved(found) if not step.only or widest.quantity in step.only]
-    places = where(scene, widest.quantity, solved[-1].options)
+    places = error_places(scene, widest.quantity, solved[-1].options)
     return places.model_copy(update={"total": widest.bar})
 
 

@@ -1,11 +1,11 @@
-"""The cheapest answer to a question, with an error that it can be held to.
+"""The cheapest answer to a question, with an error bar.
 
 A solid is solved on ever finer meshes until the error bar of every quantity asked for
-(:mod:`solidgear.judge.bars`) is within the tolerance; only the families of motion that the
-question needs are built, statics only if a compliance or a stiffness is asked for, modes only if a
-frequency is.  A beam has no error of its own to show: what it lacks is known from a solid only,
-whose coarsest mesh with two orders costs about as much as the beam, so it is the answer as well.
-Models that were passed over, and why, are part of the answer.
+(:mod:`solidgear.judge.bars`) is within the tolerance; only the families of motion that the question
+needs are built, statics only if a compliance or a stiffness is asked for, modes only if a frequency
+is. A beam has no error bar of its own: its error is known from a solid only, whose coarsest mesh
+with two orders costs about as much as the beam, so it is the answer as well. Models that were
+passed over, and why, are part of the answer.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ import re
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.display import Displayed
 from solidgear.errors import SolidgearError, nearest, show
 from solidgear.frames import DOF_NAMES
-from solidgear.judge.climb import Climb
-from solidgear.judge.quantities import judged, own_name
-from solidgear.judge.refinement import Progress
+from solidgear.judge.quantities import canonical_name, judged
+from solidgear.judge.question import FamilySolver
+from solidgear.judge.refinement import Progress, Refinement, refine
 from solidgear.judge.solving import ENOUGH
 from solidgear.judge.steps import Step, Value
 from solidgear.ladder import NO_MODEL, build, way_out
@@ -39,8 +39,6 @@ from solidgear.solve.modes import modes
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
-
-C = TypeVar("C", bound=Climb)
 
 #: between two quantities
 COMMA = rf",(?!\s*(?:{'|'.join(DOF_NAMES)})\b)"
@@ -73,11 +71,11 @@ class Answered(Displayed):
 
     @property
     def bar(self) -> float:
-        """The largest bar; infinite where nothing that was asked for exists."""
+        """Largest error bar; infinite where nothing that was asked for exists."""
         return max((v.bar for v in self.values), default=math.inf)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         out = asdict(self)
         for row in (*out["values"], *out["steps"]):
             if row["bar"] is not None and not math.isfinite(row["bar"]):
@@ -130,89 +128,90 @@ def answer(
     if without_axis(scene):
         raise SolidgearError(f"answer: {scene.name} has no axis: run solidgear stiffness or modes")
     start = time.perf_counter()
-    tol = usable(scene.ask.tolerance if tol is None else tol)
+    tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)
-    climb, steps = climbed(scene, tol, wanted, Climb, progress)
-    values = climb.values()
-    known = {v.quantity for v in values}
+    solver, steps = solve_cheapest(scene, tol, wanted, progress)
+    values = solver.refinement.values()
+    existing = {v.quantity for v in values}
     return Answered(
-        scene.name,
-        tol,
-        values,
-        tuple(steps),
-        bool(values) and all(v.bar <= tol for v in values),
-        climb.model.name,
-        tuple(q for q in wanted if q not in known),
-        time.perf_counter() - start,
+        scene=scene.name,
+        tolerance=tol,
+        values=values,
+        steps=tuple(steps),
+        reached=bool(values) and all(v.bar <= tol for v in values),
+        rung=solver.refinement.model.name,
+        missing=tuple(q for q in wanted if q not in existing),
+        seconds=time.perf_counter() - start,
     )
 
 
-def climbed(
+def solve_cheapest(
     scene: Scene,
     tol: float,
     wanted: tuple[Quantity, ...],
-    kind: Callable[..., C],
     progress: Progress,
-) -> tuple[C, list[Step]]:
-    """The first solid of the ladder that can be solved at all, on the meshes that it takes; with the steps
-    that were passed over and tried, in the order of the ladder.
-
-    Parameters
-    ----------
-    kind : type of Climb, or what makes one
-
-    Raises
-    ------
-    SolidgearError
-        If no model can be solved.
+    solver_of: Callable[[Refinement], FamilySolver] = FamilySolver,
+    *,
+    whole: bool = False,
+) -> tuple[FamilySolver, list[Step]]:
+    """Refine the first solid of the ladder that can be solved at all, with `whole` for the body and
+    not for single numbers; return also the steps that were passed over and tried, in the order of
+    the ladder. SolidgearError if no model can be solved.
     """
     steps = [
         Step(
             name,
-            "",
-            False,
-            "no error of their own to show; the coarsest solid, which could show it, "
+            setting="",
+            valid=False,
+            why="no error of their own to show; the coarsest solid, which could show it, "
             "costs as much and is better",
         )
         for name in LADDER.of(BEAM)
     ]
     with one_run():
         for name in LADDER.of(SOLID):
-            climb = kind(scene, LADDER[name], wanted, tol, progress)
+            model = LADDER[name]
+            refinement = Refinement(
+                scene,
+                model,
+                wanted,
+                tol,
+                plan=model.meshes_of(scene, {}),
+                whole=whole,
+                middles=not whole,  # a body is given with its own couplings
+            )
+            solver = solver_of(refinement)
             try:
-                climb.run()
+                refine(refinement, solver, progress, model.title)
             except (SolidgearError, MemoryError) as error:
-                if not climb.levels:
-                    steps.append(Step(name, "", False, str(error) or "not enough memory"))
+                reason = str(error) or "not enough memory"
+                if not refinement.levels:
+                    steps.append(Step(name, setting="", valid=False, why=reason))
                     continue
-                climb.stop(str(error) or "not enough memory")
-            return climb, steps + climb.steps
-    whys: dict[str, list[str]] = {}
+                refinement.end(f"the next mesh could not be solved: {reason}")
+            return solver, steps + refinement.steps
+    models: dict[str, list[str]] = {}
     way = way_out(scene)
     for step in steps:
         if step.rung in LADDER.of(SOLID):
-            whys.setdefault(step.why.removesuffix(f"; {way}"), []).append(step.rung)
-    failed = [f"{' and '.join(models)}: {why}" for why, models in whys.items()]
-    taught = way.removeprefix(NO_MODEL)
-    raise SolidgearError(f"no model can answer: {'; '.join(failed)}{taught}")
+            models.setdefault(step.why.removesuffix(f"; {way}"), []).append(step.rung)
+    reasons = [f"{' and '.join(names)}: {reason}" for reason, names in models.items()]
+    advice = way.removeprefix(NO_MODEL)
+    raise SolidgearError(f"no model can answer: {'; '.join(reasons)}{advice}")
 
 
-def usable(tol: float | str) -> float:
-    """A tolerance that can be held; a text is read as in a scene.
-
-    Raises
-    ------
-    SolidgearError
-        Unless it is above 0, at most 1, and not below what arithmetic allows.
+def read_tolerance(tol: float | str) -> float:
+    """Return a tolerance that can be met; a text is read as in a scene. SolidgearError unless it is
+    above 0, at most 1, and not below the limit of arithmetic.
     """
-    given = tol
+    text = tol
     try:
-        tol = quantity(given, "dimensionless")
+        tol = quantity(text, "dimensionless")
     except SolidgearError:
         tol = math.nan
     if not 0 < tol <= 1:
         raise SolidgearError(
-            f'tol = {show(given)} is not usable; give a number above 0 and at most 1, or "1%"'
+            f'tol = {show(text)} is not usable; give a number above 0 and at most 1, or "1%"'
         )
     if tol < LEAST_TOLERANCE:
         raise SolidgearError(
@@ -223,46 +222,49 @@ def usable(tol: float | str) -> float:
 
 
 def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
-    """Quantities by the words of an option; those that a scene is judged by without any."""
+    """Return the quantities named by the words of an option; without any, those that a scene is
+    judged by.
+    """
     # C_z,thx has a comma of its own, and no quantity is called as a component alone
-    given = re.split(COMMA, ask) if isinstance(ask, str) else list(ask)
-    given = [name.strip() for name in given if name.strip()]
-    if not given:
+    names = re.split(COMMA, ask) if isinstance(ask, str) else list(ask)
+    names = [name.strip() for name in names if name.strip()]
+    if not names:
         return judged(scene)
     out = []
-    for name in given:
-        asked = Quantity(name)
-        symbol = re.sub(r"_(\d)", r" \1", asked.symbol)  # bending_1
-        word = WORDS.get(asked.symbol) or Quantity(symbol)
-        if (place := PLACE.fullmatch(asked)) is not None:
+    for name in names:
+        requested = Quantity(name)
+        symbol = re.sub(r"_(\d)", r" \1", requested.symbol)  # bending_1
+        word = WORDS.get(requested.symbol) or Quantity(symbol)
+        if (place := PLACE.fullmatch(requested)) is not None:
             word = _lowest(scene, int(place[1]))
-        if asked.points and word in QUANTITIES:
+        if requested.points and word in QUANTITIES:
             if word.is_frequency:
                 raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
-            word = own_name(scene, asked)
-        elif asked.points or word not in (*QUANTITIES, *ACROSS):
-            known = (*QUANTITIES, *ACROSS, *WORDS, "f1")
+            word = canonical_name(scene, requested)
+        elif requested.points or word not in (*QUANTITIES, *ACROSS):
+            quantities = (*QUANTITIES, *ACROSS, *WORDS, "f1")
             if place is not None:
                 raise SolidgearError(
                     f"ask: {name} is {word} here, which has no bar of its own in an answer; ask for "
                     f"{', '.join(q for q in QUANTITIES if q.is_frequency)}, or run solidgear modes"
                 )
             raise SolidgearError(
-                f"ask: there is no quantity {show(name, 40)}{nearest(name, known)}; there are "
-                f"{', '.join(known)}"
+                f"ask: there is no quantity {show(name, 40)}{nearest(name, quantities)}; there are "
+                f"{', '.join(quantities)}"
             )
         out.append(word)
     return tuple(dict.fromkeys(out))
 
 
 def _lowest(scene: Scene, place: int) -> Quantity:
-    """Name of a natural frequency by its place among those above zero, from 1, twins counted once.
+    """Return the name of a natural frequency by the place among those above zero, from 1, twins
+    counted once.
 
-    A light harmonic solid of the plain part tells the order; its frequencies are not told.
+    A light harmonic solid of the plain part gives the order; its frequencies are not shown.
     """
     body = build(scene.plain, "harmonic", **HARMONIC)
-    found = modes(body, scene.plain, max(ENOUGH, 2 * place)).modes
-    names = [mode.name for mode in found if mode.frequency_hz > 0]
+    listed = modes(body, scene.plain, max(ENOUGH, 2 * place)).modes
+    names = [mode.name for mode in listed if mode.frequency_hz > 0]
     if not 0 < place <= len(names):
         raise SolidgearError(f"ask: f{place}: give f1 to f{len(names)}")
     return Quantity(names[place - 1])

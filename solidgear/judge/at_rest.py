@@ -1,5 +1,5 @@
-"""Cautions that natural frequencies are those at rest, where the speed of a shaft is known: which of
-them spin opens by more than their error bars, or by more than a tolerance where they have none.
+"""Cautions that natural frequencies are those at rest, where the speed of a shaft is known: modes
+that spin opens by more than their error bars, or by more than a tolerance where they have none.
 """
 
 from __future__ import annotations
@@ -25,43 +25,38 @@ def spin_caution(
     bars: Mapping[str, float],
     speed: float | None = None,
 ) -> list[str]:
-    """Sentence on the modes of a shaft that spin opens, or none.
-
-    Parameters
-    ----------
-    bars : mapping of str to float
-        Relative, by the names of modes; the tolerance of the scene stands for those that have none.
-    speed : float, optional
-        rad/s; by default that of the scene.
+    """Return a sentence on the modes of a shaft that spin opens, or none; error bars are relative,
+    by the names of modes, with the tolerance of the scene where they are missing, and the speed
+    (rad/s) is that of the scene by default.
     """
     speed = speed or turning_speed(scene)
     if not speed:
         return []
-    turns = speed / (2 * pi)
-    openings = spin_openings(body, as_supports(scene), modes, turns)
+    revolutions = speed / (2 * pi)
+    openings = spin_openings(body, as_supports(scene), modes, revolutions)
     frequency = {str(mode.name): mode.frequency_hz for mode in modes}
     shares = {name: hz / frequency[name] for name, hz in openings.items()}
-    return opened_words(shares, bars, scene.ask.tolerance, f"at {60 * turns:.6g} rpm")
+    return opened_words(shares, bars, scene.ask.tolerance, f"at {60 * revolutions:.6g} rpm")
 
 
 def opened_words(
-    shares: Mapping[str, float], bars: Mapping[str, float | None], tolerance: float, when: str
+    shares: Mapping[str, float], bars: Mapping[str, float | None], tolerance: float, speed_text: str
 ) -> list[str]:
-    """Sentence on modes by the share of their frequency by which spin opens them, the most first; none
-    where their error bars, or else a tolerance, are wider.
+    """Return a sentence on modes by the share of their frequency by which spin opens them, the most
+    first; none where their error bars, or else a tolerance, are wider.
     """
-    beyond = {}
+    opened = {}
     for name, share in shares.items():
         bar = bars.get(name)
         limit = bar if bar is not None and isfinite(bar) else tolerance
         if share > limit:
-            beyond[name] = share
-    if not beyond:
+            opened[name] = share
+    if not opened:
         return []
-    largest = max(beyond.values())
-    most = sorted(beyond, key=beyond.__getitem__, reverse=True)
-    most = [name for name in most if beyond[name] >= WORTH_NAMING * largest]
-    named = listed((f"{name} by {100 * beyond[name]:.2g} %" for name in most), most=MOST_NAMED)
+    largest = max(opened.values())
+    most = sorted(opened, key=opened.__getitem__, reverse=True)
+    most = [name for name in most if opened[name] >= WORTH_NAMING * largest]
+    modes_text = listed((f"{name} by {100 * opened[name]:.2g} %" for name in most), most=MOST_NAMED)
     return [
-        f"natural frequencies are those at rest; {when} spin moves {named}, up and down (first order)"
+        f"natural frequencies are those at rest; {speed_text} spin moves {modes_text}, up and down (first order)"
     ]

@@ -7,8 +7,8 @@ bar is a measured factor (:mod:`solidgear.bounds.safety`) times that of the larg
 changes, since one of them may be small by accident.
 
 Displacement elements are too stiff, so the error of a compliance is a positive semidefinite matrix
-and that of a coupling no larger than the geometric mean of its diagonal entries' errors. What the
-solver leaves is added, and of hexahedra what the cells around leave.
+and that of a coupling no larger than the geometric mean of its diagonal entries' errors. The error
+of the solver is added, and of hexahedra the error that the cells around leave.
 
 A harmonic solid needs none of this: :mod:`solidgear.judge.bounded`.
 """
@@ -42,7 +42,7 @@ class ErrorBar:
     width: float
     change: float  #: last change, relative; of local problems the distance of the other end
     reduction: float | None  #: last change over the one before
-    factor: float  #: error bar over what it rests on
+    factor: float  #: ratio of the error bar to the change it is computed from
     solver: float  #: share of the solver in the error bar
     extrapolated: float
     method: str = "two meshes"  #: where the error bar comes from
@@ -67,22 +67,19 @@ def step_bars(
     effect: Values | None = None,
     shape: float = 0.0,
 ) -> dict[Quantity, ErrorBar]:
-    """Error bars of the finest of two or more meshes.
+    """Compute error bars of the finest of two or more meshes, whose values are given coarse to
+    fine.
 
     Parameters
     ----------
-    levels : sequence of mappings
-        Quantity to value (see :func:`solidgear.judge.quantities.measure`), coarse to fine.
     solver : mapping
         Relative error the solver may have left in each quantity of the finest level.
-    safety : Safety
-        Of the model.
     left_over : float, optional
-        What a change leaves of itself by plain refinement; None of meshes with layers.
+        Share of a change that remains as error by plain refinement; None of meshes with layers.
     around : mapping, optional
         Relative error that the cells around leave in each quantity.
     effect : mapping, optional
-        What features change of each quantity, relative.
+        Change of each quantity by features, relative.
     shape : float
         Share that second moments of the finest mesh are off by, whatever the others are.
 
@@ -95,20 +92,20 @@ def step_bars(
     """
     around, effect = around or {}, effect or {}
     factor = safety.steps[len(levels) > 2] * (left_over or 1.0)
-    last, counted = levels[-3:], 2 if left_over else 1
+    last, counted_steps = levels[-3:], 2 if left_over else 1
     steps = {
         name: [abs(change(a, b, name) or 0.0) for a, b in zip(last, last[1:]) if name in a]
         for name in in_order(levels[-1])
         if name in levels[-2]
     }
     out = {}
-    for name, known in steps.items():
-        rests_on = max(known[-counted:])
+    for name, changes in steps.items():
+        rests_on = max(changes[-counted_steps:])
         pair = name.diagonals
         if pair and all(d in steps for d in pair):
-            one, two = (max(steps[d][-counted:]) for d in pair)
-            rests_on = max(rests_on, (one * two) ** 0.5)
-        left = solver.get(name, 0.0)
+            change_a, change_b = (max(steps[d][-counted_steps:]) for d in pair)
+            rests_on = max(rests_on, (change_a * change_b) ** 0.5)
+        solver_error = solver.get(name, 0.0)
         least = safety.least_share(moves_freely(name), len(levels)) * effect.get(name, 0.0)
         finest, before = levels[-1][name], levels[-2][name]
         out[name] = ErrorBar(
@@ -116,30 +113,33 @@ def step_bars(
             width=float(
                 max(factor * rests_on, least)
                 + safety.steps[0] * _left_around(around, name)
-                + left
+                + solver_error
                 + shape
                 + LEAST
             ),
-            change=float(known[-1]),
-            reduction=float(known[-1] / known[-2]) if len(known) > 1 and known[-2] else None,
+            change=float(changes[-1]),
+            reduction=float(changes[-1] / changes[-2])
+            if len(changes) > 1 and changes[-2]
+            else None,
             factor=factor,
-            solver=float(left),
+            solver=float(solver_error),
             extrapolated=float(finest + min(left_over or 1.0, 1.0) * (finest - before)),
         )
     return out
 
 
 def sizes_of(facts: Mapping[str, Any]) -> tuple[float, ...]:
-    """Sizes of the cells of a mesh by its facts, m: one of a mesh made here, which is refined in all
-    directions, and three of a mesh file, of which nothing promises it; none of what has no cells.
+    """Return the sizes of the cells of a mesh by the facts of it, m: one of a mesh made here, which
+    is refined in all directions, and three of a mesh file, where that is not certain; none without
+    cells.
     """
     usual = facts.get("representative_size")
     return facts.get("cell_sizes") or ((usual,) if usual else ())
 
 
 def shrinkage(coarser: Sequence[float], finer: Sequence[float]) -> float:
-    """Factor by which cells shrink from one mesh to the next, in the direction in which they shrink
-    least; 1 where there is one in which they do not.
+    """Return the factor by which cells shrink from one mesh to the next, in the direction in which
+    they shrink least; 1 where there is one in which they do not.
 
     Examples
     --------
@@ -151,7 +151,9 @@ def shrinkage(coarser: Sequence[float], finer: Sequence[float]) -> float:
 
 
 def same_size(coarser: Sequence[float], finer: Sequence[float]) -> str:
-    """Reason for no bar from two meshes of files whose cells do not shrink in some direction."""
+    """Return the reason for no error bar from two meshes of files whose cells do not shrink in some
+    direction.
+    """
     ratio, place = min((a / b, k) for k, (a, b) in enumerate(zip(coarser, finer)))
     sides = f"{1e3 * coarser[place]:.3g} mm and {1e3 * finer[place]:.3g} mm"
     return (
@@ -162,22 +164,27 @@ def same_size(coarser: Sequence[float], finer: Sequence[float]) -> str:
 
 
 def left_over(shrunk: float, exponent: float) -> float:
-    """Share of a change between two meshes that it leaves, by the factor by which cells shrink and
-    the exponent of displacement at the sharpest corner.
+    """Return the share of a change between two meshes that remains as error, by the factor by which
+    cells shrink and the exponent of displacement at the sharpest corner.
     """
     return 1 / (shrunk ** (2 * exponent) - 1)
 
 
 def moves_freely(name: Quantity) -> bool:
-    """Tell whether a quantity is a frequency of a motion that bearings may leave free."""
+    """Return whether a quantity is a frequency of a motion that bearings may leave free."""
     return name.is_frequency and ModeName(name).family in ("axial", "torsion")
 
 
 def _left_around(around: Values, name: Quantity) -> float:
-    """Share that the cells around leave in a quantity; in a coupling as much as in its diagonal
-    entries, in one that was not measured as much as in the worst.
+    """Return the share that the cells around leave in a quantity; in a coupling as much as in the
+    diagonal entries, in one that was not measured as much as in the worst.
     """
     if pair := name.diagonals:
-        own = [around[d] for d in pair if d in around]
-        return max([around.get(name, 0.0), (own[0] * own[1]) ** 0.5 if len(own) == 2 else 0.0])
+        diagonal = [around[d] for d in pair if d in around]
+        return max(
+            [
+                around.get(name, 0.0),
+                (diagonal[0] * diagonal[1]) ** 0.5 if len(diagonal) == 2 else 0.0,
+            ]
+        )
     return around.get(name, max(around.values(), default=0.0))

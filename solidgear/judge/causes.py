@@ -1,4 +1,4 @@
-"""Causes of differences: switch one assumption at a time and measure what moves."""
+"""Causes of differences: switch one assumption at a time and measure the effect."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from solidgear.scene import Scene
 
 
-#: what is shown of a cause
+#: quantities shown for a cause
 SHOWN = (C_ZZ, K_ZZ, FIRST_BENDING)
 
 
@@ -29,7 +29,7 @@ def _row(cause: str, text: str, model: str, new: Values, old: Values) -> CauseRe
 
 
 def beam_causes(scene: Scene) -> list[CauseRecord]:
-    """Assumptions inside the beam model, with the beam's own nodes for ports."""
+    """Measure the assumptions inside the beam model, with the beam's nodes as ports."""
     scene = scene.with_attachment("section")
     plain = _solve(scene, "euler")
     sheared = _solve(scene, "timoshenko", rotary_inertia=False)
@@ -63,8 +63,8 @@ def beam_causes(scene: Scene) -> list[CauseRecord]:
 
 
 def attachment_causes(variants: dict[str, Values], model: str) -> list[CauseRecord]:
-    """Effect of the attachment, from results already at hand (``average``, ``rigid``, ``section``
-    -> quantities).
+    """Measure the effect of the attachment, from results at hand (``average``, ``rigid``,
+    ``section`` -> quantities).
     """
     base = variants.get("average")
     if base is None:
@@ -79,19 +79,21 @@ def shoulder_cause(
     options: dict,
     tell: Callable[[str], None] = lambda _: None,
 ) -> CauseRecord | None:
-    """Share of the beam-to-solid gap that the steps of the shaft are to blame for; None when the shaft has
-    no step, or the plain shaft cannot be made.
+    """Measure the share of the beam-to-solid gap that comes from the steps of the shaft; None when
+    the shaft has no step, or the plain shaft cannot be made.
 
     The gap (Timoshenko over harmonic, section mean everywhere) of the scene, less the gap of the
-    same scene with every outer radius brought down to the smallest one: what stress cannot fill
-    right at a shoulder.
+    same scene with every outer radius brought down to the smallest one: the corner at a shoulder
+    that stress cannot fill.
     """
     if not scene.steps:
         return None
-    radius = scene.outline.least_radius
+    least_radius = scene.outline.least_radius
     try:
         plain = scene.with_changes(
-            segments=tuple(s.with_changes(outer0=radius, outer1=radius) for s in scene.segments),
+            segments=tuple(
+                s.with_changes(outer0=least_radius, outer1=least_radius) for s in scene.segments
+            ),
             blends=(),
         ).with_attachment("section")
     except SolidgearError:
@@ -103,8 +105,8 @@ def shoulder_cause(
     beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)
 
     def share(name):
-        here, there = beam_gap.get(name), change(beam, solid, name)
-        return None if here is None or there is None else here - there
+        stepped, plain_gap = beam_gap.get(name), change(beam, solid, name)
+        return None if stepped is None or plain_gap is None else stepped - plain_gap
 
     return CauseRecord(
         cause="shoulder",

@@ -16,32 +16,26 @@ if TYPE_CHECKING:
 
 
 def completeness(evidence: dict, model: str) -> str:
-    """Claim about missed modes that the evidence of a :class:`~solidgear.solve.modes.ModeSet` carries, with
-    which modes were counted; a beam has no other families than its own, and says so.
+    """State in words which families of a :class:`~solidgear.solve.modes.ModeSet` were counted, and
+    below which frequency no mode is missing; a beam has no other families than bending, axial and
+    torsion, and says so.
     """
     bad = [part["why"] for part in evidence["count"] if not part["checked"]]
     if bad:
         return f"Not counted: {bad[0]}."
     rows = evidence["families"]
-    counted = [row for row in rows if row["counted"]]
-    text = f"{_reach(evidence)}: {_listed(counted)}"
+    counted_rows = [row for row in rows if row["counted"]]
+    text = f"{_reach(evidence)}: {_listed(counted_rows)}"
     if LADDER[model].family == BEAM:
         return f"{text}; a beam knows no others."
-    left = _left([row for row in rows if not row["counted"]])
-    return f"{text}; {left}." if left else f"{text}."
+    uncounted = _uncounted([row for row in rows if not row["counted"]])
+    return f"{text}; {uncounted}." if uncounted else f"{text}."
 
 
 def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
-    """Warning where the number of modes ends a list below the frequency asked for: one sentence, or none.
-
-    Parameters
-    ----------
-    n : int
-        Elastic shapes that were asked for; twins count twice.
-    asked_hz : float or None
-        Up to where modes were asked for, if anywhere.
-    option : str, optional
-        What else can be raised than the number in the scene.
+    """Warn where the number `n` of elastic shapes asked for, twins counted twice, ends a list below
+    the frequency asked for: one sentence, or none; `option` names an option that can be raised,
+    beside the number in the scene.
     """
     elastic = [m for m in modes if not m.name.rigid]
     if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:
@@ -54,7 +48,7 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
 
 
 def split_apart(evidence: dict) -> list[str]:
-    """Sentences on pairs that a mesh has split further than meshes like it do."""
+    """Return sentences on pairs that a mesh has split further than meshes like it do."""
     return [
         f"the mesh splits the pair {name} by {split:.1e}, where the body has one frequency: refine "
         "it, or use hexahedra or the harmonic model."
@@ -63,17 +57,19 @@ def split_apart(evidence: dict) -> list[str]:
 
 
 def _reach(evidence: dict) -> str:
-    """Reach of a count: into the body, where the error bars of what lies above the list are
-    known.
+    """State how far a count reaches: into the body, where the error bars of the modes above the
+    list are known.
     """
-    by = "counted by the inertia of a second factor"
+    method = "counted by the inertia of a second factor"
     if COMPLETE not in evidence:
         return (
-            f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({by}; without error "
+            f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({method}; without error "
             "bars the body itself may have one)"
         )
-    less = "" if evidence[COMPLETE] == evidence[COUNTED] else ", less error bars of what lies above"
-    return f"No mode missed below {evidence[COMPLETE]:.6g} Hz ({by}{less})"
+    suffix = (
+        "" if evidence[COMPLETE] == evidence[COUNTED] else ", less error bars of what lies above"
+    )
+    return f"No mode missed below {evidence[COMPLETE]:.6g} Hz ({method}{suffix})"
 
 
 def _listed(rows: list[dict]) -> str:
@@ -85,7 +81,7 @@ def _listed(rows: list[dict]) -> str:
 
 
 def _ranges(numbers: list[int]) -> list[str]:
-    """``n = 2 to 4``, ``n = 7``."""
+    """Return runs of numbers in words: ``n = 2 to 4``, ``n = 7``."""
     out: list[list[int]] = []
     for n in numbers:
         if out and n == out[-1][-1] + 1:
@@ -95,8 +91,8 @@ def _ranges(numbers: list[int]) -> list[str]:
     return [f"n = {run[0]}" + (f" to {run[-1]}" if len(run) > 1 else "") for run in out]
 
 
-def _left(rows: list[dict]) -> str:
-    """Families left alone; those at the end of the row are reported as one."""
+def _uncounted(rows: list[dict]) -> str:
+    """Name the families left alone; those at the end of the row are reported together."""
     rows = sorted(rows, key=lambda row: row["n"])
     last = [row for row in rows if row.get("above")]
     if not last:

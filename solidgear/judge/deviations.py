@@ -26,53 +26,57 @@ TIES = {
 
 
 def gap_verdict(gap: float, bar: float, tolerance: float) -> str:
-    """``within``, ``open`` or ``beyond`` a tolerance, for a gap known to within an error bar."""
+    """Return ``within``, ``open`` or ``beyond`` a tolerance, for a gap known to within an error
+    bar.
+    """
     if abs(gap) + bar <= tolerance:
         return WITHIN
     return BEYOND if abs(gap) - bar > tolerance else OPEN
 
 
-def resolution(size: float, band: float | None) -> str:
-    """``resolved`` where a difference is more than the bars of both sides, else ``not resolved``, or
-    ``no band``.
+def resolution(size: float, bar: float | None) -> str:
+    """Return ``resolved`` where a difference exceeds the error bars of both sides, else ``not
+    resolved``, or ``no band``.
     """
-    if band is None:
+    if bar is None:
         return "no band"
-    return "resolved" if size > band else "not resolved"
+    return "resolved" if size > bar else "not resolved"
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """A quantity of a model beside that of the reference."""
+    """A quantity of a model against that of the reference."""
 
     model: str
     reference: str
     attachment: str  #: tie of both: ``as scene`` or ``section``
     quantity: Quantity
-    #: value, reference_value: SI
+    #: SI
     value: float
     reference_value: float
     relative: float  #: of couplings to the geometric mean of their diagonal entries
-    band: float | None  #: sum of the bars of both, relative; None where neither has one
-    pairing: str = ""  #: in words, how a mode was found where its name did not tell
+    bar: float | None  #: sum of the error bars of both, relative; None where neither has one
+    pairing: str = ""  #: in words, how a mode was paired where the name did not decide
 
     @property
     def size(self) -> float:
-        """Without its sign."""
+        """Magnitude of the relative deviation."""
         return abs(self.relative)
 
     @property
     def verdict(self) -> str:
-        """``resolved`` where it is more than the bars of both, else ``not resolved``, or ``no band``."""
-        return resolution(self.size, self.band)
+        """``resolved`` where the deviation exceeds the error bars of both, else ``not resolved``,
+        or ``no band``.
+        """
+        return resolution(self.size, self.bar)
 
     def standing(self, tolerance: float) -> str:
-        """``within``, ``open`` or ``beyond`` a tolerance."""
-        return gap_verdict(self.relative, self.band or 0.0, tolerance)
+        """Return ``within``, ``open`` or ``beyond`` a tolerance."""
+        return gap_verdict(self.relative, self.bar or 0.0, tolerance)
 
     @property
     def side(self) -> str:
-        """Meaning of its sign to an engineer."""
+        """Meaning of the sign to an engineer."""
         if self.quantity.diagonals:
             return "off (of the geometric mean of the two diagonal entries)"
         if self.quantity.kind == COMPLIANCE:
@@ -81,12 +85,12 @@ class Deviation:
 
 
 def deviations(solutions: dict[str, Solution], reference: str) -> list[Deviation]:
-    """Relative deviations from the reference, once with the attachments of the scene and once like
-    for like.
+    """Compute relative deviations from the reference, once with the attachments of the scene and
+    once like for like.
 
     Couplings are related to the geometric mean of their diagonal entries, frequencies are those of
-    the modes with the same shape. A gap inside the sum of both bars is "not resolved", which is
-    not agreement.
+    the modes with the same shape. A gap inside the sum of both error bars is "not resolved", which
+    is not agreement.
     """
     base = solutions[reference]
     out: list[Deviation] = []
@@ -107,16 +111,18 @@ def deviations(solutions: dict[str, Solution], reference: str) -> list[Deviation
 def _deviations(
     model: str, reference: str, tie: str, solution: Solution, base: Solution
 ) -> Iterable[Deviation]:
-    mine, theirs = solution.ties[tie], base.ties[tie]
-    partners = Partners(mine.modes, theirs.modes)
-    further = [name for name in mine.quantities if name.points and not name.repeats]
+    model_answer, reference_answer = solution.ties[tie], base.ties[tie]
+    partners = Partners(model_answer.modes, reference_answer.modes)
+    further = [name for name in model_answer.quantities if name.points and not name.repeats]
     for name in (*QUANTITIES, *further):
-        value, how = mine.quantities.get(name), ""
+        value, pairing = model_answer.quantities.get(name), ""
         if name.is_frequency:
-            value, how = partners.frequency(name)
-        if value is None or name not in theirs.quantities:
+            value, pairing = partners.frequency(name)
+        if value is None or name not in reference_answer.quantities:
             continue
-        relative = change({**mine.quantities, name: value}, theirs.quantities, name)
+        relative = change(
+            {**model_answer.quantities, name: value}, reference_answer.quantities, name
+        )
         if relative is None:
             continue
         bars = [
@@ -127,20 +133,20 @@ def _deviations(
         yield Deviation(
             model,
             reference,
-            tie,
-            name,
-            value,
-            theirs.quantities[name],
-            relative,
-            sum(bars) if bars else None,
-            how,
+            attachment=tie,
+            quantity=name,
+            value=value,
+            reference_value=reference_answer.quantities[name],
+            relative=relative,
+            bar=sum(bars) if bars else None,
+            pairing=pairing,
         )
 
 
-def about(
+def select_gaps(
     gaps: Iterable[Deviation], model: str, names: Collection[Quantity], tie: str | None = None
 ) -> list[Deviation]:
-    """Those of a model in some quantities, with one tie or with any."""
+    """Select the gaps of a model in some quantities, with one tie or with any."""
     return [
         gap
         for gap in gaps
@@ -149,8 +155,8 @@ def about(
 
 
 class Partners:
-    """Modes of a model beside those of a reference: of the same shape or, where none is certain, at
-    the same place in the order.
+    """Modes of a model paired with those of a reference: of the same shape or, where none is
+    certain, at the same place in the order.
     """
 
     def __init__(self, model: ModeSet, reference: ModeSet):
@@ -158,46 +164,45 @@ class Partners:
         self.pairs: dict[str, Pairing] = {p.reference.name: p for p in pair_modes(model, reference)}
 
     def frequency(self, name: str) -> tuple[float | None, str]:
-        """Frequency (Hz) of the model that answers for a mode of the reference, and in words how it
-        was found where shapes did not tell.
+        """Return the frequency (Hz) of the model that answers for a mode of the reference, and in
+        words how it was found where shapes did not decide.
 
         Where no shape is certainly the same, the mode is compared with the one at the same place in
         ascending order, twins counted twice: eigenvalues of two models of one shaft are ordered
         alike (Courant and Fischer) whatever their shapes are called.
         """
         # bending may be called by its plane
-        asked = self.reference.named(name)
-        name = name if asked is None else asked.name
+        reference = self.reference.named(name)
+        name = name if reference is None else reference.name
         pair = self.pairs.get(name)
         if pair is None:
             return None, ""
         if pair.certain and pair.mode is not None:
-            return (
-                pair.mode.frequency_hz,
-                ""
-                if pair.mode.name == name
-                else f"paired by shape, MAC {pair.mac:.2f}: it calls the mode {pair.mode.name}",
-            )
+            pairing = ""
+            if pair.mode.name != name:
+                pairing = f"paired by shape, MAC {pair.mac:.2f}: it calls the mode {pair.mode.name}"
+            return pair.mode.frequency_hz, pairing
         place = int(
-            np.searchsorted(_ladder(self.reference), pair.reference.frequency_hz * (1 - 1e-9))
+            np.searchsorted(_ascending(self.reference), pair.reference.frequency_hz * (1 - 1e-9))
         )
-        mine = _ladder(self.model)
-        if place >= len(mine):
+        frequencies = _ascending(self.model)
+        if place >= len(frequencies):
             return None, ""
-        return float(
-            mine[place]
-        ), f"no shape is certainly the same, so number {place + 1} in ascending order is compared"
+        pairing = (
+            f"no shape is certainly the same, so number {place + 1} in ascending order is compared"
+        )
+        return float(frequencies[place]), pairing
 
 
-def _ladder(modes: ModeSet) -> np.ndarray:
-    """Elastic frequencies in ascending order, each as often as it has shapes; families that only
-    one model has left out.
+def _ascending(modes: ModeSet) -> np.ndarray:
+    """Return elastic frequencies in ascending order, each as often as it has shapes; families that
+    only one model has are left out.
     """
-    own = sorted((*modes.modes, *modes.beyond), key=lambda m: m.frequency_hz)
+    elastic = sorted((*modes.modes, *modes.beyond), key=lambda m: m.frequency_hz)
     return np.array(
         [
             m.frequency_hz
-            for m in own
+            for m in elastic
             if m.frequency_hz > 0 and m.waves < 2
             for _ in range(m.multiplicity)
         ]

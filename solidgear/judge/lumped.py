@@ -1,6 +1,4 @@
-"""The lumped model of a comparison: every synthesis from every body, and the one that stands for
-them.
-"""
+"""Lumped model of a comparison: every synthesis from every body, and the representative one."""
 
 from __future__ import annotations
 
@@ -15,7 +13,7 @@ from solidgear.body.mode_names import ModeName
 from solidgear.errors import SolidgearError
 from solidgear.judge.deviations import BEYOND, OPEN, gap_verdict
 from solidgear.judge.record import GuardRecord, LumpedRecord, LumpedVariant, ModelRecord, ModeRecord
-from solidgear.judge.verdict import Judgement, spoken_against
+from solidgear.judge.verdict import Judgement, objections
 from solidgear.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.ladder.registry import LADDER
 from solidgear.reduction.effective_mass import Synthesis, synthesise
@@ -31,13 +29,15 @@ PREFERRED = ("mode-matched", "guyan")
 def synthesise_all(
     scene: Scene, solutions: Mapping[str, Solution], tell: Callable[[str], None] = lambda _: None
 ) -> dict[str, LumpedRecord]:
-    """Lumped models of every solved body, by model; stiffness and first bending are those of the z plane."""
+    """Synthesise lumped models of every solved body, by model; stiffness and first bending are
+    those of the z plane.
+    """
     out: dict[str, LumpedRecord] = {}
     for model, solution in solutions.items():
         start = time.perf_counter()
         try:
             supports = as_supports(scene).on_stations(scene.stations)
-            point, found = synthesise(solution.body, supports, scene.port.name, solution.modes)
+            point, variants = synthesise(solution.body, supports, scene.port.name, solution.modes)
         except SolidgearError as error:
             tell(f"lumped from {model}: {error}")
             out[model] = LumpedRecord(why_not=str(error))
@@ -51,21 +51,21 @@ def synthesise_all(
             seconds=time.perf_counter() - start,
             variants={
                 name: LumpedVariant.model_validate(s).model_copy(update=s.numbers)
-                for name, s in found.items()
+                for name, s in variants.items()
             },
         )
     return out
 
 
 def sources() -> tuple[str, ...]:
-    """Models whose bodies the lumped one may rest on, the usual one of a lumped-parameter program
-    first: the best beam.
+    """Return the models whose bodies the lumped one may rest on, the usual one of a
+    lumped-parameter program first: the best beam.
     """
     return (*reversed(LADDER.of(BEAM)), *LADDER.of(SOLID))
 
 
 def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None:
-    """(source model, variant) that stands for the lumped model."""
+    """Return the (source model, variant) that represents the lumped model."""
     for source in sources():
         variant = preferred(lumped[source].variants) if source in lumped else None
         if variant is not None:
@@ -73,24 +73,28 @@ def representative(lumped: Mapping[str, LumpedRecord]) -> tuple[str, str] | None
     return None
 
 
-def preferred(made: Mapping[str, Synthesis] | Mapping[str, LumpedVariant]) -> str | None:
-    """The variant that stands for the lumped model: mode-matched where it is physical and holds the
-    mode as its first, else Guyan; None where neither does.
+def preferred(variants: Mapping[str, Synthesis] | Mapping[str, LumpedVariant]) -> str | None:
+    """Return the variant that represents the lumped model: mode-matched where it is physical and
+    gives the mode as the first, else Guyan; None where neither does.
     """
-    good = (name for name in PREFERRED if name in made and made[name].feasible and made[name].first)
+    good = (
+        name
+        for name in PREFERRED
+        if name in variants and variants[name].feasible and variants[name].first
+    )
     return next(good, None)
 
 
-def drawn(model: str) -> dict[str, str]:
-    """Facts of a model that a record keeps: its names, what it solves, and how charts draw it."""
-    known = LADDER[model]
+def model_facts(model: str) -> dict[str, str]:
+    """Return facts of a model that a record keeps: names, theory, family, and how charts draw it."""
+    ladder_model = LADDER[model]
     return {
-        "title": known.title,
-        "short": known.heading,
-        "theory": known.theory,
-        "family": known.family,
-        "colour": known.colour,
-        "marker": known.marker,
+        "title": ladder_model.title,
+        "short": ladder_model.heading,
+        "theory": ladder_model.theory,
+        "family": ladder_model.family,
+        "colour": ladder_model.colour,
+        "marker": ladder_model.marker,
     }
 
 
@@ -102,28 +106,25 @@ def model_record(
     bar: float | None,
     notices: Iterable[GuardRecord] = (),
 ) -> ModelRecord | None:
-    """Record of the lumped model among the others; its stiffness is its source's.
-
-    Parameters
-    ----------
-    reference_hz : float or None
-        First bending of the reference model.
-    bar : float or None
-        Of the reference's first bending; None where nothing may judge.
+    """Build the record of the lumped model, with the stiffness of the source model; `reference_hz`
+    is the first bending of the reference model, and `bar` the error bar of it, None where nothing
+    may judge.
     """
     chosen = representative(lumped)
     if chosen is None:
         return None
     source, variant = chosen
-    base, made = models[source], lumped[source]
-    own = made.variants[variant]
-    judged = _judged(own, base, made, source, reference_hz, tolerance, bar, notices)
+    base, lumped_record = models[source], lumped[source]
+    lumped_variant = lumped_record.variants[variant]
+    judged = _judged(
+        lumped_variant, base, lumped_record, source, reference_hz, tolerance, bar, notices
+    )
     # The price of its source comes first: there is no lumped model without a body to condense.
     seconds = {k: base.seconds.get(k) or 0.0 for k in ("build", "statics", "modes")}
-    seconds["synthesis"] = made.seconds or 0.0
+    seconds["synthesis"] = lumped_record.seconds or 0.0
     seconds["total"] = sum(seconds.values())
     return ModelRecord(
-        **drawn(*LADDER.of(LUMPED)),
+        **model_facts(*LADDER.of(LUMPED)),
         valid=judged.valid,
         open=judged.open,
         why_not=judged.why_not,
@@ -137,7 +138,7 @@ def model_record(
             ModeRecord(
                 name=ModeName("bending 1"),
                 family="bending",
-                frequency_hz=own.frequency_hz,
+                frequency_hz=lumped_variant.frequency_hz,
                 multiplicity=2,
                 captured=None,
             )
@@ -151,43 +152,48 @@ def model_record(
 
 
 def _judged(
-    own: LumpedVariant,
+    variant: LumpedVariant,
     base: ModelRecord,
-    made: LumpedRecord,
+    lumped_record: LumpedRecord,
     source: str,
     reference_hz: float | None,
     tolerance: float,
     bar: float | None,
     notices: Iterable[GuardRecord],
 ) -> Judgement:
-    """Judge the lumped model by its source's stiffness and its own first bending."""
+    """Judge the lumped model by the stiffness of the source model and by the first bending."""
     if not base.valid:
         state = base.why_not if base.open else f"which is out: {base.why_not}"
-        why = f"its stiffness is that of the {LADDER[source].title}, {state}"
-        return Judgement(False, why, open=base.open)
-    if against := spoken_against("lumped", notices):
+        reason = f"its stiffness is that of the {LADDER[source].title}, {state}"
+        return Judgement(False, reason, open=base.open)
+    if against := objections("lumped", notices):
         return Judgement(False, against[0])
-    if not reference_hz or bar is None or own.frequency_hz is None or made.frequency_hz is None:
-        why = "not judged: there is no first bending of a trusted model to hold it against"
-        return Judgement(False, why, open=True)
-    gap = own.frequency_hz / reference_hz - 1
+    if (
+        not reference_hz
+        or bar is None
+        or variant.frequency_hz is None
+        or lumped_record.frequency_hz is None
+    ):
+        reason = "not judged: there is no first bending of a trusted model to hold it against"
+        return Judgement(False, reason, open=True)
+    gap = variant.frequency_hz / reference_hz - 1
     kind = gap_verdict(gap, bar, tolerance)
     if kind == BEYOND:
-        why = (
+        reason = (
             f"its first bending is {100 * gap:+.1f} % off, "
             f"more than the {100 * tolerance:g} % asked for"
         )
-        lowest = made.frequency_hz / reference_hz - 1
+        lowest = lumped_record.frequency_hz / reference_hz - 1
         if gap_verdict(lowest, bar, tolerance) == BEYOND:
-            why += (
+            reason += (
                 ": masses are lumped in the z plane, and the first bending of this shaft "
                 "is not in it"
             )
-        return Judgement(False, why)
+        return Judgement(False, reason)
     if kind == OPEN:
-        why = (
+        reason = (
             f"not judged: its first bending is {100 * gap:+.1f} % off, and with the error bar of the "
             f"reference that may be more or less than the {100 * tolerance:g} % asked for"
         )
-        return Judgement(False, why, open=True)
+        return Judgement(False, reason, open=True)
     return Judgement(True)

@@ -7,7 +7,7 @@ from solidgear.quantity import Quantity
 
 
 class InputRecord(Part):
-    """An open input: its path in the file, what it belongs to, its range in words."""
+    """An open input: path in the file, source, range in words."""
 
     path: str = ""
     source: str = ""
@@ -15,9 +15,9 @@ class InputRecord(Part):
 
 
 class IntervalRecord(Part):
-    """Lowest and highest of a number, relative to what it is with all inputs as the scene says.
+    """Lowest and highest of a number, relative to the value with all inputs as the scene says.
 
-    ``deviation`` is its relative standard deviation where every input is equally likely anywhere in
+    ``deviation`` is the relative standard deviation where every input is equally likely anywhere in
     its range; None where it was not worked out.
     """
 
@@ -27,7 +27,7 @@ class IntervalRecord(Part):
 
 
 class SampledRecord(IntervalRecord):
-    """The same of seeded samples of all inputs together: ends of all, and of 95 % of them."""
+    """Interval of seeded samples of all inputs together: ends of all, and of 95 % of them."""
 
     low95: Number = None
     high95: Number = None
@@ -50,16 +50,16 @@ class OpenRecord(Part):
     @property
     def shares(self) -> dict[str, float]:
         """Share of every input in the sum of variances, the largest first; empty without any."""
-        parts = {path: (one.deviation or 0.0) ** 2 for path, one in self.by_input.items()}
-        all_of = sum(parts.values())
+        parts = {path: (interval.deviation or 0.0) ** 2 for path, interval in self.by_input.items()}
+        total = sum(parts.values())
         ordered = sorted(parts, key=lambda path: -parts[path])
-        return {path: parts[path] / all_of for path in ordered} if all_of else {}
+        return {path: parts[path] / total for path in ordered} if total else {}
 
 
 class OpenNumbers(Part):
     """Open inputs of a scene, and the numbers that they leave open.
 
-    ``lost`` names bearings that carry nothing somewhere in the ranges, ``refused`` tells why points
+    ``lost`` names bearings that carry nothing somewhere in the ranges, ``refused`` says why points
     could not be solved, ``left_out`` why nothing was worked out.
     """
 
@@ -75,5 +75,5 @@ class OpenNumbers(Part):
     left_out: str = ""
 
     def of(self, quantity: str) -> OpenRecord | None:
-        """The entry of a quantity."""
-        return next((one for one in self.numbers if one.quantity == quantity), None)
+        """Return the entry of a quantity."""
+        return next((number for number in self.numbers if number.quantity == quantity), None)

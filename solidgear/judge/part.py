@@ -17,7 +17,7 @@ from pydantic_core import PydanticUseDefault
 
 
 def _plain(value: Any) -> Any:
-    """The same as lists, dicts, texts and finite numbers; all else that numpy may bring is None."""
+    """Return a value as lists, dicts, texts and finite numbers; anything else from numpy is None."""
     if isinstance(value, dict):
         return {str(k): _plain(v) for k, v in value.items()}
     if hasattr(value, "tolist"):
@@ -37,7 +37,7 @@ Quantities = dict[str, Number]
 
 
 class Part(BaseModel):
-    """Part of a record: fields that are missing, or None where None says nothing, have their
+    """Part of a record: fields that are missing, or None where None is not allowed, have their
     default; unknown ones are kept. It may be made from an object with attributes of the same names.
     """
 

@@ -1,4 +1,4 @@
-"""Compared numbers: which of them a scene is judged by, and where they are found in results."""
+"""Compared numbers: by which of them a scene is judged, and how they are measured in results."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ JUDGED = (
 
 
 def in_words(quantity: Quantity, main: str) -> str:
-    """A quantity with its points in words; the main one is named where there are several.
+    """Return a quantity with points in words; the main one is named where there are several.
 
     Examples
     --------
@@ -54,8 +54,8 @@ def in_words(quantity: Quantity, main: str) -> str:
 
 
 def between(names: Iterable[Quantity], points: Sequence[str]) -> tuple[Quantity, ...]:
-    """Terms between some points of quantities that are of a point; of stiffnesses the diagonal too, for it
-    holds all of them.
+    """Return static quantities between some points; of stiffnesses the diagonal too, for it bounds
+    all of them.
 
     Examples
     --------
@@ -63,17 +63,17 @@ def between(names: Iterable[Quantity], points: Sequence[str]) -> tuple[Quantity,
     ('C_zz@a@b', 'C_z,thx@a@b', 'C_z,thx@b@a')
     """
     of_points = [name for name in names if not name.is_frequency]
-    found = (
+    crossed = (
         name.at(*pair)
         for a, b in combinations_with_replacement(points, 2)
         for name in of_points
         for pair in ([(a, b), (b, a)] if name.is_coupling and a != b else [(a, b)])
     )
-    return tuple(name for name in found if not name.repeats)
+    return tuple(name for name in crossed if not name.repeats)
 
 
 def at_points(names: Iterable[Quantity], points: Iterable[str]) -> tuple[Quantity, ...]:
-    """Quantities at the main point, and those of them that are of a point at further ones.
+    """Return quantities at the main point, and the static ones among them at further points.
 
     Examples
     --------
@@ -86,41 +86,37 @@ def at_points(names: Iterable[Quantity], points: Iterable[str]) -> tuple[Quantit
 
 
 def usual(scene: Scene) -> tuple[Quantity, ...]:
-    """Quantities that models are judged by unless a scene says otherwise: at all of its points."""
+    """Return the quantities that models are judged by unless a scene says otherwise: at all points."""
     return at_points(JUDGED, (port.name for port in scene.further_ports))
 
 
 def judged(scene: Scene) -> tuple[Quantity, ...]:
-    """Quantities that the models of a scene are judged by."""
-    return tuple(own_name(scene, name) for name in scene.ask.quantities) or usual(scene)
+    """Return the quantities that the models of a scene are judged by."""
+    return tuple(canonical_name(scene, name) for name in scene.ask.quantities) or usual(scene)
 
 
-def own_name(scene: Scene, name: Quantity) -> Quantity:
-    """A quantity as results call it: that of the main point has no name behind it, and points stand
-    in the order of the scene where it does not matter.
-
-    Raises
-    ------
-    SolidgearError
-        If the scene has no such point, or for a stiffness between points.
+def canonical_name(scene: Scene, name: Quantity) -> Quantity:
+    """Return a quantity under the name that results use: at the main point without a suffix, and
+    points in the order of the scene where it does not matter; SolidgearError if the scene has no
+    such point, or for a stiffness between points.
     """
-    known = [port.name for port in scene.ports]
-    asked = list(name.points_among(known))
-    for one in asked:
-        if one not in known:
-            raise SolidgearError(f"{name}: {no_such_point(one, known)}")
-    if reason := no_term(name, asked):
+    ports = [port.name for port in scene.ports]
+    points = list(name.points_among(ports))
+    for name_of_point in points:
+        if name_of_point not in ports:
+            raise SolidgearError(f"{name}: {no_such_point(name_of_point, ports)}")
+    if reason := no_term(name, points):
         raise SolidgearError(f"{name}: {reason}")
-    if len(set(asked)) < 2:
-        return name.at(*(point for point in asked[:1] if point != known[0]))
+    if len(set(points)) < 2:
+        return name.at(*(point for point in points[:1] if point != ports[0]))
     if not name.is_coupling:
-        asked.sort(key=known.index)
-    return name.at(*asked)
+        points.sort(key=ports.index)
+    return name.at(*points)
 
 
 def in_order(names: Iterable[Quantity]) -> list[Quantity]:
-    """Names as they are listed: of the main point as in `QUANTITIES` and `ACROSS`, then those of
-    further ones and between points; without those that only repeat another.
+    """Return names in the order of lists: at the main point as in `QUANTITIES` and `ACROSS`, then
+    at further points and between points; without those that only repeat another.
     """
     names = list(names)
     further = (q for q in names if q.points and not q.repeats)
@@ -132,45 +128,37 @@ def measure(
     modes: ModeSet | None,
     further: Mapping[str, Condensed] | None = None,
     coupled: Coupled | None = None,
-    known: Sequence[Quantity] = QUANTITIES,
+    names: Sequence[Quantity] = QUANTITIES,
 ) -> dict[Quantity, float]:
-    """The compared numbers of one solution; those that do not exist (free motions, missing modes)
-    or were not solved (None) are left out.
+    """Measure the compared numbers of one solution at the main point, at further ones by name, and
+    between several, the terms that these are related to included (:attr:`Quantity.repeats`); those
+    that do not exist (free motions, missing modes) or were not solved (None) are left out.
 
-    Parameters
-    ----------
-    condensed : Condensed or None
-        At the main point.
-    further : mapping of str to Condensed, optional
-        At further points, by name.
-    coupled : Coupled, optional
-        Of several points, for the terms between them; what these are related to comes along
-        (:attr:`Quantity.repeats`).
-    known : sequence of Quantity
-        Those that are measured away from the main point: there `ACROSS` is left out unless asked for.
+    `names` are those measured away from the main point: there `ACROSS` is left out unless asked
+    for.
     """
     out = _measured(condensed, modes, (*QUANTITIES, *ACROSS))
-    for point, there in (further or {}).items():
-        own = _measured(there, None, known)
-        out |= {name.at(point): value for name, value in own.items()}
-    return out | (_between(coupled, known) if coupled is not None else {})
+    for point, condensed_point in (further or {}).items():
+        values = _measured(condensed_point, None, names)
+        out |= {name.at(point): value for name, value in values.items()}
+    return out | (_between(coupled, names) if coupled is not None else {})
 
 
-def _between(coupled: Coupled, known: Iterable[Quantity]) -> dict[Quantity, float]:
-    """Terms between points, and what they are related to."""
-    names = [name for name in known if not name.is_frequency]
-    own = [name.at(a, a) for a in coupled.ports for name in names]
+def _between(coupled: Coupled, wanted: Iterable[Quantity]) -> dict[Quantity, float]:
+    """Measure terms between points, and the diagonal terms that they are related to."""
+    names = [name for name in wanted if not name.is_frequency]
+    diagonal = [name.at(a, a) for a in coupled.ports for name in names]
     # those of the diagonal first: a term of motions that nothing resists is no number
     out: dict[Quantity, float] = {}
     for name in sorted(
-        dict.fromkeys((*own, *between(names, coupled.ports))),
+        dict.fromkeys((*diagonal, *between(names, coupled.ports))),
         key=lambda q: q.diagonals is not None,
     ):
-        one, other = name.points
-        value = float(name.of(coupled.between(one, other, name.kind)))
+        first, second = name.points
+        value = float(name.of(coupled.between(first, second, name.kind)))
         pair = name.diagonals
-        there = value > 0.0 if pair is None else all(d in out for d in pair)
-        if np.isfinite(value) and there:
+        exists = value > 0.0 if pair is None else all(d in out for d in pair)
+        if np.isfinite(value) and exists:
             out[name] = value
     return out
 
@@ -193,12 +181,12 @@ def _measured(
 
 
 def size(values: Mapping[str, float] | Values, name: str) -> float:
-    """Scale that errors of a quantity are relative to: of couplings the geometric mean of their
-    diagonal entries, of all else the value itself.
+    """Return the scale that errors of a quantity are relative to: of couplings the geometric mean
+    of their diagonal entries, of all else the value itself.
     """
     name = Quantity(name)
     pair = name.diagonals
-    if pair is not None and all(one in values for one in pair):
+    if pair is not None and all(diagonal in values for diagonal in pair):
         return float((values[pair[0]] * values[pair[1]]) ** 0.5)
     return abs(values[name])
 
@@ -206,10 +194,11 @@ def size(values: Mapping[str, float] | Values, name: str) -> float:
 def change(
     new: Mapping[str, float] | Values, old: Mapping[str, float] | Values, name: str
 ) -> float | None:
-    """Relative change of one quantity, or None where either lacks it; rounding (below 1e-11) counts
-    as none.
+    """Compute the relative change of one quantity, or None where either lacks it; rounding (below
+    1e-11) counts as none.
 
-    Couplings are related to the geometric mean of their diagonal entries, all else to the old value.
+    Couplings are related to the geometric mean of their diagonal entries, all else to the old
+    value.
     """
     name = Quantity(name)
     if name not in new or name not in old:

@@ -1,9 +1,8 @@
 """Content of ``results.json``, typed.
 
-Everything a run found is written by dumping a :class:`Record` and read by validating one; tables,
-charts and tests read its attributes.  Numbers are SI.  A number that does not exist is None: JSON
-knows neither NaN nor infinity.  Quantities are called as in
-:data:`solidgear.quantity.QUANTITIES` everywhere.
+A run is written by dumping a :class:`Record` and read by validating one; tables, charts and tests
+read its attributes. Numbers are SI. A number that does not exist is None: JSON knows neither NaN
+nor infinity. Quantities are called as in :data:`solidgear.quantity.QUANTITIES` everywhere.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ SCHEMA = 4
 
 
 class ModeRecord(Part):
-    """A mode, its pair counted in ``multiplicity``."""
+    """A mode; a pair is counted in ``multiplicity``."""
 
     name: ModeName = ModeName("")
     family: str = ""
@@ -222,7 +221,7 @@ class GuardRecord(Part):
 
 
 class PartnerRecord(Part):
-    """A mode and its partner in the reference."""
+    """A mode and the partner in the reference."""
 
     mode: str = ""
     partner: str | None = None
@@ -250,7 +249,7 @@ class MacRecord(Part):
 
 
 class PortRecord(Part):
-    """The lumped point, the order of its six components, and those that nothing resists."""
+    """The lumped point, the order of the six components, and those that nothing resists."""
 
     name: str = ""
     y: Number = None
@@ -260,10 +259,10 @@ class PortRecord(Part):
 
 
 class PlaceRecord(Part):
-    """A place, ``shoulder``, ``seat end of A``, ... or ``elsewhere``, and its share of the error.
+    """A place, ``shoulder``, ``seat end of A``, ... or ``elsewhere``, and a share of the error.
 
-    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. Cells whose middle
-    lies within ``reach`` (m) count as of the place, where no other is nearer.
+    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. Cells whose
+    middle lies within ``reach`` (m) count as of the place, where no other is nearer.
     """
 
     what: str = ""
@@ -276,9 +275,9 @@ class PlaceRecord(Part):
 class WhereRecord(Part):
     """Places of the error of a number of a solid, the largest share first.
 
-    ``order`` is that of the elements, ``total`` the relative bar of the quantity; of a coupling, it is
-    relative to the geometric mean of its diagonal entries. ``points`` are r and y (m) of the corners
-    of the cells, ``shares`` those of every cell, in sum one.
+    ``order`` is that of the elements, ``total`` the relative error bar of the quantity; of a
+    coupling, it is relative to the geometric mean of the diagonal entries. ``points`` are r and y
+    (m) of the corners of the cells, ``shares`` those of every cell, in sum one.
     """
 
     model: str = ""
@@ -294,10 +293,10 @@ class WhereRecord(Part):
 
 
 class Record(Part):
-    """Everything a comparison found.
+    """Results of a comparison.
 
-    ``missing`` are titles of models that have a body of their own and no record here.  ``shown_in``
-    is the choice of units of its page (:mod:`solidgear.report.units`); the record itself is in SI.
+    ``missing`` are titles of models that have a body of their own and no record here. ``shown_in``
+    is the choice of units of the page (:mod:`solidgear.report.units`); the record itself is in SI.
 
     Examples
     --------
@@ -335,5 +334,5 @@ class Record(Part):
     shown_in: str = "engineering"
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data, as ``results.json`` has it."""
+        """Return plain data, as in ``results.json``."""
         return self.model_dump(mode="json", by_alias=True)

@@ -1,4 +1,4 @@
-"""From the solutions of a comparison to its record."""
+"""Record of a comparison, built from the solutions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from solidgear.judge.completeness import completeness, cut_short, split_apart
 from solidgear.judge.correlation import correlate
 from solidgear.judge.deviations import Deviation, deviations
 from solidgear.judge.hidden import COMPLETE, less_widest
-from solidgear.judge.lumped import drawn, model_record
+from solidgear.judge.lumped import model_facts, model_record
 from solidgear.judge.quantities import usual
 from solidgear.judge.record import (
     BarRecord,
@@ -55,14 +55,8 @@ def recorded(
     guards: list[GuardRecord],
     complete: bool,
 ) -> Record:
-    """Record of a comparison.
-
-    Parameters
-    ----------
-    failed : dict of str to str
-        Models that could not be solved, and why.
-    complete : bool
-        False after an interrupt.
+    """Build the record of a comparison; `failed` holds the reasons of models that could not be
+    solved, and `complete` is False after an interrupt.
     """
     trust, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
     # Where nothing may judge, the distances are still reported; they are no judgement.
@@ -75,7 +69,7 @@ def recorded(
         if model in solutions:
             models[model] = _model_record(solutions[model], validity[model])
         elif model in failed:
-            models[model] = ModelRecord(**drawn(model), valid=False, why_not=failed[model])
+            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=failed[model])
     out = Record(
         complete=complete,
         scene=scene.as_dict(),
@@ -98,8 +92,8 @@ def recorded(
         _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
-        own = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
-        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, own)
+        error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
+        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, error_bars)
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out
@@ -107,24 +101,27 @@ def recorded(
 
 def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
     port, first = scene.ports[k], next(iter(solutions.values()), None)
-    found = None if first is None else first.ties[SCENE].statics
-    there = None if found is None else [found.main, *found.further.values()][k]
+    statics = None if first is None else first.ties[SCENE].statics
+    condensed = None if statics is None else [statics.main, *statics.further.values()][k]
     return PortRecord(
         name=port.name,
         y=port.y,
         attachment=port.attachment,
         order=list(DOF_NAMES),
-        free=list(there.free_names) if there else [],
+        free=list(condensed.free_names) if condensed else [],
     )
 
 
 def _deviation_record(gap: Deviation) -> DeviationRecord:
-    return DeviationRecord(**asdict(gap), unit=gap.quantity.unit, verdict=gap.verdict)
+    facts = asdict(gap)
+    return DeviationRecord(
+        band=facts.pop("bar"), **facts, unit=gap.quantity.unit, verdict=gap.verdict
+    )
 
 
 def _attachments(solutions: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
     return {
-        model: {name: _variant_record(found) for name, found in solution.variants.items()}
+        model: {name: _variant_record(answer) for name, answer in solution.variants.items()}
         for model, solution in solutions.items()
         if solution.variants
     }
@@ -138,25 +135,29 @@ def _warnings(
         # What speaks against a model that is out anyway is in the record, and nobody's concern.
         about = [m for m in notice.models if m in models and models[m].valid]
         if about or not notice.models:
-            named = ", ".join(models[m].title for m in about)
-            out.append(f"{named}: {notice.sentence}" if about else notice.sentence)
+            titles = ", ".join(models[m].title for m in about)
+            out.append(f"{titles}: {notice.sentence}" if about else notice.sentence)
     out += [
-        f"{LADDER[m].title}: {what}: {why}"
+        f"{LADDER[m].title}: {part}: {reason}"
         for m, r in solutions.items()
-        for what, why in r.failed.items()
+        for part, reason in r.failed.items()
     ]
     for model, solution in solutions.items():
-        out += [f"{LADDER[model].title}: {one}" for one in split_apart(solution.modes.evidence)]
-        out += [f"{LADDER[model].title}: {one.sentence}" for one in mixtures(solution.modes)]
+        out += [f"{LADDER[model].title}: {text}" for text in split_apart(solution.modes.evidence)]
+        out += [
+            f"{LADDER[model].title}: {mixture.sentence}" for mixture in mixtures(solution.modes)
+        ]
     return out
 
 
 def _add_lumped(
     record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
 ) -> None:
-    """The lumped model among the models; what every synthesis is worth only where it is asked."""
+    """Add the lumped model to the models, and the errors of every synthesis only where they are
+    asked for.
+    """
     bar = base.error_bars.get(SCENE, {}).get(FIRST_BENDING)
-    own = model_record(
+    lumped_model = model_record(
         record.lumped,
         record.models,
         base.quantities.get(FIRST_BENDING),
@@ -164,41 +165,41 @@ def _add_lumped(
         bar.width if bar else None,
         guards,
     )
-    if own is None:
+    if lumped_model is None:
         return
     (name,) = LADDER.of(LUMPED)
-    record.models = {name: own, **record.models}
+    record.models = {name: lumped_model, **record.models}
     verdict = record.verdict
-    source = LADDER[own.source or name]
-    masses = f"{own.variant} masses on the stiffness of the {source.title}"
-    if own.valid and source.family == SOLID:
+    source = LADDER[lumped_model.source or name]
+    masses = f"{lumped_model.variant} masses on the stiffness of the {source.title}"
+    if lumped_model.valid and source.family == SOLID:
         verdict.sentences.append(
             f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
             "bending and below only, and costs as much as what it rests on."
         )
-    elif own.valid:
+    elif lumped_model.valid:
         verdict.cheapest = name
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
         verdict.sentences.append(
             f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
             f"({masses}), for first bending and below only."
         )
-    made = record.lumped[base.model].variants if base.model in record.lumped else {}
-    if not made or verdict.trust is None or not synthesis:
+    variants = record.lumped[base.model].variants if base.model in record.lumped else {}
+    if not variants or verdict.trust is None or not synthesis:
         return
     errors = [
         f"{n} {_error(v.frequency_error)}"
-        for n, v in made.items()
+        for n, v in variants.items()
         if v.feasible and v.frequency_error is not None
     ]
     verdict.sentences.append(
         f"First bending of lumped models made from the {LADDER[base.model].title}: "
         f"{', '.join(errors)}."
     )
-    if not made["thesis"].feasible:
+    if not variants["thesis"].feasible:
         verdict.sentences.append(
             "The thesis's equations 52 and 53 have no usable solution here: "
-            f"{made['thesis'].verdict}."
+            f"{variants['thesis'].verdict}."
         )
 
 
@@ -208,15 +209,15 @@ def _error(relative: float) -> str:
 
 def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
     return ModelRecord(
-        **drawn(solution.model),
+        **model_facts(solution.model),
         valid=judgement.valid,
         open=judgement.open,
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
         points={
-            name: PointRecord.model_validate(there)
-            for name, there in solution.ties[SCENE].statics.further.items()
+            name: PointRecord.model_validate(condensed)
+            for name, condensed in solution.ties[SCENE].statics.further.items()
         },
         coupled=_coupled(solution.ties[SCENE].statics),
         modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
@@ -231,37 +232,39 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
     )
 
 
-def _coupled(found: Statics) -> CoupledRecord | None:
-    both = found.coupled
-    if both is None:
+def _coupled(statics: Statics) -> CoupledRecord | None:
+    coupled = statics.coupled
+    if coupled is None:
         return None
     return CoupledRecord(
-        ports=list(both.ports),
-        stiffness=both.stiffness,
-        compliance=both.compliance,
-        stiffness_error=both.evidence["stiffness_error"],
+        ports=list(coupled.ports),
+        stiffness=coupled.stiffness,
+        compliance=coupled.compliance,
+        stiffness_error=coupled.evidence["stiffness_error"],
     )
 
 
 def _bar_summary(solution: Solution) -> BarSummary | None:
-    own = solution.error_bars.get(SCENE, {})
-    if not own:
+    error_bars = solution.error_bars.get(SCENE, {})
+    if not error_bars:
         return None
-    method = next(iter(own.values())).method
+    method = next(iter(error_bars.values())).method
     return BarSummary(
-        compliance=max((b.width for q, b in own.items() if q.kind == COMPLIANCE), default=None),
+        compliance=max(
+            (b.width for q, b in error_bars.items() if q.kind == COMPLIANCE), default=None
+        ),
         method=f"{method}, {len(solution.levels)} meshes",
-        each={name: bar.width for name, bar in own.items()},
+        each={name: bar.width for name, bar in error_bars.items()},
     )
 
 
 def _convergence(solution: Solution) -> ConvergenceRecord | None:
-    own = solution.error_bars.get(SCENE, {})
-    if not own:
+    error_bars = solution.error_bars.get(SCENE, {})
+    if not error_bars:
         return None
     return ConvergenceRecord(
         levels=solution.levels,
-        quantities={name: _bar_record(bar) for name, bar in own.items()},
+        quantities={name: _bar_record(bar) for name, bar in error_bars.items()},
     )
 
 
@@ -272,33 +275,33 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
 
 def _evidence(solution: Solution) -> EvidenceRecord:
     statics = solution.condensed.evidence
-    own = solution.error_bars.get(SCENE, {})
-    found = less_widest(
-        solution.modes.evidence, [bar.width for q, bar in own.items() if q.is_frequency]
+    error_bars = solution.error_bars.get(SCENE, {})
+    evidence = less_widest(
+        solution.modes.evidence, [bar.width for q, bar in error_bars.items() if q.is_frequency]
     )
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],
         rigid_residual=solution.body.rigid_residual(),
-        modal_residual=found["residual"],
-        orthogonality=found["orthogonality"],
-        eigensolver=found["method"],
-        mode_count=found.get("count", []),
-        complete_below_hz=found.get(COMPLETE),
-        families=found.get("families", []),
-        complete=completeness(found, solution.model) if "count" in found else "",
-        rigid_modes=found["rigid_modes"],
-        coupling_bound=found["coupling_bound"],
-        shift_rad2=float(found["shift_rad2"]),
+        modal_residual=evidence["residual"],
+        orthogonality=evidence["orthogonality"],
+        eigensolver=evidence["method"],
+        mode_count=evidence.get("count", []),
+        complete_below_hz=evidence.get(COMPLETE),
+        families=evidence.get("families", []),
+        complete=completeness(evidence, solution.model) if "count" in evidence else "",
+        rigid_modes=evidence["rigid_modes"],
+        coupling_bound=evidence["coupling_bound"],
+        shift_rad2=float(evidence["shift_rad2"]),
     )
 
 
-def _variant_record(found: Answer) -> VariantRecord:
+def _variant_record(answer: Answer) -> VariantRecord:
     return VariantRecord(
-        quantities=found.quantities,
-        stiffness=found.statics.main.stiffness,
-        compliance=found.statics.main.compliance,
-        modes=[ModeRecord.model_validate(m) for m in found.modes.modes],
+        quantities=answer.quantities,
+        stiffness=answer.statics.main.stiffness,
+        compliance=answer.statics.main.compliance,
+        modes=[ModeRecord.model_validate(m) for m in answer.modes.modes],
     )
 
 

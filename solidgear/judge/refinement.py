@@ -1,37 +1,39 @@
-"""One solid on ever finer meshes, until the bars of what is asked are within a tolerance.
+"""One solid on ever finer meshes, until the error bars of some numbers are within a tolerance.
 
-The meshes of a harmonic solid follow its bars (:mod:`solidgear.bounds.refining`), which every mesh
-tells by itself (:mod:`solidgear.judge.bounded`); of other solids two of a list make a bar. What a
-mesh is solved for, and how, is up to those who want to know: single numbers
-(:mod:`solidgear.judge.climb`), a whole body (:mod:`solidgear.judge.settle`) or all ways of tying
-(:mod:`solidgear.judge.study`).
+:func:`refine` is the loop, :class:`Refinement` the meshes that it has solved and the numbers and
+error bars that they give. A :class:`Solver` says for which numbers the next mesh is solved, and
+solves it: for single numbers or a whole body (:mod:`solidgear.judge.question`), or in all ways of
+tying (:mod:`solidgear.judge.study`).
+
+The meshes of a harmonic solid follow the error bars (:mod:`solidgear.bounds.refining`), which every
+mesh gives by itself (:mod:`solidgear.judge.bounded`); of other solids two of a list of meshes make
+an error bar (:mod:`solidgear.judge.sequence_bars`).
 """
 
 from __future__ import annotations
 
 import math
 import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from solidgear.body import Body
 from solidgear.bounds.refining import MOST_MESHES, Meshed, refined
-from solidgear.errors import SolidgearError
 from solidgear.judge.bars import ErrorBar, moves_freely, same_size
 from solidgear.judge.bounded import Bounded
 from solidgear.judge.effort import HEAVY, cost_text
-from solidgear.judge.quantities import Values, size
-from solidgear.judge.question import Solved, few, mesh_words, most_of
+from solidgear.judge.quantities import Values, in_order, size
 from solidgear.judge.sequence_bars import feature_effect, sequence_bars
+from solidgear.judge.singular_places import singular_places
 from solidgear.judge.solving import Numbers
 from solidgear.judge.steps import ABOVE, BELOW, BOTH, Step, Value
+from solidgear.ladder.meshes import Sequence as Plan
 from solidgear.ladder.model import Model
 from solidgear.machine.memory import listening
-from solidgear.quantity import COMPLIANCE, Quantity
+from solidgear.quantity import COMPLIANCE, FREQUENCY, Quantity
 
 if TYPE_CHECKING:
     from solidgear.scene import Scene
@@ -48,86 +50,81 @@ FINER_FILE = "list a finer mesh beside those of the file"
 RISE = 2.0
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
-#: what two meshes must leave of the largest bar at most to go on
+#: ratio of the largest bar to that two meshes before, above which finer meshes do not help
 FUTILE = 0.7
+#: reported options of a mesh, and the words for them
+SETTINGS = {
+    "order": "order",
+    "layers": "layers",
+    "around": "cells around",
+    "refinement": "refinement",
+    "cuts": "cuts",
+}
+#: quantities up to this number are listed by name
+FEW = 3
 
 
-class Loop(ABC):
-    """One solid on ever finer meshes.
+@dataclass(frozen=True)
+class Solved:
+    """Solution of one mesh."""
 
-    Parameters
-    ----------
-    model : Model
-        A solid.
-    wanted : tuple of Quantity
-        Those whose bars are wanted.
-    tol : float
-        Relative.
-    progress : callable
-        Told of every mesh.
-    options : mapping, optional
-        Of the builder; where they speak of the mesh, that mesh is solved, and of a list coarser ones.
-    most : int, optional
-        Meshes at most.
+    body: Body  #: the last one that was built on it
+    numbers: Numbers
+    unknowns: int  #: of all bodies
+    cells: tuple[float, ...]  #: sizes of the cells, m
+    #: (ne,) weights of the cells of a meridian by the error bars that exceed the tolerance
+    score: np.ndarray | None = None
 
-    Attributes
-    ----------
-    levels : list of Numbers
-        Of every mesh, coarse to fine: what was solved for on it.
-    error_bars : dict of Quantity to ErrorBar
-        Of every quantity, on the finest mesh that was solved for it.
-    """
 
-    #: whether a coupling is given in the middle of its bar, and not as the body says it
-    middles = True
-    #: what couplings of families that were left out may move at most, relative
-    left_out = 0.0
+class Solver(Protocol):
+    """Solves the meshes of a refinement for the numbers of a question."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        model: Model,
-        wanted: tuple[Quantity, ...],
-        tol: float,
-        progress: Progress,
-        options: Mapping[str, Any] | None = None,
-        most: int | None = None,
-    ):
-        self.scene, self.model, self.wanted, self.tol = scene, model, wanted, tol
-        self.progress = progress
-        self.plan = model.meshes_of(scene, options or {})
-        self.most = most
-        #: of a harmonic solid, the one it begins with, and later the last one
+    def asked(self) -> tuple[Quantity, ...]:
+        """Return the quantities that the next mesh is solved for."""
+
+    def solve(self, options: Mapping[str, Any]) -> Solved | None:
+        """Solve a mesh, of a harmonic solid with error bars; None to go on without this mesh."""
+
+    def judge(self) -> float | None:
+        """Update the error bars; return the largest of all numbers asked for, None before there are
+        meshes enough to end with it.
+        """
+
+
+@dataclass(eq=False)
+class Refinement:
+    """Meshes of one solid that were solved, coarse to fine, with the numbers that they give."""
+
+    scene: Scene
+    model: Model  #: a solid
+    wanted: tuple[Quantity, ...]  #: quantities whose error bars are wanted
+    tol: float  #: relative
+    plan: Plan  #: meshes to be solved; of a harmonic solid the first, unless the mesh was set
+    #: whether the body itself is wanted: all static numbers of it are judged, those of the other
+    #: plane and of torsion included
+    whole: bool = False
+    #: whether a coupling is given in the middle of the error bar, and not as the body says it
+    middles: bool = True
+    most: int | None = None  #: largest number of meshes
+    levels: list[Numbers] = field(default_factory=list)  #: of every mesh
+    sizes: list[tuple[float, ...]] = field(default_factory=list)  #: of the cells of every mesh, m
+    steps: list[Step] = field(default_factory=list)
+    #: of every quantity, on the finest mesh that was solved for it
+    error_bars: dict[Quantity, ErrorBar] = field(default_factory=dict)
+    missing: set[Quantity] = field(default_factory=set)  #: do not exist in this scene
+    options: dict[str, Any] = field(default_factory=dict)  #: of the last mesh
+    last: Solved | None = None
+    #: bound on the change by couplings of families that were left out, relative
+    left_out: float = 0.0
+    mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
+    _changes: list[Values] = field(default_factory=list)  #: by features, on every mesh
+
+    def __post_init__(self):
         self.mesh = Meshed(fixed=self.plan.levels[0])
-        self.levels: list[Numbers] = []
-        self.sizes: list[tuple[float, ...]] = []
-        self.steps: list[Step] = []
-        self.error_bars: dict[Quantity, ErrorBar] = {}
-        self.missing: set[Quantity] = set()
-        self._changes: list[Values] = []
-        self.last: Solved | None = None
-        self.options: dict[str, Any] = {}
-
-    @abstractmethod
-    def _solve(self, level: Mapping[str, Any]) -> Solved:
-        """Solve a mesh; of a harmonic solid with its error bars."""
-
-    def _spared(self, level: Mapping[str, Any], error: Exception) -> bool:
-        """Tell whether the loop goes on without a mesh that could not be solved."""
-        return False
-
-    def _asked(self) -> tuple[Quantity, ...]:
-        """Quantities that the next mesh is solved for."""
-        return self.wanted
-
-    @property
-    def called(self) -> str:
-        """Name of what is solved, as it is told."""
-        return self.model.title
 
     @property
     def of_files(self) -> bool:
-        """True where the meshes are those of files."""
+        """Whether the meshes are those of files."""
         return self.scene.body is not None and self.scene.body.one_mesh
 
     @property
@@ -135,138 +132,55 @@ class Loop(ABC):
         """The last body that was solved."""
         return None if self.last is None else self.last.body
 
-    def run(self) -> None:
-        """Climb until every error bar is within the tolerance, or there is no finer mesh."""
-        for level in self._meshes():
-            start = time.perf_counter()
-            asked = set(self._asked())
-            part = len(asked) < len(self.wanted)
-            only = tuple(q for q in self.wanted if part and q in asked)
-            setting = mesh_words(level) + (f", for {few(only)}" if only else "")
-            self.progress(f"{self.called}: {setting}")
-            try:
-                with listening(self._tell):
-                    self.last = self._solve(level)
-            except (SolidgearError, MemoryError) as error:
-                if not self._spared(level, error):
-                    raise
-                continue
-            self.levels.append(self.last.numbers)
-            self.sizes.append(self.last.cells)
-            self.options = dict(level)
-            self.missing = (self.missing | asked) - set(self.levels[-1].quantities)
-            bar = self.judge()
-            spent = time.perf_counter() - start
-            self.steps.append(
-                Step(
-                    self.model.name,
-                    setting,
-                    valid=True,
-                    bar=bar,
-                    unknowns=self.last.unknowns,
-                    seconds=spent,
-                    only=only,
-                    options=self.options,
-                )
-            )
-            if (self.model.bounded or len(self.levels) == 2) and not self.values():
-                self._choose("nothing that was asked for exists in this scene")
-                return
-            if bar is not None and bar <= self.tol:
-                self._choose("")
-                return
-            if bar is not None and (why := self._in_vain()):
-                self._choose(why)
-                return
-        self._choose(self._stopped())
-
-    def _tell(self, unknowns: int, mb: float) -> None:
-        """Tell what a heavy factor will cost, before it is made."""
-        if unknowns >= HEAVY:
-            self.progress(f"{self.called}: {cost_text(unknowns, mb)}")
-
-    def _meshes(self) -> Iterator[Mapping[str, Any]]:
-        """All meshes, coarse to fine."""
-        if not self.model.bounded or self.plan.fixed:
-            yield from self.plan.levels if self.plan.fixed else self.plan.levels[: self.most]
-            return
-        yield self.mesh.options()
-        for _ in range((self.most or MOST_MESHES) - 1):
-            assert self.last is not None and self.last.score is not None
-            self.mesh = refined(self.scene, self.last.body, self.mesh, self.last.score, self.tol)
-            self.last.body.cache.clear()  # its factor need not be held beside the next one
-            yield self.mesh.options()
-
-    def _stopped(self) -> str:
-        """Reason for no further mesh."""
-        if not self.model.bounded:
-            if not self.of_files or not self.sizes:
-                return NO_FINER
-            if len(self.plan.levels) == 1:
-                return ONE_MESH
-            return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
-        count = len(self.levels)
-        tried = "one mesh" if count == 1 else f"{count} meshes"
-        return f"{tried} did not do; most of the bar comes from {self.stops_at()}"
-
-    def stops_at(self) -> str:
-        """The place that holds most of the bars that are not within the tolerance, in words."""
-        assert self.last is not None and self.last.score is not None
-        return most_of(self.scene, self.last.body, self.last.score)
-
-    def stop(self, why: str) -> None:
-        """End with what there is."""
-        self._choose(f"the next mesh could not be solved: {why}")
-
-    def values(self) -> tuple[Value, ...]:
-        """Numbers asked for, each from the finest mesh that was solved for it."""
-        out = []
-        for name in self._known():
-            history = self._history(name)
-            finest = history[-1].quantities
-            unit, scale = name.unit, size(finest, name)
-            bar = self.error_bars.get(name)
-            given = bar.middle if bar is not None and self.middles else None
-            value = finest[name] if given is None else given
-            how = bar.method if bar else ""
-            meshes = 1 if self.model.bounded else len(history)
-            out.append(
-                Value(name, value, unit, self.bar(name), meshes, scale, self._side(name), how)
-            )
-        return tuple(out)
-
-    def _known(self) -> list[Quantity]:
-        """Quantities asked for that are there."""
-        return [q for q in self.wanted if q not in self.missing and self._history(q)]
-
-    def _history(self, name: Quantity) -> list[Numbers]:
-        """The meshes that a quantity was solved on, coarse to fine."""
-        return [level for level in self.levels if name in level.quantities]
-
-    def _side(self, name: Quantity) -> str:
-        """Side on which the exact answer lies.
-
-        Of all admissible displacements the exact ones store the least energy under given motions of
-        the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
-        """
-        exact = self.model.bounded and not self.scene.outline.corners
-        if not exact or name.diagonals or name not in self.error_bars:
-            return BOTH
-        # what the solver leaves, and couplings that were left out, may go either way
-        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
-            return BOTH
-        return ABOVE if name.kind == COMPLIANCE else BELOW
-
-    def _started(self) -> bool:
-        """Tell whether there is a bar of everything already."""
+    @property
+    def started(self) -> bool:
+        """Whether there are meshes enough for error bars of all quantities."""
         return len(self.levels) >= (1 if self.model.bounded else 2)
 
-    def _open(self) -> list[Quantity]:
-        """Quantities that are there, and not yet within the tolerance."""
-        return [q for q in self._known() if not self.bar(q) <= self.tol]
+    def add(self, solved: Solved, options: Mapping[str, Any], asked: set[Quantity]) -> None:
+        """Add the solution of a mesh, solved for some quantities."""
+        self.last = solved
+        self.levels.append(solved.numbers)
+        self.sizes.append(solved.cells)
+        self.options = dict(options)
+        self.missing = (self.missing | asked) - set(solved.numbers.quantities)
+
+    def end(self, reason: str) -> None:
+        """Take the last mesh, for a reason."""
+        if self.steps:
+            self.steps[-1] = replace(self.steps[-1], why=reason, chosen=True)
+
+    def existing(self) -> list[Quantity]:
+        """Return the quantities to be judged that exist."""
+        wanted = [q for q in self.wanted if q not in self.missing and self._history(q)]
+        if not self.whole:
+            return wanted
+        return [*wanted, *sorted(self._with_static() - set(self.wanted))]
+
+    def _with_static(self) -> set[Quantity]:
+        """Return the quantities wanted, and all static ones of the same kinds that were solved."""
+        kinds = {q.kind for q in self.wanted} - {FREQUENCY}
+        solved = (q for level in self.levels for q in level.quantities)
+        return set(self.wanted) | {q for q in solved if q.kind in kinds and not q.repeats}
+
+    def _history(self, name: Quantity) -> list[Numbers]:
+        """Return the meshes that a quantity was solved on, coarse to fine."""
+        return [level for level in self.levels if name in level.quantities]
+
+    def unmet(self) -> list[Quantity]:
+        """Return the quantities that exist and are not yet within the tolerance; of a whole body
+        only those that no mesh brings there, if any, for one of them is enough to refuse it.
+        """
+        wide = [q for q in self.existing() if not self.bar(q) <= self.tol]
+        if not self.whole:
+            return wide
+        floors = self.floors()
+        return [q for q in wide if floors.get(q, 0.0) > self.tol] or wide
 
     def floors(self) -> dict[Quantity, float]:
-        """Least bars on the finest mesh: a share of what features change, where the model has one."""
+        """Return the least error bars that any mesh gives: a share of the change by features, where
+        the model has one.
+        """
         safety = self.model.safety
         if safety is None or not safety.share:
             return {}
@@ -276,31 +190,11 @@ class Loop(ABC):
         meshes = len(self.plan.levels)
         return {q: safety.least_share(moves_freely(q), meshes) * c for q, c in finest.items()}
 
-    def _in_vain(self) -> str:
-        """Reason for which no finer mesh would help, if none would."""
-        bars = [step.bar for step in self.steps if step.bar is not None]
-        if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
-            return f"finer meshes no longer help; most of the bar comes from {self.stops_at()}"
-        floors, open_ = self.floors(), self._open()
-        if not open_ or not all(floors.get(q, 0.0) > self.tol for q in open_):
-            return ""
-        top = max(open_, key=floors.__getitem__)
-        return (
-            f"no mesh makes bars of {few(open_)} as narrow: the {self.model.title} is sure "
-            "of a quantity to a share of what features change of it, here to "
-            f"{100 * floors[top]:.2g} % of {top} at best"
-        )
-
-    def score(self, judged: Bounded, names: Iterable[Quantity]) -> np.ndarray | None:
-        """Weights of the cells of a meridian by the bars beyond the tolerance, if any."""
-        open_ = [q for q in names if q in judged.scores and not self.bar(q) <= self.tol]
-        if not open_:
-            return None
-        return np.max([self.bar(q) * judged.scores[q] for q in open_], axis=0)
-
     def judge(self) -> float | None:
-        """Error bars of what the finest mesh was solved for; the largest of all that was asked."""
-        if not self._started():
+        """Update the error bars of a list of meshes; return the largest of all quantities to be
+        judged, None before there are meshes enough.
+        """
+        if not self.started:
             return None
         if not self.model.bounded:
             values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
@@ -308,11 +202,11 @@ class Loop(ABC):
             self.error_bars |= sequence_bars(
                 self.scene, self.plan, self.model, values, solver, self.sizes, shape=shape
             )
-        bars = [self.bar(q) for q in self._known()]
+        bars = [self.bar(q) for q in self.existing()]
         return max(bars, default=None) if self.error_bars else None
 
     def bar(self, name: Quantity) -> float:
-        """Relative bar of a quantity; infinite where nothing is known."""
+        """Return the relative error bar of a quantity; infinite where nothing is known."""
         if name not in self.error_bars:
             return math.inf
         bar = self.error_bars[name]
@@ -320,7 +214,7 @@ class Loop(ABC):
         return max(width, RISE * self._rise(name)) + self.left_out
 
     def _rise(self, name: Quantity) -> float:
-        """Rise of a frequency at the last step of a list, beyond what the solver leaves."""
+        """Return the rise of a frequency at the last step of a list, beyond the solver's error."""
         history = self._history(name)
         if self.model.bounded or not name.is_frequency or len(history) < 2:
             return 0.0
@@ -329,6 +223,196 @@ class Loop(ABC):
         allowed = before.solver.get(name, 0.0) + last.solver.get(name, 0.0)
         return max(0.0, rise - allowed)
 
-    def _choose(self, why: str) -> None:
-        if self.steps:
-            self.steps[-1] = replace(self.steps[-1], why=why, chosen=True)
+    def bars(self) -> dict[Quantity, float]:
+        """Return relative error bars of a whole body, those of the other plane and of torsion
+        included.
+        """
+        names = [q for q in in_order(self.levels[-1].quantities) if q in self._with_static()]
+        return {q: self.bar(q) for q in names}
+
+    def values(self) -> tuple[Value, ...]:
+        """Return the numbers wanted, each from the finest mesh that was solved for it."""
+        return tuple(self._value(name) for name in self.existing())
+
+    def _value(self, name: Quantity) -> Value:
+        history = self._history(name)
+        finest = history[-1].quantities
+        error_bar = self.error_bars.get(name)
+        value, method = finest[name], ""
+        if error_bar is not None:
+            method = error_bar.method
+            if error_bar.middle is not None and self.middles:
+                value = error_bar.middle
+        return Value(
+            name,
+            value,
+            name.unit,
+            self.bar(name),
+            1 if self.model.bounded else len(history),
+            size(finest, name),
+            self._side(name),
+            method,
+        )
+
+    def _side(self, name: Quantity) -> str:
+        """Return the side on which the exact answer lies.
+
+        Of all admissible displacements the exact ones store the least energy under given motions of
+        the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
+        """
+        exact = self.model.bounded and not self.scene.outline.corners
+        if not exact or name.diagonals or name not in self.error_bars:
+            return BOTH
+        # errors of the solver, and of couplings that were left out, may go either way
+        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+            return BOTH
+        return ABOVE if name.kind == COMPLIANCE else BELOW
+
+    def score(self, judged: Bounded, names: Iterable[Quantity]) -> np.ndarray | None:
+        """Return weights of the cells of a meridian by the error bars that exceed the tolerance, if
+        any do.
+        """
+        wide = [q for q in names if q in judged.scores and not self.bar(q) <= self.tol]
+        if not wide:
+            return None
+        return np.max([self.bar(q) * judged.scores[q] for q in wide], axis=0)
+
+    def worst_place(self) -> str:
+        """Return the place that holds most of the error bars that exceed the tolerance, in words."""
+        assert self.last is not None and self.last.score is not None
+        return _place_of_most(self.scene, self.last.body, self.last.score)
+
+    def no_further_mesh(self) -> str:
+        """Return the reason why there is no further mesh."""
+        if not self.model.bounded:
+            if not self.of_files or not self.sizes:
+                return NO_FINER
+            if len(self.plan.levels) == 1:
+                return ONE_MESH
+            return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
+        count = len(self.levels)
+        tried = "one mesh" if count == 1 else f"{count} meshes"
+        return f"{tried} did not do; most of the bar comes from {self.worst_place()}"
+
+    def in_vain(self) -> str:
+        """Return the reason why no finer mesh would help; empty if one may."""
+        bars = [step.bar for step in self.steps if step.bar is not None]
+        if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
+            return f"finer meshes no longer help; most of the bar comes from {self.worst_place()}"
+        floors, wide = self.floors(), self.unmet()
+        if not wide or not all(floors.get(q, 0.0) > self.tol for q in wide):
+            return ""
+        top = max(wide, key=floors.__getitem__)
+        return (
+            f"no mesh makes bars of {few(wide)} as narrow: the {self.model.title} is sure "
+            "of a quantity to a share of what features change of it, here to "
+            f"{100 * floors[top]:.2g} % of {top} at best"
+        )
+
+
+def refine(refinement: Refinement, solver: Solver, progress: Progress, label: str) -> None:
+    """Solve finer and finer meshes until every error bar is within the tolerance, or no finer mesh
+    would help, or there is none; `progress` gets a sentence on every mesh that begins with `label`.
+    """
+
+    def announce(unknowns: int, mb: float) -> None:
+        if unknowns >= HEAVY:
+            progress(f"{label}: {cost_text(unknowns, mb)}")
+
+    wanted, tol, bounded = refinement.wanted, refinement.tol, refinement.model.bounded
+    for options in _meshes(refinement):
+        start = time.perf_counter()
+        asked = set(solver.asked())
+        only: tuple[Quantity, ...] = ()
+        if len(asked) < len(wanted):
+            only = tuple(q for q in wanted if q in asked)
+        setting = mesh_words(options) + (f", for {few(only)}" if only else "")
+        progress(f"{label}: {setting}")
+        with listening(announce):
+            solved = solver.solve(options)
+        if solved is None:
+            continue
+        refinement.add(solved, options, asked)
+        bar = solver.judge()
+        refinement.steps.append(
+            Step(
+                refinement.model.name,
+                setting,
+                valid=True,
+                bar=bar,
+                unknowns=solved.unknowns,
+                seconds=time.perf_counter() - start,
+                only=only,
+                options=refinement.options,
+            )
+        )
+        if (bounded or len(refinement.levels) == 2) and not refinement.existing():
+            refinement.end("nothing that was asked for exists in this scene")
+            return
+        if bar is None:
+            continue
+        if bar <= tol:
+            refinement.end("")
+            return
+        if reason := refinement.in_vain():
+            refinement.end(reason)
+            return
+    refinement.end(refinement.no_further_mesh())
+
+
+def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
+    """Yield the options of all meshes, coarse to fine; those of a harmonic solid follow the score of
+    the mesh before.
+    """
+    plan, most = refinement.plan, refinement.most
+    if plan.fixed:
+        yield from plan.levels
+        return
+    if not refinement.model.bounded:
+        yield from plan.levels[:most]
+        return
+    yield refinement.mesh.options()
+    for _ in range((most or MOST_MESHES) - 1):
+        last = refinement.last
+        assert last is not None and last.score is not None
+        refinement.mesh = refined(
+            refinement.scene, last.body, refinement.mesh, last.score, refinement.tol
+        )
+        last.body.cache.clear()  # its factor need not be held beside the next one
+        yield refinement.mesh.options()
+
+
+def mesh_words(options: Mapping[str, Any]) -> str:
+    """Return the options of a mesh in a few words."""
+    out = []
+    for name, word in SETTINGS.items():
+        if name == "layers" and "cuts" in options:
+            continue
+        if name == "cuts" and name in options:
+            cuts, lines = sum(c for *_, c in options[name]), len(options.get("across", ()))
+            if cuts:
+                out.append(f"{cuts} cut{'s' if cuts > 1 else ''} at corners")
+            if lines:
+                out.append(f"{lines} line{'s' if lines > 1 else ''}")
+        elif name in options:
+            out.append(f"{word} {options[name]}")
+    if "coarser" in options:
+        back = options["coarser"]
+        out.append(f"mesh file {back} before the last" if back else "the last mesh file")
+    return ", ".join(out)
+
+
+def few(names: Sequence[str]) -> str:
+    """Return some names, or how many there are."""
+    return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
+
+
+def _place_of_most(scene: Scene, body: Body, score: np.ndarray) -> str:
+    """Return the place of the largest score by cells of a harmonic body, in words."""
+    flat = body.geometry.meridian  # type: ignore[union-attr]
+    r, y = flat.points[:, flat.cells[:, int(score.argmax())]].mean(axis=1)
+    places = singular_places(scene)
+    nearest = min(places, key=lambda p: np.hypot(p.y - y, p.r - r), default=None)
+    if nearest is None or np.hypot(nearest.y - y, nearest.r - r) > nearest.reach:
+        return f"cells at y = {1e3 * y:.4g} mm, r = {1e3 * r:.4g} mm"
+    return f"the {nearest.what} at y = {1e3 * nearest.y:.4g} mm, r = {1e3 * nearest.r:.4g} mm"

@@ -1,4 +1,4 @@
-"""Error bars of the finest mesh of a list, by the rule that its meshes allow."""
+"""Error bars of the finest mesh of a list, by the rule that the meshes allow."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 #: exponent at the end of a rigid seat, a clamp on a smooth surface (Williams 1952, clamped-free at
 #: 180 degrees)
 RIGID_EDGE = 0.5
-#: model that tells what features change, on its usual mesh: shares are taken of it
+#: model by which changes by features are computed, on the usual mesh
 PLAIN = "harmonic"
 
 
@@ -41,22 +41,12 @@ def sequence_bars(
     around: Values | None = None,
     shape: float = 0.0,
 ) -> dict[Quantity, ErrorBar]:
-    """Error bars of the finest of some meshes, as :func:`~solidgear.judge.bars.step_bars` makes them.
+    """Compute error bars of the finest of some meshes by :func:`~solidgear.judge.bars.step_bars`;
+    empty for a single level, for meshes that are not ever finer, and for layered hexahedra beside a
+    fillet or a chamfer, where no layers lead to the corners.
 
-    Parameters
-    ----------
-    scene : Scene
-        Tied as the levels are.
-    plan : Sequence
-        That the meshes are of.
-    sizes : sequence of sequence of float
-        Of the cells of every level, m, as :func:`~solidgear.judge.bars.sizes_of` gives them.
-
-    Returns
-    -------
-    dict of Quantity to ErrorBar
-        Empty of a single level, of meshes that are not ever finer, and of layered hexahedra beside a
-        fillet or a chamfer, where no layers lead to the corners.
+    The scene is tied as the levels are, which are of the plan; `sizes` are those of the cells of
+    every level, m (:func:`~solidgear.judge.bars.sizes_of`).
     """
     if len(levels) < 2 or scene.outline.corners and plan.turned is not None:
         return {}
@@ -72,41 +62,47 @@ def sequence_bars(
 
 
 def sharpest(scene: Scene) -> float:
-    """Exponent of displacement at the sharpest corner: of shoulders, features and rigid seats."""
-    held = any(s.attachment == "rigid" for s in scene.stations)
+    """Return the exponent of displacement at the sharpest corner: of shoulders, features and rigid
+    seats.
+    """
+    rigid_seat = any(s.attachment == "rigid" for s in scene.stations)
     notched = any(f.notched for f in scene.features)
-    return min(sharpest_corner(scene)[1], RIGID_EDGE if held else 1.0, SHOULDER if notched else 1.0)
+    return min(
+        sharpest_corner(scene)[1], RIGID_EDGE if rigid_seat else 1.0, SHOULDER if notched else 1.0
+    )
 
 
 def feature_effect(scene: Scene, safety: Safety, values: Values) -> dict[Quantity, float]:
-    """Changes by features of the quantities that a model has shares of, relative and positive; empty where
-    it has none.
+    """Compute the changes by features of the quantities that a model has shares of, relative and
+    positive; empty where it has none.
 
-    A bending frequency is held against the nearest one of the plain part: features may change their
-    order and their names.
+    A bending frequency is compared with the nearest one of the plain part: features may change
+    their order and their names.
     """
     if not safety.share:
         return {}
     pairs = {point for q in values for point in q.pair or ()}
-    both = tuple(port.name for port in scene.ports if port.name in pairs)
-    plain, bending = _plain(scene.plain, both)
+    names = tuple(port.name for port in scene.ports if port.name in pairs)
+    plain, bending = _plain(scene.plain, names)
     out = {}
     for name in values:
-        bends = name.is_frequency and ModeName(name).family == BENDING
-        known = bending if bends else [plain[name]] if name in plain else []
-        if known:
-            out[name] = float(min(abs(values[name] - v) for v in known) / size(values, name))
+        plain_values = [plain[name]] if name in plain else []
+        if name.is_frequency and ModeName(name).family == BENDING:
+            plain_values = bending
+        if plain_values:
+            nearest = min(abs(values[name] - v) for v in plain_values)
+            out[name] = float(nearest / size(values, name))
     return out
 
 
 @lru_cache(maxsize=8)
 def _plain(plain: Scene, points: tuple[str, ...]) -> tuple[Values, list[float]]:
-    """Quantities of a plain part, those between some points included, and all bending frequencies;
-    every finer mesh asks for them.
+    """Solve a plain part for all quantities, those between some points included, and all bending
+    frequencies; every finer mesh needs them.
     """
-    found = solve(plain, PLAIN, **HARMONIC)
+    answer = solve(plain, PLAIN, **HARMONIC)
     bending = [
-        m.frequency_hz for m in found.modes.modes if m.family == BENDING and m.frequency_hz > 0
+        m.frequency_hz for m in answer.modes.modes if m.family == BENDING and m.frequency_hz > 0
     ]
-    coupled = condense(found.body, plain, points) if points else None
-    return found.quantities | replace(found.statics, coupled=coupled).values(), bending
+    coupled = condense(answer.body, plain, points) if points else None
+    return answer.quantities | replace(answer.statics, coupled=coupled).values(), bending

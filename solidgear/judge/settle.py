@@ -1,15 +1,15 @@
 """The cheapest body that answers a whole question within a tolerance.
 
-:func:`solidgear.judge.answer.answer` gives single numbers and builds no more than they need.
-Here the body itself is wanted, with all families of motion: for the 6x6 at the lumped point, for a
-list of modes, or for a sweep over its bearings.
+:func:`solidgear.judge.answer.answer` gives single numbers and builds no more than they need. Here
+the body itself is wanted, with all families of motion: for the 6x6 at the lumped point, for a list
+of modes, or for a sweep over its bearings.
 
 The error of a compliance matrix of displacement elements is positive semidefinite, and so is that
 of a stiffness matrix, from the other side: no entry errs by more than the geometric mean of its two
-diagonal entries' errors.  Error bars of all six diagonal entries therefore hold all of the matrix.
-:data:`~solidgear.quantity.QUANTITIES` names one bending plane and axial motion; where
-bearings differ between planes, the other one may rest on the mesh far more than the first, so it is
-measured as well, and torsion with it (:data:`~solidgear.quantity.ACROSS`).
+diagonal entries' errors. Error bars of all six diagonal entries therefore hold all of the matrix.
+:data:`~solidgear.quantity.QUANTITIES` names one bending plane and axial motion; where bearings
+differ between planes, the other one may rest on the mesh far more than the first, so it is measured
+as well, and torsion with it (:data:`~solidgear.quantity.ACROSS`).
 """
 
 from __future__ import annotations
@@ -18,20 +18,17 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from solidgear.body import Body, as_supports
 from solidgear.bounds.refining import Meshed
 from solidgear.errors import SolidgearError
-from solidgear.judge.answer import climbed, usable
+from solidgear.judge.answer import read_tolerance, solve_cheapest
 from solidgear.judge.bounded import mode_bars
-from solidgear.judge.climb import Climb
 from solidgear.judge.coarser_mesh import coarser_bars, no_bar, static_bars
-from solidgear.judge.quantities import at_points, between, in_order
-from solidgear.judge.question import Question, mesh_words
-from solidgear.judge.refinement import FINER_FILE, NO_FINER, Progress
-from solidgear.judge.solving import Numbers
+from solidgear.judge.quantities import at_points, between
+from solidgear.judge.question import FamilySolver, build_families
+from solidgear.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
 from solidgear.judge.steps import Step
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
@@ -44,7 +41,7 @@ from solidgear.solve.modes import ModeSet, modes
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: what may be asked of a body, and the kinds of quantities by which it is judged
+#: questions to a body, and the kinds of quantities by which it is judged
 QUESTIONS: dict[str, tuple[str, ...]] = {
     "stiffness": (COMPLIANCE, STIFFNESS),
     "modes": (FREQUENCY,),
@@ -56,7 +53,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class Settled:
-    """A body, and how sure it is of what was asked."""
+    """A body on the cheapest mesh that answers a question, with error bars."""
 
     scene: str
     tolerance: float
@@ -66,12 +63,12 @@ class Settled:
     #: relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
     #: nothing is known.
     bars: dict[Quantity, float]
-    steps: tuple[Step, ...]  #: what was passed over and tried
+    steps: tuple[Step, ...]  #: models and meshes that were passed over and tried
     #: whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
     #: exactly zero, and no bar to meet.
     reached: bool
     missing: tuple[Quantity, ...]  #: those that do not exist for this scene
-    judged_on: int = 1  #: bearing sets that the bars were taken over
+    judged_on: int = 1  #: number of bearing variants that the error bars are maximal over
     point: str = ""  #: the main lumped point
     mesh: Meshed | None = None  #: of a harmonic solid
 
@@ -82,11 +79,11 @@ class Settled:
 
     @property
     def largest(self) -> tuple[Quantity, float] | None:
-        """The quantity with the largest bar, and the bar; None where nothing is judged."""
+        """Quantity with the largest error bar, and the bar; None where nothing is judged."""
         return widest(self.bars)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data, without the body."""
+        """Return plain data, without the body."""
         return {
             "rung": self.rung,
             "setting": self.setting,
@@ -99,7 +96,7 @@ class Settled:
 
 
 def widest(bars: Mapping[Quantity, float]) -> tuple[Quantity, float] | None:
-    """The quantity with the largest bar, and the bar; None without any.
+    """Return the quantity with the largest error bar, and the bar; None without any.
 
     Twins of the two planes have equal bars but for rounding: the first listed is named.
     """
@@ -119,8 +116,8 @@ def settle(
     before: Settled | None = None,
     progress: Progress = lambda _: None,
 ) -> Settled:
-    """The cheapest body whose error bars of all that is asked are within a tolerance; after the last mesh
-    that could be solved, where none is.
+    """Solve the cheapest body whose error bars of all numbers asked for are within a tolerance;
+    after the last mesh that could be solved, where none is.
 
     Parameters
     ----------
@@ -130,10 +127,10 @@ def settle(
         Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
         of every family, or both.
     points : sequence of str
-        Further lumped points at which the same is asked, and between which.
+        Further lumped points at which, and between which, the same is asked.
     before : Settled, optional
-        What the same shaft was settled on with other bearings in the same seats: a harmonic solid is
-        judged on that body first, with what was already worked out for it.
+        Result for the same shaft with other bearings in the same seats: a harmonic solid is judged
+        on that body first, with the data that are kept with it.
 
     Raises
     ------
@@ -141,7 +138,7 @@ def settle(
         For a tolerance that is none or that arithmetic does not allow, or a scene that no model can
         answer.
     """
-    tol = usable(scene.ask.tolerance if tol is None else tol)
+    tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
     if without_axis(scene):
         if ask != "modes" and scene.port.patch is None:
             raise SolidgearError(
@@ -151,59 +148,74 @@ def settle(
         return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
-        both = {scene.port.name, *points}
-        crossed = between(wanted, [port.name for port in scene.ports if port.name in both])
+        names = {scene.port.name, *points}
+        crossed = between(wanted, [port.name for port in scene.ports if port.name in names])
         wanted = (*at_points(wanted, points), *crossed)
-    climb, steps = climbed(scene, tol, wanted, partial(Whole, before=before), progress)
-    assert climb.body is not None  # a model without a single mesh is passed over
-    bars = climb.bars()
+
+    def solver_of(refinement: Refinement) -> FamilySolver:
+        if before is None or before.rung != refinement.model.name:
+            return FamilySolver(refinement)
+        if before.mesh is not None:
+            refinement.mesh = before.mesh
+
+        def build_body(options: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+            if dict(options) == before.options:
+                return before.body
+            return build_families(scene, refinement.model, options, families)
+
+        return FamilySolver(refinement, build_body)
+
+    solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True)
+    refinement = solver.refinement
+    assert refinement.body is not None  # a model without a single mesh is passed over
+    bars = refinement.bars()
     judged = bool(bars) or ask == "stiffness"
     return Settled(
-        scene.name,
-        tol,
-        climb.model.name,
-        climb.options,
-        climb.body,
-        bars,
-        tuple(steps),
-        judged and all(bar <= tol for bar in bars.values()),
-        tuple(q for q in wanted if q not in bars),
+        scene=scene.name,
+        tolerance=tol,
+        rung=refinement.model.name,
+        options=refinement.options,
+        body=refinement.body,
+        bars=bars,
+        steps=tuple(steps),
+        reached=judged and all(bar <= tol for bar in bars.values()),
+        missing=tuple(q for q in wanted if q not in bars),
         point=scene.port.name,
-        mesh=climb.mesh if climb.model.bounded else None,
+        mesh=refinement.mesh if refinement.model.bounded else None,
     )
 
 
 def bars_of_modes(
-    scene: Scene, body: Body, found: ModeSet, settled: Settled | None
+    scene: Scene, body: Body, mode_set: ModeSet, settled: Settled | None
 ) -> dict[str, float]:
-    """Relative bars of frequencies by the names of their modes: of a harmonic solid of all, of
-    others of those that were judged, and none of a mesh that was set, which may be as large as one
-    likes.
+    """Return relative error bars of frequencies by the names of their modes: of a harmonic solid of
+    all, of others of those that were judged, and none of a mesh that was set, which may be as large
+    as one likes.
     """
     if settled is None:
         return {}
     if without_axis(scene):
-        return coarser_bars(scene, body, found, settled.options)
+        return coarser_bars(scene, body, mode_set, settled.options)
     bars: dict[str, float] = {}
     if LADDER[body.fidelity].bounded:
-        bars = mode_bars(scene, body, as_supports(scene), found)
-    # what the mesh was chosen by keeps the bar it was chosen with
-    asked = [name for name in map(Quantity, found.names) if name in settled.bars]
-    return bars | {name: settled.bars[name] for name in asked}
+        bars = mode_bars(scene, body, as_supports(scene), mode_set)
+    # frequencies that the mesh was chosen by keep the bar it was chosen with
+    judged = [name for name in map(Quantity, mode_set.names) if name in settled.bars]
+    return bars | {name: settled.bars[name] for name in judged}
 
 
 #: the only model that holds a body without an axis
 MODEL = "solid"
-#: refinements of the nested meshes of a block, each of which tells the next one's bar
+#: refinements of the nested meshes of a block, each of which gives the error bar of the next
 NESTED = (0.5, 1.0, 2.0, 4.0)
 
 
 def _settled_body(
     scene: Scene, tol: float, ask: str, points: tuple[str, ...], progress: Progress
 ) -> Settled:
-    """A body without an axis on the first of its meshes whose bars of the lowest modes, and of what
-    is static at some points, are within a tolerance: of a block on nested ones, else on the last one
-    of its files.
+    """Settle a body without an axis on the first mesh whose error bars of the lowest modes, and of
+    statics at some points, are within a tolerance: of a block on nested meshes, else on the last
+    mesh file.
     """
     steps: list[Step] = []
     assert scene.body is not None  # that is without an axis
@@ -218,100 +230,56 @@ def _settled_body(
         except (NoRoom, MemoryError) as error:
             if not steps:
                 raise
-            why = f"the next mesh could not be solved: {error or 'not enough memory'}"
-            steps[-1] = replace(steps[-1], why=why, chosen=True)
+            reason = f"the next mesh could not be solved: {error or 'not enough memory'}"
+            steps[-1] = replace(steps[-1], why=reason, chosen=True)
             break
         options = level
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol
-        done = reached or mesh is meshes[-1]
-        why = ""
-        if done and not reached:
-            why = NO_FINER if block else FINER_FILE if bars else no_bar(scene, body, options)
-        spent = time.perf_counter() - start
+        chosen = reached or mesh is meshes[-1]
+        reason = ""
+        if chosen and not reached:
+            if block:
+                reason = NO_FINER
+            else:
+                reason = FINER_FILE if bars else no_bar(scene, body, options)
         steps.append(
             Step(
                 MODEL,
                 mesh_words(options),
-                True,
-                why,
-                largest,
-                body.size,
-                spent,
-                chosen=done,
+                valid=True,
+                why=reason,
+                bar=largest,
+                unknowns=body.size,
+                seconds=time.perf_counter() - start,
+                chosen=chosen,
                 options=options,
             )
         )
-        if done:
+        if chosen:
             break
-    point = scene.port.name
     return Settled(
-        scene.name, tol, MODEL, options, body, bars, tuple(steps), reached, (), point=point
+        scene=scene.name,
+        tolerance=tol,
+        rung=MODEL,
+        options=options,
+        body=body,
+        bars=bars,
+        steps=tuple(steps),
+        reached=reached,
+        missing=(),
+        point=scene.port.name,
     )
 
 
 def _judged_body(
     scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
 ) -> tuple[Body, dict[Quantity, float]]:
-    """The body on one mesh, and the bars of what is asked."""
+    """Build the body on one mesh, and return the error bars of the numbers asked for."""
     body = build(scene, MODEL, **options)
     bars = static_bars(scene, body, points, options) if ask != "modes" else {}
     if ask != "stiffness":
-        found = modes(body, scene, scene.ask.modes)
-        told = coarser_bars(scene, body, found, options)
-        bars |= {Quantity(name): bar for name, bar in told.items()}
+        listed = modes(body, scene, scene.ask.modes)
+        mode_bars_by_name = coarser_bars(scene, body, listed, options)
+        bars |= {Quantity(name): bar for name, bar in mode_bars_by_name.items()}
     return body, bars
-
-
-class Whole(Climb):
-    """A climb on which every mesh carries all families, judged in all six directions.
-
-    Parameters
-    ----------
-    before : Settled, optional
-        Of the same shaft, on whose mesh and body it begins.
-    """
-
-    #: the body is given, with its own couplings
-    middles = False
-
-    def __init__(self, *args: Any, before: Settled | None = None):
-        super().__init__(*args)
-        self.before = before if before and before.rung == self.model.name else None
-        if self.before and self.before.mesh is not None:
-            self.mesh = self.before.mesh
-
-    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
-        if self.before and dict(level) == self.before.options:
-            return self.before.body
-        return super()._body(level, families)
-
-    def bars(self) -> dict[Quantity, float]:
-        """Relative bars, those of the other plane and of torsion included."""
-        names = [q for q in in_order(self.levels[-1].quantities) if q in self._wanted_here()]
-        return {q: self.bar(q) for q in names}
-
-    def _wanted_here(self) -> set[Quantity]:
-        """Quantities asked for, and all static ones that come with them."""
-        static = {q.kind for q in self.wanted} - {FREQUENCY}
-        every = (q for level in self.levels for q in level.quantities)
-        return set(self.wanted) | {q for q in every if q.kind in static and not q.repeats}
-
-    def _known(self) -> list[Quantity]:
-        known = super()._known()
-        return [*known, *sorted(self._wanted_here() - set(self.wanted))]
-
-    def _open(self) -> list[Quantity]:
-        # the body is wanted, and one number that no mesh makes sure enough is enough to refuse it
-        floors, open_ = self.floors(), super()._open()
-        return [q for q in open_ if floors.get(q, 0.0) > self.tol] or open_
-
-    def needed(self, body: Body) -> None:
-        return None
-
-    def _questions(self) -> list[Question]:
-        return [(None, self.wanted)]
-
-    def _judged_names(self, found: Numbers, names: tuple[Quantity, ...]) -> list[Quantity]:
-        static = {q.kind for q in names} - {FREQUENCY}
-        return [q for q in found.quantities if q in names or q.kind in static and not q.repeats]

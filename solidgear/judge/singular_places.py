@@ -28,18 +28,14 @@ class Place:
     #: y, r: m
     y: float
     r: float
-    #: how far it rules the displacements around it, m: the wall there, or the radius of a solid
+    #: distance to which it rules the displacements, m: the wall there, or the radius of a solid
     #: shaft; for the end of a seat the width of the seat, if that is less
     reach: float
 
 
 def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) -> tuple[Place, ...]:
-    """All of a scene, those that are listed first naming a point that several share.
-
-    Parameters
-    ----------
-    attachments : tuple of str, optional
-        How every station is tied; by default as the scene says.
+    """Return the singular places of a scene, with all stations tied by `attachments` or as the
+    scene says; where several share a point, the first listed names it.
 
     Examples
     --------
@@ -48,39 +44,41 @@ def singular_places(scene: Scene, attachments: tuple[str, ...] | None = None) ->
     >>> [(p.what, round(1e3 * p.y), round(1e3 * p.r)) for p in places[:2]]
     [('shoulder', 120, 25), ('shoulder', 280, 30)]
     """
-    found: list[Place] = []
+    places: list[Place] = []
     for edge in scene.outline.edges:
-        what = _corner(edge)
-        if what:
+        kind = _corner(edge)
+        if kind:
             a, b = scene.segments[edge.joint - 1 : edge.joint + 1]
-            found.append(Place(what, edge.y, edge.r, min(corner_length(a), corner_length(b))))
+            places.append(Place(kind, edge.y, edge.r, min(corner_length(a), corner_length(b))))
     for corner in (c for c in scene.outline.corners if c.root):
         r, y = corner.middle
-        found.append(Place(f"{corner.kind} {corner.name}", y, r, corner.axial + corner.radial))
+        places.append(Place(f"{corner.kind} {corner.name}", y, r, corner.axial + corner.radial))
     for a, b in zip(scene.segments, scene.segments[1:]):
         if a.material != b.material:
             reach = min(corner_length(a), corner_length(b))
-            found += _around("change of material", a.y1, min(a.outer1, b.outer0), a, b, reach)
+            places += _wall_places("change of material", a.y1, min(a.outer1, b.outer0), a, b, reach)
     for station in scene.stations:
         ties = [tie for _, tie in attached_stations([station], attachments)]
         if "section" in ties:
-            here = _segment(scene, station.y)
-            r = here.radius_at(station.y)[1]
-            what = f"section plane of {station.name}"
-            found += _around(what, station.y, r, here, here, corner_length(here))
+            segment = _segment(scene, station.y)
+            r = segment.radius_at(station.y)[1]
+            kind = f"section plane of {station.name}"
+            places += _wall_places(kind, station.y, r, segment, segment, corner_length(segment))
         if {"average", "rigid"} & set(ties):
             # also where its surface ends: the shear that the seat carries meets a face that is free
             # of it, and rotations go with the logarithm of the distance
             for y in (station.lo, station.hi):
-                here = _segment(scene, y, inside=station.y)
-                what = f"seat end of {station.name}"
-                reach = min(corner_length(here), station.hi - station.lo)
-                found.append(Place(what, y, here.radius_at(y)[1], reach))
-    return _distinct(found, 1e-9 * scene.length)
+                segment = _segment(scene, y, inside=station.y)
+                kind = f"seat end of {station.name}"
+                reach = min(corner_length(segment), station.hi - station.lo)
+                places.append(Place(kind, y, segment.radius_at(y)[1], reach))
+    return _distinct(places, 1e-9 * scene.length)
 
 
 def _corner(edge: Edge) -> str:
-    """A re-entrant corner in words: a step, or a surface that turns; empty where there is none."""
+    """Return a re-entrant corner in words: a step, or a surface that turns; empty where there is
+    none.
+    """
     outer = edge.surface == "outer"
     if edge.root:
         return ""
@@ -91,25 +89,29 @@ def _corner(edge: Edge) -> str:
     return ""
 
 
-def _around(what: str, y: float, r: float, a: Segment, b: Segment, reach: float) -> list[Place]:
-    """Ends of a line across the wall: on the outer surface, and on the bore where there is one."""
-    out = [Place(what, y, r, reach)]
+def _wall_places(
+    kind: str, y: float, r: float, a: Segment, b: Segment, reach: float
+) -> list[Place]:
+    """Return the ends of a line across the wall: on the outer surface, and on the bore where there
+    is one.
+    """
+    out = [Place(kind, y, r, reach)]
     bore = max(a.radius_at(y)[0], b.radius_at(y)[0])
     if bore > 0:
-        out.append(Place(f"{what} in the bore", y, bore, reach))
+        out.append(Place(f"{kind} in the bore", y, bore, reach))
     return out
 
 
 def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:
-    """The segment at a place; of two that meet there, the one towards `inside`."""
+    """Return the segment at a place; of two that meet there, the one towards `inside`."""
     toward = y if inside is None else y + 1e-6 * (inside - y)
     return next((s for s in scene.segments if toward <= s.y1), scene.segments[-1])
 
 
-def _distinct(found: list[Place], tolerance: float) -> tuple[Place, ...]:
-    """One of several that share a point: the first."""
+def _distinct(places: list[Place], tolerance: float) -> tuple[Place, ...]:
+    """Return the first of all places that share a point."""
     out: list[Place] = []
-    for place in found:
+    for place in places:
         if all(np.hypot(place.y - p.y, place.r - p.r) > tolerance for p in out):
             out.append(place)
     return tuple(out)

@@ -1,8 +1,8 @@
 """One model of one scene, solved with the ties of the scene and like for like, with the error bars
 of a solid.
 
-The *ties of the scene* are what its bearings and its port say.  *Like for like* means mean motions
-of cross-sections at every station: what a beam knows of a solid.
+The *ties of the scene* are those of bearings and port. *Like for like* means mean motions of
+cross-sections at every station, as a beam sees a solid.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from solidgear.solve.modes import ModeSet
 
 @dataclass
 class Solution:
-    """One model of one scene, solved with its evidence."""
+    """One model of one scene, solved, with the evidence."""
 
-    model: str  #: its name
+    model: str  #: name in the ladder
     ties: dict[str, Answer]  #: ``as scene`` and ``section``, as far as they could be solved
     meter: Meter
     #: the same keys; empty for a model without an error bar of its own
     error_bars: dict[str, dict[Quantity, ErrorBar]] = field(default_factory=dict)
-    #: with the ties of the scene, (ne,) shares of its bar by cells of a meridian; of a model whose
-    #: bars are computed
+    #: with the ties of the scene, (ne,) shares of the error bar by cells of a meridian; of a model
+    #: whose bars are computed
     scores: dict[Quantity, np.ndarray] = field(default_factory=dict)
     #: the scene with each attachment everywhere: ``average``, ``rigid`` (bearing seats only),
     #: ``section``
     variants: dict[str, Answer] = field(default_factory=dict)
     levels: list[LevelRecord] = field(default_factory=list)  #: coarse to fine
-    failed: dict[str, str] = field(default_factory=dict)  #: what was left out, and why
+    failed: dict[str, str] = field(default_factory=dict)  #: part left out -> reason
     options: dict[str, Any] = field(default_factory=dict)
 
     @property
@@ -65,8 +65,8 @@ class Solution:
         return self.ties[SCENE].quantities
 
     def worst_bar(self, names: Iterable[Quantity] = JUDGED) -> float | None:
-        """Largest error bar over some quantities, tied as in the scene; None where there is
-        none.
+        """Return the largest error bar over some quantities, tied as in the scene; None where there
+        is none.
         """
-        own = self.error_bars.get(SCENE, {})
-        return max((own[n].width for n in names if n in own), default=None)
+        error_bars = self.error_bars.get(SCENE, {})
+        return max((error_bars[n].width for n in names if n in error_bars), default=None)

@@ -1,4 +1,4 @@
-"""Answer of one model about one scene: build, condense, modes, measure."""
+"""Solution of one model of one scene: build, condense, find modes, measure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ENOUGH = 10
 
 @dataclass(frozen=True)
 class Numbers:
-    """Numbers of an answer, without the body behind it."""
+    """Numbers of a solution, without the body behind it."""
 
     #: the compared numbers; see :mod:`solidgear.judge.quantities`
     quantities: dict[Quantity, float]
@@ -37,72 +37,80 @@ class Numbers:
 
 @dataclass(frozen=True)
 class Statics:
-    """Statics of a body on its bearings."""
+    """Compliances and stiffnesses of a body on bearings."""
 
     main: Condensed  #: at the main lumped point
     further: Mapping[str, Condensed] = field(default_factory=dict)  #: at further ones, by name
     coupled: Coupled | None = None  #: of several points together
 
     @classmethod
-    def at(
+    def at_points(
         cls,
         body: Body,
         supports: Holding,
         points: Sequence[str],
         attachments: Sequence[str | None] | str | None = None,
     ) -> Statics:
-        """Statics at some points, the main one first, and between all of them."""
+        """Condense a body to some points, the main one first, and to all of them together."""
         if attachments is None or isinstance(attachments, str):
             attachments = [attachments] * len(points)
         kinds = tuple(attachments)
-        main, *others = (condense(body, supports, *one) for one in zip(points, kinds))
-        coupled = condense(body, supports, tuple(points), kinds) if others else None
-        return cls(main, dict(zip(points[1:], others)), coupled)
+        main, *further = (
+            condense(body, supports, point, kind) for point, kind in zip(points, kinds)
+        )
+        coupled = condense(body, supports, tuple(points), kinds) if further else None
+        return cls(main, dict(zip(points[1:], further)), coupled)
 
     @classmethod
-    def of(cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]) -> Statics:
-        """Statics that some quantities need: the main point, further ones, and pairs of points."""
+    def for_quantities(
+        cls, scene: Scene, body: Body, supports: Supports, names: Sequence[Quantity]
+    ) -> Statics:
+        """Condense a body to the points that some quantities need: the main one, further ones, and
+        pairs of points.
+        """
         main = condense(body, supports, scene.port.name)
         points = dict.fromkeys(q.points[0] for q in names if len(q.points) == 1)
         further = {point: condense(body, supports, point) for point in points}
         pairs = {point for q in names for point in q.pair or ()}
-        both = tuple(port.name for port in scene.ports if port.name in pairs)
-        return cls(main, further, condense(body, supports, both) if pairs else None)
+        ports = tuple(port.name for port in scene.ports if port.name in pairs)
+        return cls(main, further, condense(body, supports, ports) if pairs else None)
 
-    def again(self, body: Body, supports: Supports) -> Statics:
-        """The same of another body."""
+    def repeated(self, body: Body, supports: Supports) -> Statics:
+        """Condense another body to the same points."""
         coupled = self.coupled and condense(
             body, supports, self.coupled.ports, self.coupled.attachments
         )
         return Statics(
             condense(body, supports, self.main.port, self.main.attachment),
             {
-                name: condense(body, supports, name, one.attachment)
-                for name, one in self.further.items()
+                name: condense(body, supports, name, condensed.attachment)
+                for name, condensed in self.further.items()
             },
             coupled,
         )
 
-    def values(self, found: ModeSet | None = None) -> dict[Quantity, float]:
-        """All numbers, those of the other plane and between points included, and those of modes."""
-        both = self.further, self.coupled
-        return measure(self.main, found, *both) | measure(None, None, *both, ACROSS)
+    def values(self, modes: ModeSet | None = None) -> dict[Quantity, float]:
+        """Return all static numbers, those of the other plane and between points included, and
+        those of modes.
+        """
+        values = measure(self.main, modes, self.further, self.coupled)
+        return values | measure(None, None, self.further, self.coupled, ACROSS)
 
 
-def numbers(statics: Statics | None, found: ModeSet | None) -> Numbers:
-    """All numbers of statics and modes, either of which may not have been solved."""
-    values = measure(None, found) if statics is None else statics.values(found)
-    return Numbers(values, _left(statics, found, values))
+def numbers(statics: Statics | None, modes: ModeSet | None) -> Numbers:
+    """Return all numbers of statics and modes, either of which may not have been solved."""
+    values = measure(None, modes) if statics is None else statics.values(modes)
+    return Numbers(values, _solver_errors(statics, modes, values))
 
 
-def _left(
-    statics: Statics | None, found: ModeSet | None, values: Iterable[Quantity]
+def _solver_errors(
+    statics: Statics | None, modes: ModeSet | None, values: Iterable[Quantity]
 ) -> dict[Quantity, float]:
-    """Relative error that the solver may have left in every quantity."""
+    """Return the relative error that the solver may have left in every quantity."""
     solver = {}
     for name in dict.fromkeys((*QUANTITIES, *values)):
         if name.is_frequency:
-            mode = found.named(name) if found is not None else None
+            mode = modes.named(name) if modes is not None else None
             if mode is not None:
                 solver[name] = mode.left
         elif statics is not None:
@@ -115,7 +123,7 @@ def _left(
 
 @dataclass
 class Answer:
-    """A body on its bearings, tied in one way."""
+    """A body on bearings, tied in one way, with statics and modes."""
 
     body: Body
     statics: Statics  #: at all lumped points, and between them where there are several
@@ -125,19 +133,19 @@ class Answer:
     supports: Supports | None = None  #: that hold it
 
     @classmethod
-    def of(cls, body: Body, supports: Supports, statics: Statics, modes: ModeSet) -> Answer:
-        """With the numbers of its statics and modes."""
+    def measured(cls, body: Body, supports: Supports, statics: Statics, modes: ModeSet) -> Answer:
+        """Measure the numbers of some statics and modes."""
         values = measure(statics.main, modes, statics.further, statics.coupled)
         return cls(body, statics, modes, values, supports)
 
     @property
     def numbers(self) -> Numbers:
-        """Its numbers and what the solver may have left in them; they outlive the body."""
-        left = _left(self.statics, self.modes, self.quantities)
-        return Numbers(self.quantities, left)
+        """Numbers, and the solver's relative error in them; they outlive the body."""
+        solver = _solver_errors(self.statics, self.modes, self.quantities)
+        return Numbers(self.quantities, solver)
 
 
-def searched(
+def search_modes(
     body: Body,
     supports: Supports,
     n: int,
@@ -146,59 +154,48 @@ def searched(
     spare: bool = False,
     **options: Any,
 ) -> ModeSet:
-    """Modes that hold all that are asked for, however high they lie.
+    """Find modes of a body on supports, wider and wider until the modes named in `wanted` are among
+    them, and with `spare` one more of the same motion above each; options of
+    :func:`solidgear.solve.modes.modes`.
 
-    Parameters
-    ----------
-    n : int
-        Elastic shapes of the list; what is found above stands beyond its end.
-    wanted : iterable of str
-        Names of modes.
-    spare : bool
-        Whether one more of the same motion is wanted above each.
-    **options
-        Of :func:`solidgear.solve.modes.modes`.
-
-    Returns
-    -------
-    ModeSet
-        Without those that are not among the lowest `MOST_SHAPES` shapes.
+    The list has `n` elastic shapes, modes found above stand beyond the end of it, and those that
+    are not among the lowest `MOST_SHAPES` shapes are missing.
     """
     wanted = list(wanted)
-    found = modes(body, supports, n, **options)
-    count, wider = n, found
-    while count < MOST_SHAPES and not all(_held(wider, name, spare) for name in wanted):
+    listed = modes(body, supports, n, **options)
+    count, wider = n, listed
+    while count < MOST_SHAPES and not all(_contains(wider, name, spare) for name in wanted):
         count *= 2
         wider = modes(body, supports, count, ovalising=False)
-    if wider is not found:
-        found = widened(found, wider)
-    asked = [m for name in wanted if (m := _widest(found).named(name)) is not None]
-    names = [m.name for m in (*found.modes, *found.beyond)]
-    more = tuple(m for m in asked if m.name not in names)
-    above = tuple(m for m in found.above if m not in more)
-    return replace(found, beyond=(*found.beyond, *more), above=above)
+    if wider is not listed:
+        listed = extended_modes(listed, wider)
+    found_modes = [m for name in wanted if (m := _with_all_solved(listed).named(name)) is not None]
+    names = [m.name for m in (*listed.modes, *listed.beyond)]
+    more = tuple(m for m in found_modes if m.name not in names)
+    above = tuple(m for m in listed.above if m not in more)
+    return replace(listed, beyond=(*listed.beyond, *more), above=above)
 
 
-def widened(found: ModeSet, wider: ModeSet) -> ModeSet:
-    """A list of modes with all that a longer one of the same body has beyond it."""
-    known = {m.name for m in (*found.modes, *found.beyond)}
-    beyond = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in known)
-    above = tuple(m for m in wider.above if m.name not in known)
-    return replace(found, beyond=(*found.beyond, *beyond), above=above)
+def extended_modes(listed: ModeSet, wider: ModeSet) -> ModeSet:
+    """Return a list of modes, extended by all further modes of a longer list of the same body."""
+    names = {m.name for m in (*listed.modes, *listed.beyond)}
+    further_modes = tuple(m for m in (*wider.modes, *wider.beyond) if m.name not in names)
+    above = tuple(m for m in wider.above if m.name not in names)
+    return replace(listed, beyond=(*listed.beyond, *further_modes), above=above)
 
 
-def _widest(found: ModeSet) -> ModeSet:
-    """With all that was solved."""
-    return replace(found, beyond=(*found.beyond, *found.above), above=())
+def _with_all_solved(listed: ModeSet) -> ModeSet:
+    """Return a list of modes with every solved mode beyond the end of the list."""
+    return replace(listed, beyond=(*listed.beyond, *listed.above), above=())
 
 
-def _held(found: ModeSet, name: str, spare: bool) -> bool:
-    """Tell whether a mode is there, and one above it of the same motion."""
-    every = _widest(found)
-    mode = every.named(name)
+def _contains(listed: ModeSet, name: str, spare: bool) -> bool:
+    """Return whether a mode was found, and with `spare` one above it of the same motion."""
+    solved = _with_all_solved(listed)
+    mode = solved.named(name)
     if mode is None or not spare:
         return mode is not None
-    above = (m for m in (*every.modes, *every.beyond) if m.frequency_hz > mode.frequency_hz)
+    above = (m for m in (*solved.modes, *solved.beyond) if m.frequency_hz > mode.frequency_hz)
     return any(m.family == mode.family for m in above)
 
 
@@ -210,15 +207,16 @@ def solve(
     max_frequency: float | None = None,
     **options: Any,
 ) -> Answer:
-    """Build one model of a scene and solve it as the scene is tied: so many elastic shapes, twins counted
-    twice, up to a frequency in Hz. Errors are those of the builder, the statics and the modes.
+    """Build one model of a scene and solve it as the scene is tied: `n` elastic shapes, twins
+    counted twice, up to a frequency in Hz. Errors are those of the builder, the statics and the
+    modes.
     """
     body = build(scene, model, **options)
     ports = [port.name for port in scene.ports]
-    return answered(body, as_supports(scene), ports, n, max_frequency=max_frequency)
+    return answer_of_body(body, as_supports(scene), ports, n, max_frequency=max_frequency)
 
 
-def answered(
+def answer_of_body(
     body: Body,
     supports: Supports,
     ports: Sequence[str],
@@ -228,15 +226,9 @@ def answered(
     ovalising: bool = False,
     **options: Any,
 ) -> Answer:
-    """Answer of a body on some supports.
-
-    Parameters
-    ----------
-    ports : sequence of str
-        Names of the lumped points, the main one first.
-    n, wanted, **options
-        As for :func:`searched`.
+    """Solve statics and modes of a body on some supports, at lumped points, the main one first;
+    modes as for :func:`search_modes`.
     """
-    statics = Statics.at(body, supports, ports)
-    found = searched(body, supports, n, wanted, ovalising=ovalising, **options)
-    return Answer.of(body, supports, statics, found)
+    statics = Statics.at_points(body, supports, ports)
+    listed = search_modes(body, supports, n, wanted, ovalising=ovalising, **options)
+    return Answer.measured(body, supports, statics, listed)

@@ -1,4 +1,4 @@
-"""Numbers with their bars, and the meshes that were tried on the way to them."""
+"""Numbers with error bars, and the meshes that were tried on the way to them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from solidgear.quantity import Quantity
 
-#: bars that the solution on one mesh tells by itself
+#: error bars computed from the solution on one mesh
 METHOD = "local problems"
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
@@ -18,7 +18,7 @@ ABOVE, BELOW, BOTH = "above", "below", "both"
 
 @dataclass(frozen=True)
 class Value:
-    """A number with its bar."""
+    """A number with an error bar."""
 
     quantity: Quantity
     value: float  #: SI
@@ -27,7 +27,7 @@ class Value:
     #: nothing is known.
     bar: float
     meshes: int  #: solutions that the value and its bar rest on
-    size: float  #: what the bar is relative to, SI
+    size: float  #: scale that the bar is relative to, SI
     #: where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
     #: it may be either
     side: str = BOTH
@@ -35,30 +35,30 @@ class Value:
 
     @property
     def how(self) -> str:
-        """Origin of the bar, in words."""
+        """Origin of the error bar, in words."""
         if self.method == METHOD:
             return METHOD
         return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
 
     @property
     def zero(self) -> bool:
-        """Tell whether it is nothing but rounding, as a coupling that symmetry forbids."""
+        """Whether the number is only rounding, as a coupling that symmetry forbids."""
         return abs(self.value) <= ROUNDING * self.size
 
 
 @dataclass(frozen=True)
 class Step:
-    """Something that was tried, or passed over."""
+    """A model or mesh that was tried, or passed over."""
 
     rung: str
     setting: str  #: of the mesh, in words
     valid: bool  #: whether it could be an answer at all
-    why: str = ""  #: why it was passed over, or what came after it
+    why: str = ""  #: reason for passing it over, or for stopping after it
     #: the largest over the quantities asked for; None where there is none yet
     bar: float | None = None
     unknowns: int | None = None
     seconds: float = 0.0
     chosen: bool = False
-    #: what was still open, where a mesh was not solved for everything asked for
+    #: quantities still open, where a mesh was not solved for everything asked for
     only: tuple[Quantity, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)  #: of the mesh, for its builder

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from solidgear.scene import Scene
 
-#: as bearings and port say; and mean motions of cross-sections everywhere, what a beam knows
+#: as bearings and port say; and mean motions of cross-sections everywhere, as in a beam
 SCENE, SECTION = "as scene", "section"
 
 
 def attached(scene: Scene, attachment: str) -> Scene:
-    """The scene with one attachment everywhere. Where that is rigid it is of bearing seats alone: a
+    """Return the scene with one attachment everywhere. A rigid one is set at bearing seats alone: a
     lumped point that was rigid becomes averaged, any other keeps its attachment.
 
     Only seats are compared in the literature on RBE2 against RBE3; a rigid head would be another

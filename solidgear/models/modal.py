@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from solidgear.body import Body
 from solidgear.solve.modes import modes
-from solidgear.solve.statics import of_twin, port_fields
+from solidgear.solve.statics import port_fields, twin_matrix
 
 #: stations by whose motions modes of two meshes are recognised
 STATIONS = 25
@@ -120,7 +120,7 @@ def _static(body: Body) -> tuple[np.ndarray, np.ndarray, dict[int, np.ndarray]]:
         if block.mirror is not None:
             rows = np.ix_(body.rows(block), body.rows(block))
             for matrix in (static, inert):
-                matrix[rows] = of_twin(body, block, matrix)
+                matrix[rows] = twin_matrix(body, block, matrix)
             original, signs = block.mirror
             fields[index] = fields[original] * np.tile(signs, len(body.ports))
     return (static + static.T) / 2, (inert + inert.T) / 2, fields

@@ -1,4 +1,4 @@
-"""Choice of the back end that factors a matrix, with its reason."""
+"""Choice of the back end that factors a matrix, with the reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from solidgear.solve.backends.matrix import FactorError
 # SuperLU's indices overflow on the factors of planar meshes of very high order ("not enough
 # memory").
 LARGE_PLANAR = 30_000_000  # entries
-# Solids below this size: what PARDISO gains is what it costs to load MKL (0.2 s, once). A corrected
+# Solids below this size: PARDISO gains no more than loading MKL costs (0.2 s, once). A corrected
 # solid of four halves of 4,000 to 5,000 unknowns gains 0.25 s.
 SMALL = 3_500
 # Fastest first, for solids. Factorisation against PARDISO at 41 000 (HEX20) and 93 000 unknowns
@@ -31,9 +31,9 @@ def choice(
     planar: bool = False,
     factoring: Factoring = USUAL,
 ) -> tuple[str, str]:
-    """The back end that will factor a matrix of so many rows and entries, and the reason; otherwise
-    parameters as for :func:`solidgear.solve.factor.factorise`. FactorError if the one asked for is
-    unknown, not there, or cannot do it.
+    """Choose the back end that will factor a matrix of so many rows and entries, and return the
+    reason; otherwise parameters as for :func:`solidgear.solve.factor.factorise`. FactorError if the
+    one asked for is unknown, not there, or cannot do it.
 
     Examples
     --------
@@ -46,9 +46,9 @@ def choice(
             raise FactorError(
                 f"unknown back end {backend!r}; use " + ", ".join(map(repr, BACKENDS))
             )
-        why = missing(backend)
-        if why:
-            raise FactorError(f"back end {backend} was asked for but {why}")
+        reason = missing(backend)
+        if reason:
+            raise FactorError(f"back end {backend} was asked for but {reason}")
         if backend not in _able(factoring):
             raise FactorError(
                 f"back end {backend} was asked for but makes no factor in {factoring.words}; "
@@ -63,30 +63,30 @@ def choice(
         return "superlu", f"{unknowns} unknowns are not above {SMALL}"
     absent = []
     for name in (name for name in FASTEST if name in _able(factoring)):
-        why = missing(name)
-        if not why:
+        reason = missing(name)
+        if not reason:
             break
-        absent.append(f"{INSTALL[name]} ({why})")
+        absent.append(f"{INSTALL[name]} ({reason})")
     return name, f"{unknowns} unknowns are above {SMALL}" + "".join(
         f"; faster: {way}" for way in absent
     )
 
 
 def _able(factoring: Factoring) -> tuple[str, ...]:
-    """Back ends that make such a factor, fastest first."""
-    single, files = factoring.precision == "single", factoring.out_of_core
+    """Return back ends that make such a factor, fastest first."""
+    single, out_of_core = factoring.precision == "single", factoring.out_of_core
     return tuple(
         name
         for name in FASTEST
-        if (not single or name in SINGLE) and (not files or name in OUT_OF_CORE)
+        if (not single or name in SINGLE) and (not out_of_core or name in OUT_OF_CORE)
     )
 
 
 def _out_of_core(factoring: Factoring) -> tuple[str, str]:
     absent = []
     for name in _able(factoring):
-        why = missing(name)
-        if not why:
+        reason = missing(name)
+        if not reason:
             return name, "it keeps its factor in files"
-        absent.append(f"{why}: {INSTALL[name]}")
+        absent.append(f"{reason}: {INSTALL[name]}")
     raise FactorError(f"no back end here makes a factor in {factoring.words}: {'; '.join(absent)}")

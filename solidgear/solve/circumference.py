@@ -1,7 +1,7 @@
-"""Motion of a shape of a 3D mesh around the axis: its parts in cos nt and sin nt, whatever the
+"""Motion of a shape of a 3D mesh around the axis: the parts in cos nt and sin nt, whatever the
 mesh.
 
-Nodes are gathered in bins of like (r, y), divided until each has just enough of them to separate
+Nodes are gathered in bins of equal (r, y), divided until each has just enough of them to separate
 the waves, so that the profile over the meridian may be anything; in each bin the radial, tangential
 and axial motions are fitted by waves around.
 """
@@ -18,7 +18,7 @@ from solidgear.body.surface import mesh_unknowns
 
 MOST = 16  # waves around that are separated, where the mesh has the nodes for them
 BINS = 512
-#: least eigenvalue of the Gram matrix of waves that nodes tell apart: 0.4 to 0.9 where they do, 0.04
+#: least eigenvalue of the Gram matrix of waves that nodes separate: 0.4 to 0.9 where they do, 0.04
 #: and less where they do not
 APART = 0.2
 #: of the largest singular value of a bin, below which the nodes of one near the axis, which happen to
@@ -27,23 +27,12 @@ SCATTERED = 0.1
 
 
 class Circumference:
-    """Fit of nodal displacements by waves around the axis.
-
-    Parameters
-    ----------
-    nodes : (3, n) ndarray
-        m.
-    weight : (n,) ndarray
-        Share of each node in the mass, or in the volume.
-
-    Attributes
-    ----------
-    waves : int
-        Highest number of waves that the nodes can resolve.
+    """Fit of displacements of nodes (3, n), m, by waves around the axis; the weight (n,) is the
+    share of each node in the mass, or in the volume.
 
     Examples
     --------
-    A ring that moves sideways is one wave around, whatever its radius:
+    A ring that moves sideways is one wave around, whatever the radius:
 
     >>> t = np.linspace(0.0, 2 * np.pi, 16, endpoint=False)
     >>> ring = np.array([0.1 * np.sin(t), 0 * t, 0.1 * np.cos(t)])
@@ -58,28 +47,30 @@ class Circumference:
         self._r, self._angle = np.hypot(x, z), np.arctan2(x, z)
         # on the axis there is no radial direction
         outside = np.flatnonzero(self._r > 1e-6 * self._r.max())
-        self.waves = self._told_apart(outside, weight)
+        #: highest number of waves that the nodes can resolve
+        self.waves = self._resolved_waves(outside, weight)
         least = 2 * (2 * self.waves + 1)
         self._bins = []
-        for own in _divided(
+        for members in _divided(
             np.column_stack([self._r, y]),
             outside,
             max(least, len(outside) // BINS),
         ):
-            basis = _basis(self._angle[own], self.waves) * np.sqrt(weight[own])[:, None]
+            basis = _basis(self._angle[members], self.waves) * np.sqrt(weight[members])[:, None]
             self._bins.append(
                 (
-                    own,
-                    np.linalg.pinv(basis, rcond=SCATTERED) * np.sqrt(weight[own]),
+                    members,
+                    np.linalg.pinv(basis, rcond=SCATTERED) * np.sqrt(weight[members]),
                     basis.T @ basis,
                 )
             )
 
-    def _told_apart(self, own: np.ndarray, weight: np.ndarray) -> int:
-        """The most waves that nodes tell apart, wherever they lie: of waves that look alike on them,
-        as eleven and thirteen do on 24 places around, the Gram matrix has an eigenvalue near zero.
+    def _resolved_waves(self, members: np.ndarray, weight: np.ndarray) -> int:
+        """Return the most waves that nodes can separate, wherever they lie: of waves that are equal
+        on them, as eleven and thirteen are on 24 places around, the Gram matrix has an eigenvalue
+        near zero.
         """
-        basis = _basis(self._angle[own], MOST) * np.sqrt(weight[own])[:, None]
+        basis = _basis(self._angle[members], MOST) * np.sqrt(weight[members])[:, None]
         basis /= np.linalg.norm(basis, axis=0)
         gram = basis.T @ basis
         for n in range(MOST, 2, -1):
@@ -89,10 +80,10 @@ class Circumference:
         return 2
 
     def __call__(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Amplitudes of one shape (n, 3), displacements x, y, z: the profile (waves + 1, bins * 3), of which
-        row n is the radial, tangential and axial motion ``Re(c exp(i n t))``, bin by bin, weighted so that
-        the squared norm of a row is the share of the mass that moves so; and those squared norms by
-        direction of motion (waves + 1, 3).
+        """Return amplitudes of one shape (n, 3), displacements x, y, z: the profile (waves + 1,
+        bins * 3), of which row n is the radial, tangential and axial motion ``Re(c exp(i n t))``,
+        bin by bin, weighted so that the squared norm of a row is the share of the mass that moves
+        so; and those squared norms by direction of motion (waves + 1, 3).
         """
         c, s = np.cos(self._angle), np.sin(self._angle)
         # z = r cos t, x = r sin t
@@ -101,47 +92,48 @@ class Circumference:
         )
         n = self.waves
         out = np.zeros((n + 1, len(self._bins), 3), complex)
-        for k, (own, fit, gram) in enumerate(self._bins):
-            found = fit @ motion[own]
+        for k, (members, fit, gram) in enumerate(self._bins):
+            amplitudes = fit @ motion[members]
             size = np.sqrt(np.diag(gram))[:, None]
-            out[0, k] = found[0] * size[0]
+            out[0, k] = amplitudes[0] * size[0]
             # cosine and sine weigh alike but for the placing of nodes
             weight = np.sqrt((size[1 : n + 1] ** 2 + size[n + 1 :] ** 2) / 2)
-            out[1:, k] = (found[1 : n + 1] - 1j * found[n + 1 :]) * weight
+            out[1:, k] = (amplitudes[1 : n + 1] - 1j * amplitudes[n + 1 :]) * weight
         return out.reshape(n + 1, -1), (np.abs(out) ** 2).sum(axis=1)
 
 
 def _basis(angle: np.ndarray, waves: int) -> np.ndarray:
-    """(n, 2 waves + 1) constants, cosines and sines of angles."""
-    at = angle[:, None] * np.arange(1, waves + 1)
-    return np.hstack([np.ones((len(angle), 1)), np.cos(at), np.sin(at)])
+    """Return (n, 2 waves + 1) constants, cosines and sines of angles."""
+    angles = angle[:, None] * np.arange(1, waves + 1)
+    return np.hstack([np.ones((len(angle), 1)), np.cos(angles), np.sin(angles)])
 
 
-def _divided(key, own, least: int):
-    """Halve a set of points across its longer side until less than two times ``least`` are left;
+def _divided(key, members, least: int):
+    """Halve a set of points across the longer side until less than two times ``least`` are left;
     equal keys stay together.
     """
-    stack, done = [own], []
+    stack, bins = [members], []
     while stack:
-        own = stack.pop()
-        for axis in np.argsort(-np.ptp(key[own], axis=0)):
-            values = key[own, axis]
+        members = stack.pop()
+        for axis in np.argsort(-np.ptp(key[members], axis=0)):
+            values = key[members, axis]
             low = values <= np.median(values) + 1e-9 * np.ptp(values)
             if low.sum() >= least and (~low).sum() >= least:
-                stack += [own[low], own[~low]]
+                stack += [members[low], members[~low]]
                 break
         else:
-            done.append(own)
-    return done
+            bins.append(members)
+    return bins
 
 
 #: shape by blocks -> (nodes, 3) displacements
 Displacements = Callable[[Mapping[int, np.ndarray]], np.ndarray]
 
 
-def of_body(body: Body) -> tuple[Circumference, Displacements] | None:
-    """The fit for a 3D body that knows its mesh, whole or as the half beside a mirror plane, kept
-    with the body, and a function from shapes to displacements of its nodes; None for any other body.
+def circumference_of(body: Body) -> tuple[Circumference, Displacements] | None:
+    """Return the fit for a 3D body that knows its mesh, whole or as the half beside a mirror plane,
+    kept with the body, and a function from shapes to displacements of the nodes; None for any other
+    body.
     """
     geometry: Any = body.geometry
     motion = getattr(geometry, "motion", None)
@@ -152,8 +144,8 @@ def of_body(body: Body) -> tuple[Circumference, Displacements] | None:
 
 
 def _volumes(geometry) -> np.ndarray:
-    """(n,) share of each node in the volume, roughly: corner 0 of tetrahedra and hexahedra alike is
-    joined to corners 1, 2 and 3.
+    """Return the (n,) share of each node in the volume, roughly: corner 0 of tetrahedra and
+    hexahedra is joined to corners 1, 2 and 3.
     """
     corners = geometry.nodes[:, geometry.dofs[:4]]
     a, b, c = (corners[:, k] - corners[:, 0] for k in (1, 2, 3))

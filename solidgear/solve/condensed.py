@@ -36,15 +36,15 @@ class Condensed(Displayed):
     def oblique(self) -> np.ndarray:
         """(6, k) free motions that no single component describes, largest entry 1."""
         largest = np.abs(self.free).max(axis=0, initial=0.0)
-        others = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
-        rest = self.free[:, others > 1e-9 * largest]
-        size = np.abs(rest)
+        largest_elsewhere = np.abs(self.free[~self._alone()]).max(axis=0, initial=0.0)
+        motions = self.free[:, largest_elsewhere > 1e-9 * largest]
+        size = np.abs(motions)
         # the first of several that are as large: a solver gives any sign
         first = np.argmax(size > (1 - 1e-9) * size.max(axis=0, initial=0.0), axis=0)
-        return rest / rest[first, np.arange(rest.shape[1])]
+        return motions / motions[first, np.arange(motions.shape[1])]
 
     def _alone(self) -> np.ndarray:
-        """Mask of the components whose unit motion nothing resists."""
+        """Return the mask of the components whose unit motion nothing resists."""
         return np.array([not np.any(row) for row in self.stiffness])
 
 
@@ -84,7 +84,7 @@ class Coupled(Displayed):
     evidence: dict = field(default_factory=dict)
 
     def between(self, one: str, other: str, kind: str = "compliance") -> np.ndarray:
-        """Block of two ports.
+        """Return the block of two ports.
 
         Parameters
         ----------

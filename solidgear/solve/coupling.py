@@ -8,8 +8,9 @@ from solidgear.body import Body, Supports, component_rows
 
 
 def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndarray, float]:
-    """Stiffness (6 m, 6 m) of the bearings with negligible couplings between blocks removed, and the
-    bound that allows it, zero where nothing was removed; a larger bound than the tolerance is none.
+    """Return the stiffness (6 m, 6 m) of the bearings with negligible couplings between blocks
+    removed, and the bound that allows it, zero where nothing was removed; couplings whose bound
+    exceeds the tolerance stay.
 
     If ``|v' D v| <= eps v' K0 v`` for the removed part D and all v, then by Rayleigh's quotient no
     eigenvalue of the supported body moves by more than eps, relative.
@@ -18,29 +19,31 @@ def decoupled(body: Body, supports: Supports, tolerance: float) -> tuple[np.ndar
     if not supports.ports or len(body.blocks) == 1:
         return k, 0.0
     owner = {c: b for b, block in enumerate(body.blocks) for c in block.components}
-    of = np.array([owner.get(c, -1) for c in list(range(6)) * len(supports.ports)])
-    same = of[:, None] == of[None, :]
-    kept, removed = np.where(same, k, 0.0), np.where(same, 0.0, k)
+    block_of = np.array([owner.get(c, -1) for c in list(range(6)) * len(supports.ports)])
+    same_block = block_of[:, None] == block_of[None, :]
+    retained, removed = np.where(same_block, k, 0.0), np.where(same_block, 0.0, k)
     if not removed.any():
         return k, 0.0
     d = np.sqrt(np.abs(np.diag(k)))
     if removed[d == 0].any():
         return k, 0.0
-    on = d > 0
-    scale = np.outer(d[on], d[on])
-    w, v = np.linalg.eigh(kept[np.ix_(on, on)] / scale)
+    resisted = d > 0
+    scale = np.outer(d[resisted], d[resisted])
+    w, v = np.linalg.eigh(retained[np.ix_(resisted, resisted)] / scale)
     if w[0] < 1e-9:
         return k, 0.0
     half = v / np.sqrt(w)
     bound = float(
-        np.abs(np.linalg.eigvalsh(half.T @ (removed[np.ix_(on, on)] / scale) @ half)).max()
+        np.abs(
+            np.linalg.eigvalsh(half.T @ (removed[np.ix_(resisted, resisted)] / scale) @ half)
+        ).max()
     )
-    return (kept, bound) if bound <= tolerance else (k, 0.0)
+    return (retained, bound) if bound <= tolerance else (k, 0.0)
 
 
 def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]]:
-    """Indices of blocks that bearings couple, by their stiffness from :func:`decoupled`, or masses
-    on ports.
+    """Return indices of blocks that bearings couple, by their stiffness from :func:`decoupled`, or
+    masses on ports.
     """
     count = len(body.blocks)
     label = list(range(count))
@@ -48,8 +51,8 @@ def groups(body: Body, supports: Supports, spring: np.ndarray) -> list[list[int]
     for i in range(count):
         for j in range(i + 1, count):
             a, b = rows[i], rows[j]
-            at = np.ix_(a, b)
-            if a.size and b.size and (np.any(spring[at]) or np.any(supports.masses[at])):
+            entries = np.ix_(a, b)
+            if a.size and b.size and (np.any(spring[entries]) or np.any(supports.masses[entries])):
                 label = [label[i] if x == label[j] else x for x in label]
     out: dict[int, list[int]] = {}
     for i in range(count):

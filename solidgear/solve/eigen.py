@@ -1,7 +1,7 @@
 """Lowest eigenpairs of a supported group of blocks: block Lanczos, ARPACK or dense, all checked the
 same way.
 
-Everything stands on one factor of the free body; bearings come in by the Woodbury identity
+All rest on one factor of the free body; bearings come in by the Woodbury identity
 (:class:`~solidgear.solve.supported.Supported`).
 """
 
@@ -43,8 +43,7 @@ class Raw:
 
     value: float  #: rad^2/s^2
     vectors: dict[int, np.ndarray]  #: block index -> (n,) vector
-    #: residual, error: see :class:`solidgear.solve.refine.Refined`; both relative, of the
-    #: eigenvalue
+    #: relative, of the eigenvalue; see :class:`solidgear.solve.refine.Refined`
     residual: float
     error: float
 
@@ -53,9 +52,8 @@ class Raw:
 class Solved:
     """Eigenpairs of one group."""
 
-    #: elastic, free: elastic modes in ascending order, and rigid motions that nothing resists
-    elastic: list[Raw]
-    free: list[Raw]
+    elastic: list[Raw]  #: in ascending order
+    free: list[Raw]  #: rigid motions that nothing resists
     orthogonality: float  #: largest entry of ``U' M U - I``
     #: ``lanczos``, ``krylov-schur (SLEPc)``, ``arpack`` or ``dense``, with the reason where one
     #: stands in for another
@@ -64,8 +62,8 @@ class Solved:
 
 
 def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
-    """Elastic and rigid modes of blocks that belong together: so many, and two more, so that a pair at
-    the end of the list is seen whole.
+    """Find elastic and rigid modes of blocks that belong together: `n`, and two more, so that a
+    pair at the end of the list is not cut.
 
     Without a method the quickest for the size and the back end is taken. If block Lanczos does not
     converge ARPACK takes over; SolidgearError if that does not, or if the method is unknown.
@@ -82,29 +80,29 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
         if method is None:
             # One vector sees one of two equal modes only through rounding: it is for a group that
             # holds no twins.
-            alone = len(supported.blocks) == 1 and _without_twins(supported.blocks[0])
+            without_twins = len(supported.blocks) == 1 and _without_twins(supported.blocks[0])
             one_by_one = supported.backend in SINGLE or total <= CACHED
-            method = "arpack" if alone and one_by_one else "lanczos"
+            method = "arpack" if without_twins and one_by_one else "lanczos"
         if total <= DENSE or wanted >= total - 2 - WIDTH:
             method = "dense"
         theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](
             supported, wanted
         )
     value = 1.0 / theta - supported.shift
-    found = refine(supported, u, value, n)
-    u = found.vectors
+    refined = refine(supported, u, value, n)
+    u = refined.vectors
     orthogonality = float(np.abs(u.T @ supported.mass(u) - np.eye(len(theta))).max(initial=0.0))
     elastic = [
-        Raw(float(v), supported.split(u[:, i]), float(found.residual[i]), float(found.error[i]))
-        for i, v in enumerate(found.value)
+        Raw(float(v), supported.split(u[:, i]), float(refined.residual[i]), float(refined.error[i]))
+        for i, v in enumerate(refined.value)
     ]
     free = [Raw(0.0, supported.split(rigid[:, i]), 0.0, 0.0) for i in range(rigid.shape[1])]
-    return Solved(elastic, free, orthogonality, method, found.steps)
+    return Solved(elastic, free, orthogonality, method, refined.steps)
 
 
 def _without_twins(block: Block) -> bool:
-    """True where symmetry puts no two equal modes into a block: twins of a half of a part lie in
-    the other half.
+    """Return whether symmetry puts no two equal modes into a block: twins of a half of a part lie
+    in the other half.
     """
     moves = set(block.components)
     return block.planar or bool(moves) and not {0, 2} <= moves
@@ -131,9 +129,9 @@ def _dense(supported: Supported, wanted: int):
 
 
 def _lanczos(supported: Supported, wanted: int):
-    found = supported.on_ranks(wanted, TOLERANCE)
-    if found is not None and len(found[0]) == wanted:
-        return 1 / found[0], found[1], "krylov-schur (SLEPc)"
+    pairs = supported.on_ranks(wanted, TOLERANCE)
+    if pairs is not None and len(pairs[0]) == wanted:
+        return 1 / pairs[0], pairs[1], "krylov-schur (SLEPc)"
     return _block_lanczos(supported, wanted)
 
 
@@ -144,7 +142,7 @@ def _block_lanczos(supported: Supported, wanted: int):
     start = supported.inverse(
         supported.mass(np.random.default_rng(0).standard_normal((supported.size, WIDTH)))
     )
-    found = block_lanczos(
+    pairs = block_lanczos(
         supported.inverse,
         supported.mass,
         start,
@@ -152,13 +150,13 @@ def _block_lanczos(supported: Supported, wanted: int):
         tolerance=TOLERANCE,
         most=max(160, 12 * wanted),
     )
-    if found.converged and len(found.theta) == wanted:
-        return found.theta, found.vectors, "lanczos"
+    if pairs.converged and len(pairs.theta) == wanted:
+        return pairs.theta, pairs.vectors, "lanczos"
     log.warning(
-        "block Lanczos did not converge within %d vectors; ARPACK takes over", found.columns
+        "block Lanczos did not converge within %d vectors; ARPACK takes over", pairs.columns
     )
     theta, u, _ = _arpack(supported, wanted)
-    return theta, u, f"arpack (block Lanczos did not converge within {found.columns} vectors)"
+    return theta, u, f"arpack (block Lanczos did not converge within {pairs.columns} vectors)"
 
 
 def _arpack(supported: Supported, wanted: int):
@@ -190,21 +188,20 @@ def _arpack(supported: Supported, wanted: int):
 
 @dataclass(frozen=True)
 class Count:
-    """Number of eigenvalues below a bound, from the inertia of a factor that shares nothing with
-    the eigensolver.
+    """Number of eigenvalues below a bound, from the inertia of a factor that is independent of the
+    eigensolver.
     """
 
     below: float  #: bound, rad^2/s^2
-    #: found, counted: modes the eigensolver gave below it, and modes there are
-    found: int
-    counted: int
+    computed: int  #: modes that the eigensolver gave below the bound
+    existing: int  #: modes that exist below the bound
     backend: str
     distance: float  #: of the nearest eigenvalue from the bound, relative
 
 
 def count_below(supported: Supported, solved: Solved, reach: float) -> Count | None:
-    """Sylvester's law of inertia: how many modes lie below the first gap behind the
-    highest eigenvalue that is used, rad^2/s^2.
+    """Count by Sylvester's law of inertia how many modes lie below the first gap behind the highest
+    eigenvalue that is used, rad^2/s^2.
 
     With bearings ``L L'`` kept outside the factor (Haynsworth's additivity on the bordered matrix),
     ``neg(K + L L' - mu M) = neg(K - mu M) - neg(I + L' (K - mu M)^-1 L)``. Masses ``J J'`` on ports
@@ -220,8 +217,8 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
     clear = np.flatnonzero(value[1:] > 1.001 * start)
     # A factor of K - mu M is sound only at a distance from the spectrum, so a bound inside a
     # cluster is no use.
-    at = int(clear[0]) if len(clear) else int(np.argmax(np.diff(np.log(value))))
-    below = float((start[at] if len(clear) else value[at]) ** 0.6 * value[at + 1] ** 0.4)
+    place = int(clear[0]) if len(clear) else int(np.argmax(np.diff(np.log(value))))
+    below = float((start[place] if len(clear) else value[place]) ** 0.6 * value[place + 1] ** 0.4)
     negative = 0
     springs, masses = supported.load.shape[1], supported.heavy.shape[1]
     load = np.hstack([supported.load, supported.heavy])
@@ -246,9 +243,11 @@ def count_below(supported: Supported, solved: Solved, reach: float) -> Count | N
         if load.shape[1]:
             inner = inner - part.T @ factor.solve(part)
     if load.shape[1]:
-        # rows brought to one size: what one of 1e24 N/m leaves of rounding has the sign of nothing
+        # rows brought to one size: the rounding of one of 1e24 N/m has no sign that means anything
         size = 1 / np.sqrt(np.abs(np.diag(inner)))
         inner = (inner + inner.T) / 2 * np.outer(size, size)
         negative += int((np.linalg.eigvalsh(inner) < 0).sum()) - springs
     distance = float(np.abs(value / below - 1).min())
-    return Count(below, at + 1 + len(solved.free), negative, "+".join(sorted(backends)), distance)
+    return Count(
+        below, place + 1 + len(solved.free), negative, "+".join(sorted(backends)), distance
+    )

@@ -17,7 +17,7 @@ from solidgear.machine.memory import available_mb, expect, require, tell
 from solidgear.solve.backends import BACKENDS, missing
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.choice import FORCED, USUAL, choice
-from solidgear.solve.factored import Factor, Indefinite, heard
+from solidgear.solve.factored import Factor, Indefinite, call_interruptibly
 from solidgear.solve.inertia_relief import Linear
 from solidgear.solve.schur import any_corner, bordered, definite_corner
 from solidgear.solve.single import Refining
@@ -48,22 +48,18 @@ def factorise(
     factoring: Factoring = USUAL,
     product: Linear | None = None,
 ) -> Factor:
-    """Factor a symmetric positive definite matrix.
+    """Factor a symmetric positive definite matrix, given with both triangles.
 
     Parameters
     ----------
-    matrix : (n, n) sparse
-        Both triangles given.
     backend : {None, 'pardiso', 'cholmod', 'mumps', 'superlu'}
         None chooses by size and availability; the environment variable ``SOLIDGEAR_BACKEND`` forces
         one for a whole run.
     planar : bool
         The matrix comes from a 1D or 2D mesh: fill is small and SuperLU is the fastest.
     border : int
-        Unknowns at the end that couple to very many others.  They are eliminated by hand, as a
-        dense Schur complement: left to a fill-reducing ordering they cost ten times the rest.
-    factoring : Factoring
-        Precision of the factor, and whether it is kept in files.
+        Unknowns at the end that couple to very many others. They are eliminated by hand, as a dense
+        Schur complement: left to a fill-reducing ordering they cost ten times the rest.
     product : callable, optional
         ``matrix @ u``, by which a factor in single precision is refined; by default the matrix
         itself is kept for that.
@@ -72,7 +68,7 @@ def factorise(
     ------
     FactorError
         If the matrix holds NaN, is not positive definite to the back end, or the back end is not
-        there or cannot do what is asked of the factor.
+        there or cannot meet `factoring`.
     NoRoom
         If the factor will not fit into memory.
 
@@ -105,12 +101,8 @@ def planned(
     factoring: Factoring = USUAL,
     product: Linear | None = None,
 ) -> Planned:
-    """Analyse a matrix and leave its numbers alone; parameters as for :func:`factorise`.
-
-    Raises
-    ------
-    FactorError
-        If the matrix holds NaN, or the back end is not there or cannot do what is asked.
+    """Analyse a matrix without computing a factor; parameters as for :func:`factorise`. FactorError
+    if the matrix holds NaN, or the back end is not there or cannot meet `factoring`.
 
     Examples
     --------
@@ -121,10 +113,10 @@ def planned(
     n = matrix.shape[0]
     # a shaft that rigid seats hold from end to end is nothing but border
     if 0 < border < n:
-        whole = product or matrix.__matmul__
+        full_product = product or matrix.__matmul__
 
         def inner_product(u):
-            return whole(np.pad(u, ((0, border), (0, 0))))[:-border]
+            return full_product(np.pad(u, ((0, border), (0, 0))))[:-border]
 
         inner = planned(matrix[:-border, :-border], backend, planar, 0, factoring, inner_product)
 
@@ -136,22 +128,30 @@ def planned(
     work = _analysed(name, matrix, planar, True, factoring)
 
     def make():
-        heard(n, work.factor)
-        about = (work.estimate_mb, work.nnz, factoring)
-        if factoring.precision == "double":
-            return Factor(name, reason, work.solve, *about)
-        refining = Refining(product or matrix.__matmul__, work.solve)
-        return Factor(name, reason, refining.solve, *about, refining)
+        call_interruptibly(n, work.factor)
+        solve, refining = work.solve, None
+        if factoring.precision != "double":
+            refining = Refining(product or matrix.__matmul__, work.solve)
+            solve = refining.solve
+        return Factor(
+            name,
+            reason,
+            solve,
+            estimate_mb=work.estimate_mb,
+            nnz=work.nnz,
+            factoring=factoring,
+            refining=refining,
+        )
 
     return Planned(n, name, work.estimate_mb, make)
 
 
 def factored(plans: Sequence[Planned], free: float | None = None) -> list[Factor]:
-    """Make factors that will all be held, if they fit into memory together: into the MB that were free
-    before they were analysed, which takes a part of what they need.
+    """Make factors that will all be held, if they fit into memory together: into the MB that were
+    free before the analysis, which takes a part of it.
 
     NoRoom with unknowns, the memory they need and the memory free, before a number is computed;
-    FactorError if a matrix is not positive definite to its back end.
+    FactorError if a matrix is not positive definite to the back end.
     """
     unknowns, need = sum(p.unknowns for p in plans), sum(p.estimate_mb for p in plans)
     require(need, f"{unknowns} unknowns", plans[0].backend, free)
@@ -164,30 +164,13 @@ def indefinite(
     matrix: sp.spmatrix, backend: str | None = None, planar: bool = False, border: int = 0
 ) -> Indefinite | None:
     """Factor a symmetric matrix of any sign and count its negative eigenvalues (Sylvester's law of
-    inertia).
+    inertia); parameters and errors as for :func:`factorise`.
 
     Every count is backed by the backward error of one solve with a random load: a stable
     factorisation counts exactly for a matrix within its backward error, so a count is in doubt only
-    for eigenvalues that close to zero (one load is a sample, not a bound).  A back end whose factor
-    is not sound, or whose pivots give no count, is passed over for the next.
-
-    Parameters
-    ----------
-    matrix, backend, planar, border
-        As for :func:`factorise`; CHOLMOD cannot, and if it is forced the others are tried.
-
-    Returns
-    -------
-    Indefinite or None
-        None if no back end gave a count that can be trusted; a matrix that is singular to rounding
-        is such a case.
-
-    Raises
-    ------
-    FactorError
-        If the matrix holds NaN, or the back end is not there.
-    NoRoom
-        If its factor will not fit into memory.
+    for eigenvalues that close to zero (one load is a sample, not a bound). A back end whose factor
+    is not sound, or whose pivots give no count, such as CHOLMOD, is passed over for the next; None
+    if no count can be trusted, as for a matrix that is singular to rounding.
 
     Examples
     --------
@@ -201,15 +184,15 @@ def indefinite(
         )
     chosen, reason = choice(matrix.shape[0], matrix.nnz, backend, planar)
     forced = reason == FORCED and chosen in COUNTING
-    others = () if forced else (other for other in COUNTING if other != chosen)
-    for name in (chosen, *others):
+    names = [chosen] if forced else [chosen, *(name for name in COUNTING if name != chosen)]
+    for name in names:
         if name not in COUNTING or missing(name):
             continue
         try:
             free = available_mb()
             work = _analysed(name, matrix, planar, False, USUAL)
             require(work.estimate_mb, f"{matrix.shape[0]} unknowns", name, free)
-            heard(matrix.shape[0], work.factor)
+            call_interruptibly(matrix.shape[0], work.factor)
             if work.negative is not None and _backward_error(matrix, work.solve) < SOUND:
                 return Indefinite(
                     name, reason, work.solve, work.estimate_mb, work.nnz, negative=work.negative
@@ -236,7 +219,7 @@ def _analysed(name, matrix, planar, definite, factoring):
     options = {"planar": planar} if name in ("cholmod", "superlu") else {}
     options |= {"single": True} if factoring.precision == "single" else {}
     options |= {"out_of_core": True} if factoring.out_of_core else {}
-    return heard(matrix.shape[0], BACKENDS[name], matrix, definite=definite, **options)
+    return call_interruptibly(matrix.shape[0], BACKENDS[name], matrix, definite=definite, **options)
 
 
 def _backward_error(matrix, solve):

@@ -1,4 +1,4 @@
-"""A matrix that has been factored: what solves with it, and how that came about."""
+"""A matrix that has been factored: the solver, and how the factor was made."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ class Factor:
     ranks: Ranks | None = None  #: of a factor by MUMPS in PETSc, which finds modes as well
 
     @property
-    def said(self) -> str:
-        """The back end, and what is unusual about the factor."""
+    def label(self) -> str:
+        """Name of the back end, with unusual properties of the factor."""
         unusual = [self.factoring.words] if self.factoring.words else []
         if self.refining is not None:
             unusual.append(f"{self.refining.steps} refinements in double")
         return self.backend + (f" ({', '.join(unusual)})" if unusual else "")
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solution for one (n,) or several (n, k) right-hand sides."""
-        return heard(len(rhs), self._solve, rhs)
+        """Solve for one (n,) or several (n, k) right-hand sides."""
+        return call_interruptibly(len(rhs), self._solve, rhs)
 
 
 @dataclass
@@ -53,6 +53,6 @@ class Indefinite(Factor):
     negative: int = 0  #: number of negative eigenvalues
 
 
-def heard(n, function, *arguments, **options):
-    """A call that Ctrl-C can end, if it is on enough unknowns to last."""
+def call_interruptibly(n, function, *arguments, **options):
+    """Call a function so that Ctrl-C can end it, if the unknowns are so many that it may last."""
     return call(function, *arguments, **options) if n >= LONG else function(*arguments, **options)

@@ -1,4 +1,4 @@
-"""The groups of blocks a supported body falls into, each solved as far as the modes asked for
+"""Groups of blocks that a supported body falls into, each solved as far as the modes asked for
 reach, and counted.
 
 Symmetry and bearings decide which blocks belong together. A body that can build further
@@ -31,7 +31,7 @@ DOUBT = 0.01
 
 @dataclass
 class Part:
-    """Blocks that belong together, what was asked of them and found."""
+    """Blocks that belong together, with their eigenpairs."""
 
     supported: Supported
     ask: int  #: number of modes to search for
@@ -44,34 +44,34 @@ class Part:
 
     @property
     def blocks(self) -> list[Block]:
-        """The blocks themselves."""
+        """Blocks of the group."""
         return self.supported.blocks
 
     @property
     def copies(self) -> int:
-        """Shapes that every eigenpair stands for."""
+        """Number of shapes of every eigenpair."""
         return 2 if repeats(self.blocks[0]) else 1 + len(self.twins)
 
-    def everywhere(self, found: list[Raw]) -> list[Raw]:
-        """Eigenpairs of the group, and of its twins."""
+    def with_twins(self, pairs: list[Raw]) -> list[Raw]:
+        """Return eigenpairs of the group, and of all twins of it."""
         out = []
-        for r in found:
+        for r in pairs:
             vectors = {self.first + b: v for b, v in r.vectors.items()}
             out.append(Raw(r.value, vectors, r.residual, r.error))
         for twin in self.twins:
-            for r in found:
+            for r in pairs:
                 vectors = {twin: next(iter(r.vectors.values()))}
                 out.append(Raw(r.value, vectors, r.residual, r.error))
         return out
 
     def values(self) -> list[float]:
-        """Elastic eigenvalues with every shape counted, rad^2/s^2."""
+        """Return elastic eigenvalues with every shape counted, rad^2/s^2."""
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
 
 
 @dataclass(frozen=True)
 class Uncounted:
-    """A family that was left alone."""
+    """A family that was neither solved nor counted."""
 
     n: int  #: waves around the axis
     begins_hz: float  #: the family begins above this frequency
@@ -81,10 +81,9 @@ class Uncounted:
 def solved_parts(
     body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
 ) -> list[Part]:
-    """Eigenpairs of all groups of a body's own blocks, each searched only as far as the lowest `n`
-    shapes of all reach; `spring` (6 m, 6 m) is that of
-    :func:`~solidgear.solve.coupling.decoupled`. SolidgearError as
-    :func:`~solidgear.solve.eigen.lowest`.
+    """Solve all groups of a body's own blocks, each only as far as the lowest `n` shapes of all
+    reach; `spring` (6 m, 6 m) is that of :func:`~solidgear.solve.coupling.decoupled`.
+    SolidgearError as :func:`~solidgear.solve.eigen.lowest`.
     """
     parts: list[Part] = []
     for group in groups(body, supports, spring):
@@ -100,7 +99,10 @@ def solved_parts(
         # searched too little is searched again.
         for part in parts:
             half = sum(len(block.components) for block in part.blocks) >= 3
-            part.ask = n // (3 if part.copies > 1 else 2 if half else 4) + 1
+            share = 2 if half else 4
+            if part.copies > 1:
+                share = 3
+            part.ask = n // share + 1
     waiting = parts
     while waiting:
         for part in waiting:
@@ -118,8 +120,8 @@ def solved_parts(
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
-    """Highest eigenvalue that is used, rad^2/s^2: that of the last of ``n`` shapes of solved
-    parts, or the highest allowed.
+    """Return the highest eigenvalue that is used, rad^2/s^2: that of the last of ``n`` shapes of
+    solved parts, or the highest allowed.
     """
     values = sorted(v for part in parts for v in part.values())
     return min(values[min(n, len(values)) - 1], highest) if values else 0.0
@@ -128,9 +130,9 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
 def further_parts(
     body: Body, parts: list[Part], n: int, highest: float, method: str | None
 ) -> tuple[list[Part], list[Uncounted]]:
-    """Circumferential families of two waves and more that begin among the ``n`` lowest shapes, below
-    the largest eigenvalue wanted, rad^2/s^2; and those that begin above, in ascending order of
-    waves. `parts` are the body's own, solved.
+    """Solve circumferential families of two waves and more that begin among the ``n`` lowest
+    shapes, below the largest eigenvalue wanted, rad^2/s^2; return also those that begin above, in
+    ascending order of waves. `parts` are the body's own, solved.
     """
     have = {waves_of(b) for p in parts for b in p.blocks}
     limit = reach_of(parts, n, highest)
@@ -140,36 +142,36 @@ def further_parts(
         if waves not in have:
             light[waves] = body.further.light(waves)
         waves += 1
-    left = [Uncounted(waves, body.further.bound(waves) / MARGIN, True)]
-    found: list[Part] = []
+    uncounted = [Uncounted(waves, body.further.bound(waves) / MARGIN, True)]
+    further: list[Part] = []
     for waves in sorted(light, key=light.__getitem__):
-        limit = reach_of(parts + found, n, highest)
+        limit = reach_of(parts + further, n, highest)
         if light[waves] > 1.01 * LIGHT * _hz(limit):
-            left.append(Uncounted(waves, light[waves] / LIGHT))
+            uncounted.append(Uncounted(waves, light[waves] / LIGHT))
             continue
-        alone = body.family(waves)
+        family_body = body.family(waves)
         part = Part(
-            Supported(alone, Supports((), np.zeros((0, 0))), np.zeros((0, 0)), [0]),
+            Supported(family_body, Supports((), np.zeros((0, 0))), np.zeros((0, 0)), [0]),
             max(2, n // 8),
             first=FURTHER + waves,
         )
-        known = alone.cache.get(_Solved, _Solved)
+        solved_families = family_body.cache.get(_Solved, _Solved)
         while True:
-            # no spring reaches them: what was solved of them stands for all springs
+            # no spring reaches them: one solution serves all springs
             key = part.ask, method
-            if key not in known:
-                known[key] = lowest(part.supported, part.ask, method)
-            part.solved = known[key]
+            if key not in solved_families:
+                solved_families[key] = lowest(part.supported, part.ask, method)
+            part.solved = solved_families[key]
             # Two shapes for every value: half of n is all that the list has room for.
             if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
                 break
             part.ask = min(2 * part.ask, n // 2 + 2)
-        found.append(part)
-    return found, sorted(left, key=lambda u: u.n)
+        further.append(part)
+    return further, sorted(uncounted, key=lambda u: u.n)
 
 
 class _Solved(dict[tuple[int, str | None], Solved]):
-    """Eigenpairs of a family by how many were asked for, and how."""
+    """Eigenpairs of a family by the number asked for, and by method."""
 
 
 def _hz(value: float) -> float:
@@ -177,25 +179,25 @@ def _hz(value: float) -> float:
 
 
 def complete(part: Part, reach: float, method: str | None) -> dict:
-    """Count the modes of a solved part up to the highest eigenvalue that is used, rad^2/s^2, and search
-    again with more vectors where one was missed.
+    """Count the modes of a solved part up to the highest eigenvalue that is used, rad^2/s^2, and
+    search again with more vectors where one was missed.
 
     The verdict, which the part keeps, is ``checked``, with ``below_hz``, ``modes`` and ``backend``,
     or with ``why`` not. SolidgearError if modes are still missing.
     """
     supported, n = part.supported, part.ask
-    seen = count_below(supported, part.solved, reach)
-    if seen is not None and seen.counted != seen.found:
-        missed = seen.counted - seen.found
+    count = count_below(supported, part.solved, reach)
+    if count is not None and count.existing != count.computed:
+        missed = count.existing - count.computed
         part.solved = lowest(
             supported,
             n + 4 + 2 * abs(missed),
             "arpack" if part.solved.method == "lanczos" else "lanczos",
         )
-        seen = count_below(supported, part.solved, reach)
-    if seen is not None and seen.counted != seen.found:
-        stiffest = supported.highest / seen.below
-        if EPS * stiffest > DOUBT * seen.distance:
+        count = count_below(supported, part.solved, reach)
+    if count is not None and count.existing != count.computed:
+        stiffest = supported.highest / count.below
+        if EPS * stiffest > DOUBT * count.distance:
             part.verdict = {
                 "checked": False,
                 "why": (
@@ -205,66 +207,66 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
             }
             return part.verdict
         raise SolidgearError(
-            f"modes: {seen.found} modes were found below {_hz(seen.below):.6g} Hz "
-            f"but the factor counts {seen.counted}; ask for more modes (n = {n})"
+            f"modes: {count.computed} modes were found below {_hz(count.below):.6g} Hz "
+            f"but the factor counts {count.existing}; ask for more modes (n = {n})"
         )
-    if seen is None:
+    if count is None:
         part.verdict = {"checked": False, "why": f"no inertia from {supported.backend}"}
     else:
         part.verdict = {
             "checked": True,
-            "below_hz": _hz(seen.below),
-            "modes": seen.counted,
-            "backend": seen.backend,
+            "below_hz": _hz(count.below),
+            "modes": count.existing,
+            "backend": count.backend,
         }
     return part.verdict
 
 
 def families(parts: list[Part]) -> list[tuple[str, int | None, bool]]:
-    """Family, waves around the axis (None for all), and whether it was counted, of everything that
-    was solved; the lowest number of waves last among single families.
+    """Return family, waves around the axis (None for all), and whether it was counted, of every
+    solved block; the lowest number of waves last among single families.
     """
     rows: dict[str, tuple[int | None, bool]] = {}
     for part in parts:
         for block in part.blocks:
             name = family_of(block)
-            counted = (
+            is_counted = (
                 bool(part.verdict and part.verdict["checked"]) and rows.get(name, (0, True))[1]
             )
-            rows[name] = (None if name == "all" else waves_of(block), counted)
+            rows[name] = (None if name == "all" else waves_of(block), is_counted)
     return [(name, *row) for name, row in rows.items()]
 
 
 def family_rows(
-    parts: list[Part], left: list[Uncounted], found: list[tuple[str, float, int]]
+    parts: list[Part], uncounted: list[Uncounted], modes: list[tuple[str, float, int]]
 ) -> list[dict]:
-    """Families that were solved and counted, and those that were left alone, as in the evidence of
-    :class:`~solidgear.solve.modes.ModeSet`; of every mode found its family, frequency (Hz) and
-    number of shapes.
+    """List families that were solved and counted, and those that were left alone, as in the
+    evidence of :class:`~solidgear.solve.modes.ModeSet`; of every mode found `modes` has family,
+    frequency (Hz) and number of shapes.
     """
     checked = [p.verdict for p in parts if p.verdict and p.verdict["checked"]]
     below = min((verdict["below_hz"] for verdict in checked), default=np.inf)
     rows = []
-    for family, waves, counted in families(parts):
-        mine = [
+    for family, waves, is_counted in families(parts):
+        family_modes = [
             (hz, shapes)
-            for name, hz, shapes in found
+            for name, hz, shapes in modes
             if waves is None
             or name in family.split(" and ")
             or (family, name) == ("axial", "breathing")
         ]
-        lowest = min((hz for hz, _ in mine), default=None)
+        lowest = min((hz for hz, _ in family_modes), default=None)
         rows.append(
             {
                 "family": family,
                 "n": waves,
-                "counted": counted,
-                "modes_below": sum(shapes for hz, shapes in mine if hz < below),
+                "counted": is_counted,
+                "modes_below": sum(shapes for hz, shapes in family_modes if hz < below),
                 "lowest_hz": lowest,
             }
         )
     rows.sort(key=lambda row: (row["n"] or 0, row["family"]))
-    for u in left:
+    for u in uncounted:
         rows.append(
             {
                 "family": f"ovalising n={u.n}",
@@ -278,26 +280,28 @@ def family_rows(
     return rows
 
 
-def _is_twin(body, supports, spring, group: list[int], other: list[int]) -> bool:
-    """True where a lone block mirrors another one, springs and masses included."""
+def _is_twin(body, supports, spring, group: list[int], neighbour: list[int]) -> bool:
+    """Return whether a lone block mirrors another one, springs and masses included."""
     block = body.blocks[group[0]]
-    if len(group) != 1 or block.mirror is None or other != [block.mirror[0]]:
+    if len(group) != 1 or block.mirror is None or neighbour != [block.mirror[0]]:
         return False
     index, signs = block.mirror
     m = len(supports.ports)
-    mine, theirs = (component_rows(range(m), b.components) for b in (block, body.blocks[index]))
+    rows, mirror_rows = (
+        component_rows(range(m), b.components) for b in (block, body.blocks[index])
+    )
     sign = np.tile(signs, m)
     signs = np.outer(sign, sign)
     for matrix in (spring, supports.masses):
-        a, b = matrix[np.ix_(mine, mine)], matrix[np.ix_(theirs, theirs)] * signs
+        a, b = matrix[np.ix_(rows, rows)], matrix[np.ix_(mirror_rows, mirror_rows)] * signs
         if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
             return False
     return True
 
 
-def whole_to(parts: list[Part]) -> dict[int, float]:
-    """Eigenvalues up to which the families of every block are whole, by its index, rad^2/s^2;
-    solved parts that share a family of motion with another one are as whole as both.
+def completeness_limits(parts: list[Part]) -> dict[int, float]:
+    """Return the eigenvalues up to which the families of every block are complete, by block index,
+    rad^2/s^2; parts that share a family of motion are complete up to the lower of both.
     """
     ends: dict[str, float] = {}
     for part in parts:
@@ -312,7 +316,7 @@ def whole_to(parts: list[Part]) -> dict[int, float]:
 
 
 def _motions(part: Part) -> set[str]:
-    """Families of motion that a part may show; of an ovalising block its name."""
+    """Return families of motion that a part may show; of an ovalising block the name of it."""
     moved = {c for block in part.blocks for c in block.components}
-    own = {name for name, components in FAMILIES.items() if moved & set(components)}
-    return own or {block.name for block in part.blocks}
+    families = {name for name, components in FAMILIES.items() if moved & set(components)}
+    return families or {block.name for block in part.blocks}

@@ -1,9 +1,9 @@
-"""Elastic displacements of a free body: loads balanced by its own inertia, displacements without
-their rigid part.
+"""Elastic displacements of a free body: loads balanced by inertia forces, displacements without a
+rigid part.
 
-One factor of ``A = K + sigma M`` serves. It is not K, so its solutions are corrected on K itself by
-conjugate gradients: the preconditioned operator ``A^-1 K`` has the eigenvalues ``lambda / (lambda +
-sigma)``, all near one but the few lowest, and a handful of steps settles it whatever sigma is.
+One factor of ``A = K + sigma M`` serves. It is not K, so solutions are corrected on K by conjugate
+gradients: the preconditioned operator ``A^-1 K`` has the eigenvalues ``lambda / (lambda + sigma)``,
+all near one but the few lowest, and a handful of steps settles it whatever sigma is.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ Linear = Callable[[np.ndarray], np.ndarray]
 
 
 def inertia_relief(solve: Linear, mass: Linear, rigid: np.ndarray) -> tuple[Linear, Linear]:
-    """Two functions for a free body, by ``(K + sigma M)^-1 f``, ``M u`` and its rigid motions (n, r): the
-    load less the inertia forces of the rigid acceleration it causes; and its displacements less their
-    rigid part in the mass norm.
+    """Return two functions for a free body, by ``(K + sigma M)^-1 f``, ``M u`` and the rigid
+    motions (n, r): the load less the inertia forces of the rigid acceleration it causes; and the
+    displacements less their rigid part in the mass norm.
     """
     heavy = mass(rigid)
     gram = sla.cho_factor(rigid.T @ heavy)
@@ -45,19 +45,9 @@ def elastic_fields(
     tolerance: float,
     most: int = 30,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Displacements ``K u = f`` of a free body under balanced loads.
-
-    Parameters
-    ----------
-    solve, mass, stiffness : callable
-        ``(K + sigma M)^-1 f``, ``M u`` and ``K u``.
-    rigid : (n, r) ndarray
-    load : (n, k) ndarray
-        Their resultants are balanced by inertia.
-    tolerance : float
-        Relative error of the energy at which to stop; displacements are good to its root.
-    most : int
-        Largest number of solves.
+    """Solve ``K u = f`` of a free body under (n, k) loads whose resultants are balanced by inertia,
+    by the functions ``(K + sigma M)^-1 f``, ``M u`` and ``K u``, until the relative error of the
+    energy is below `tolerance`, whose root is that of displacements, or for `most` solves.
 
     Returns
     -------
@@ -80,18 +70,18 @@ def elastic_fields(
     balanced, relieved = inertia_relief(solve, mass, rigid)
     load = balanced(load)
     u = np.zeros_like(load)
-    left, step, last = load, np.zeros_like(load), np.inf
+    residual, step, last = load, np.zeros_like(load), np.inf
     size = energy = np.zeros(load.shape[1])
     missing = 0.0
     for count in range(most):
-        z = relieved(left)
-        fresh = columns(left, z)
+        z = relieved(residual)
+        fresh = columns(residual, z)
         step = z + step * ratio(fresh, size)
         size = fresh
         pull = stiffness(step)
         along = ratio(size, columns(step, pull))
         u = u + step * along
-        left = left - pull * along
+        residual = residual - pull * along
         gain = along * size
         energy = energy + gain
         share = float(ratio(np.abs(gain), energy).max(initial=0.0))
@@ -107,7 +97,9 @@ def elastic_fields(
 def relieved_fields(
     block: Block, solve: Linear, load: np.ndarray, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """The same of a free block, by the solution with its factor."""
+    """Return balanced load, displacements and missing energy (:func:`elastic_fields`) of a free
+    block, by the solution with a factor of it.
+    """
     return elastic_fields(
         solve,
         block.mass.__matmul__,
@@ -119,10 +111,10 @@ def relieved_fields(
 
 
 def columns(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Products of columns with each other."""
+    """Return the products of columns with each other."""
     return np.einsum("ij,ij->j", a, b)
 
 
 def ratio(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """``a / b``, and zero where nothing is left to divide by."""
+    """Return ``a / b``, and zero where b is zero."""
     return np.divide(a, b, out=np.zeros_like(a), where=b > 0)

@@ -3,8 +3,8 @@
 One factorisation of A is at hand and a solve with eight right-hand sides costs little more than
 one, so eight directions are driven at a time. Twins are found together whatever their symmetry,
 because a block holds both. The basis is kept orthogonal in the mass norm in full (Golub and
-Underwood 1977; Grimes, Lewis and Simon 1994): it has some tens of columns, and what that costs is
-small against the solves.
+Underwood 1977; Grimes, Lewis and Simon 1994): it has some tens of columns, which cost little beside
+the solves.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from solidgear.solve.inertia_relief import Linear
 
 
 @dataclass(frozen=True)
-class Found:
+class Eigenpairs:
     """Eigenpairs of ``A^-1 M u = theta u``."""
 
     theta: np.ndarray  #: (k,) descending
@@ -35,23 +35,18 @@ def block_lanczos(
     tolerance: float = 1e-9,
     most: int = 400,
     seed: int = 1,
-) -> Found:
-    """Largest eigenvalues of a symmetric positive operator in the mass inner product.
+) -> Eigenpairs:
+    """Find the `wanted` largest eigenvalues of a symmetric positive operator ``A^-1 f`` in the mass
+    inner product; not converged if that takes more than `most` basis vectors.
 
     Parameters
     ----------
-    operator, mass : callable
-        ``A^-1 f`` and ``M u`` on (n, p) arrays.
     start : (n, p) ndarray
-        First block.  Shapes that are orthogonal to it (by symmetry, say) are found only through
+        First block. Shapes that are orthogonal to it (by symmetry, say) are found only through
         rounding: add random columns.
-    wanted : int
-        Number of pairs.
     tolerance : float
-        Largest ``|A^-1 M u - theta u| / theta`` in the mass norm; eigenvalues are good to its
-        square over the relative gap.
-    most : int
-        Largest number of basis vectors; beyond it the result is returned as not converged.
+        Largest ``|A^-1 M u - theta u| / theta`` in the mass norm; eigenvalues are good to the
+        square of it over the relative gap.
     seed : int
         Of the directions that replace an exhausted block.
 
@@ -61,8 +56,8 @@ def block_lanczos(
 
     >>> value = np.array([9.0, 9.0, 4.0, 1.0, 0.5])
     >>> start = np.random.default_rng(0).standard_normal((5, 2))
-    >>> found = block_lanczos(lambda f: value[:, None] * f, lambda u: u, start, wanted=3)
-    >>> np.round(found.theta, 9)
+    >>> pairs = block_lanczos(lambda f: value[:, None] * f, lambda u: u, start, wanted=3)
+    >>> np.round(pairs.theta, 9)
     array([9., 9., 4.])
     """
     n, width = start.shape
@@ -84,20 +79,20 @@ def block_lanczos(
         theta, s = np.linalg.eigh((small[:k, :k] + small[:k, :k].T) / 2)
         theta, s = theta[::-1][:wanted], s[:, ::-1][:, :wanted]
         block, loaded, coupling = _outside(ahead, column, q, mq, mass)
-        left = np.linalg.norm(coupling @ s[old:], axis=0)
-        done = k >= min(wanted, n) and bool((left <= tolerance * np.abs(theta)).all())
-        if not done and not block.shape[1] and k < n:
+        residual = np.linalg.norm(coupling @ s[old:], axis=0)
+        converged = k >= min(wanted, n) and bool((residual <= tolerance * np.abs(theta)).all())
+        if not converged and not block.shape[1] and k < n:
             # The space is invariant: all that the start block can reach is found. Go on where it
             # could not look.
             fresh = operator(generator.standard_normal((n, width)))
             block, loaded, _ = _outside(fresh, mq.T @ fresh, q, mq, mass)
-        if done or not block.shape[1] or k + block.shape[1] > most:
-            return Found(theta, q @ s, k, done)
+        if converged or not block.shape[1] or k + block.shape[1] > most:
+            return Eigenpairs(theta, q @ s, k, converged)
 
 
 def _orthonormal(x, mass, least: float = 0.0):
-    """Mass-orthonormal columns that span ``x``, their product with the mass, and the coefficients
-    of ``x`` on them.
+    """Return mass-orthonormal columns that span ``x``, their product with the mass, and the
+    coefficients of ``x`` on them.
 
     Columns shorter than ``least`` and directions that are the rounding of others are left out.
     """
@@ -113,8 +108,8 @@ def _orthonormal(x, mass, least: float = 0.0):
 
 
 def _outside(x, inside, basis, heavy, mass):
-    """Mass-orthonormal columns of what of ``x`` lies outside the basis, with the coefficients of
-    ``x`` on them.
+    """Return mass-orthonormal columns of the part of ``x`` outside the basis, their product with
+    the mass, and the coefficients of ``x`` on them.
 
     ``inside = heavy.T @ x``. Twice is enough (Parlett 1998, section 6.9), with the columns brought
     to unit length in between.

@@ -1,4 +1,4 @@
-"""Natural frequencies and mode shapes of a body on its bearings.
+"""Natural frequencies and mode shapes of a body on bearings.
 
 Symmetric shift-invert (:mod:`solidgear.solve.eigen`) about a small negative shift, with the
 bearings added to the factor of the free body by the Woodbury identity, and values from the
@@ -23,26 +23,28 @@ from solidgear.solve.coupling import decoupled
 from solidgear.solve.eigen import Raw
 from solidgear.solve.groups import (
     Part,
+    Uncounted,
     complete,
+    completeness_limits,
     family_rows,
     further_parts,
     reach_of,
     solved_parts,
-    whole_to,
 )
 from solidgear.solve.naming import Names, Projection, shares
 from solidgear.solve.shifted import SHIFT, factors
-from solidgear.solve.soundness import sound
 
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
 STATIONS = 13
+#: relative error of a frequency above which it is not reported
+WRONG = 1e-3
 
 
 @dataclass(frozen=True)
 class Mode:
-    """One natural frequency with all its shapes."""
+    """One natural frequency with all shapes."""
 
     name: ModeName  #: such as ``bending 1``, ``axial 1``, ``rigid torsion``
     family: str
@@ -67,8 +69,8 @@ class Mode:
 
     @property
     def left(self) -> float:
-        """Relative error that the solution leaves by itself: of the eigenproblem, and half of what
-        twins are apart.
+        """Relative error that the solution leaves: that of the eigenproblem, and half the split of
+        twins.
         """
         return self.error + self.split / 2
 
@@ -98,7 +100,7 @@ class ModeSet(Displayed):
     #: because ovalising ones took their places
     beyond: tuple[Mode, ...] = ()
     #: all others that were solved to know that the list is whole, as far as none of their family is
-    #: missing between: what is near to a mode of the list
+    #: missing between: neighbours of modes of the list
     above: tuple[Mode, ...] = ()
 
     @property
@@ -109,8 +111,8 @@ class ModeSet(Displayed):
     @property
     def whole(self) -> ModeSet:
         """The list with all others that were solved in it."""
-        every = sorted(self.solved, key=lambda mode: mode.frequency_hz)
-        return replace(self, modes=tuple(every), beyond=(), above=())
+        ascending = sorted(self.solved, key=lambda mode: mode.frequency_hz)
+        return replace(self, modes=tuple(ascending), beyond=(), above=())
 
     @property
     def frequency_hz(self) -> np.ndarray:
@@ -128,7 +130,7 @@ class ModeSet(Displayed):
         return tuple(m.multiplicity for m in self.modes)
 
     def named(self, name: str) -> Mode | None:
-        """The mode of that name, also among those beyond the end of the list.
+        """Return the mode of a name, also among those beyond the end of the list.
 
         Parameters
         ----------
@@ -137,9 +139,9 @@ class ModeSet(Displayed):
             2`` are the first and the second of both planes in order of frequency, as they are of a
             part without a mirror plane: which way a keyway looks does not matter.
         """
-        every = sorted((*self.modes, *self.beyond), key=lambda mode: mode.frequency_hz)
-        place = meant(name, [mode.name for mode in every])
-        return None if place is None else every[place]
+        ascending = sorted((*self.modes, *self.beyond), key=lambda mode: mode.frequency_hz)
+        place = meant(name, [mode.name for mode in ascending])
+        return None if place is None else ascending[place]
 
 
 @pinned
@@ -179,7 +181,7 @@ def modes(
         Solve the families of two waves around and more that begin below the highest mode reported,
         for a body that can build them (a harmonic solid).
     stations : int
-        Number of sections along the shaft whose motions are told of every mode.
+        Number of sections along the shaft at which motions of every mode are given.
 
     Returns
     -------
@@ -215,14 +217,12 @@ def modes(
         )
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
-    own = solved_parts(body, supports, spring, n, method)
+    own_parts = solved_parts(body, supports, spring, n, method)
     highest = np.inf if max_frequency is None else (2 * np.pi * max_frequency) ** 2
-    more, left = (
-        further_parts(body, own, n, highest, method)
-        if ovalising and body.further is not None
-        else ([], [])
-    )
-    parts = own + more
+    parts, uncounted = own_parts, list[Uncounted]()
+    if ovalising and body.further is not None:
+        more, uncounted = further_parts(body, own_parts, n, highest, method)
+        parts = own_parts + more
     start = time.perf_counter()
     verdicts: list[dict] = []
     if count:
@@ -231,8 +231,10 @@ def modes(
     spent = time.perf_counter() - start
     project = Projection(body, np.linspace(0.0, body.length, stations))
     names = Names(body, supports, project)
-    rigid = [r for part in parts for r in part.everywhere(part.solved.free)]
-    listed, beyond, above, unusual, every = _named(body, names, parts, n, max_frequency)
+    rigid = [r for part in parts for r in part.with_twins(part.solved.free)]
+    listed, further, above, split_pairs, family_frequencies = _named(
+        body, names, parts, n, max_frequency
+    )
     evidence = {
         "residual": max((r.residual for r in _lowest(parts, n + 2)), default=0.0),
         "error": max((m.error for m in listed), default=0.0),
@@ -241,36 +243,36 @@ def modes(
         "rigid_modes": len(rigid),
         "shift_rad2": -SHIFT * body.scale,
         "coupling_bound": bound,
-        "backend": "+".join(sorted({f.said for f in factors(body)})),
+        "backend": "+".join(sorted({f.label for f in factors(body)})),
         "method": "+".join(dict.fromkeys(part.solved.method for part in parts)),
-        "families": family_rows(parts, left, every),
+        "families": family_rows(parts, uncounted, family_frequencies),
     }
     if count:
         evidence |= {"count": verdicts, "count_seconds": spent}
         if all(verdict["checked"] for verdict in verdicts):
             evidence["counted_below_hz"] = min(
-                [verdict["below_hz"] for verdict in verdicts] + [u.begins_hz for u in left]
+                [verdict["below_hz"] for verdict in verdicts] + [u.begins_hz for u in uncounted]
             )
-    if unusual:
-        evidence["split_pairs"] = unusual
+    if split_pairs:
+        evidence["split_pairs"] = split_pairs
     return ModeSet(
         body.fidelity,
         (*_rigid(names, rigid), *listed),
         np.linspace(0.0, body.length, stations),
         project.gram,
         evidence,
-        beyond,
+        further,
         above,
     )
 
 
 def _lowest(parts: list[Part], count: int) -> list[Raw]:
-    raw = [r for part in parts for r in part.everywhere(part.solved.elastic)]
+    raw = [r for part in parts for r in part.with_twins(part.solved.elastic)]
     return sorted(raw, key=lambda r: r.value)[:count]
 
 
 def _rigid(names: Names, raw: list[Raw]):
-    """Modes at 0 Hz."""
+    """Yield modes at 0 Hz."""
     for r in raw:
         motion = names.project(r.vectors)
         described = shares(motion, names.project.gram)
@@ -292,29 +294,29 @@ def _rigid(names: Names, raw: list[Raw]):
 
 
 def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float | None):
-    """Modes of the list, own modes beyond the end of the list and those above them, names and splits of
-    pairs that are unusually far apart, and (family, frequency, shapes) of all that was found: no pair
-    is cut in two.
+    """Number and name all modes: return the list, modes of the body's own blocks beyond the end of
+    the list and modes above those, names and splits of pairs that are unusually far apart, and
+    (family, frequency, shapes) of all modes found; no pair is cut in two.
     """
-    whole = whole_to(parts)
-    raw = _lowest(parts, sum(len(part.everywhere(part.solved.elastic)) for part in parts))
+    complete_to = completeness_limits(parts)
+    raw = _lowest(parts, sum(len(part.with_twins(part.solved.elastic)) for part in parts))
     shapes = [names.describe(r.vectors) for r in raw]
     value = np.array([r.value for r in raw])
     shapes = names.unmixed(shapes, [r.vectors for r in raw], value)
     groups = names.pairs(shapes, value)
     labels = numbered([shapes[group[0]].label for group in groups])
     listed: list[Mode] = []
-    beyond: list[Mode] = []
+    beyond_list: list[Mode] = []
     above: list[Mode] = []
-    every: list[tuple[str, float, int]] = []
-    unusual: list[tuple[ModeName, float]] = []
-    room = own_room = n
+    family_frequencies: list[tuple[str, float, int]] = []
+    split_pairs: list[tuple[ModeName, float]] = []
+    room = room_of_own_blocks = n
     for group, label in zip(groups, labels):
         members, first = [raw[i] for i in group], shapes[group[0]]
         frequency = float(np.sqrt(np.mean([max(r.value, 0.0) for r in members])) / (2 * np.pi))
         double = 2 if first.double else len(group)
-        every.append((first.family, frequency, double))
-        over = max_frequency is not None and frequency > max_frequency
+        family_frequencies.append((first.family, frequency, double))
+        too_high = max_frequency is not None and frequency > max_frequency
         mode = Mode(
             name=label,
             family=first.family,
@@ -327,15 +329,59 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
             error=float(max(r.error for r in members) / 2),
             split=float(np.sqrt(members[-1].value / members[0].value) - 1) if group[1:] else 0.0,
         )
-        own = all(b < FURTHER for r in members for b in r.vectors)
-        if room > 0 and not over:
-            listed.append(sound(body, mode, parts))
+        of_own_blocks = all(b < FURTHER for r in members for b in r.vectors)
+        if room > 0 and not too_high:
+            listed.append(_sound(body, mode, parts))
             if value[group[-1]] > (1 + names.usual(first)) * value[group[0]]:
-                unusual.append((mode.name, mode.split))
-        elif own and own_room > 0 and not over:
-            beyond.append(mode)
-        elif all(r.value <= whole[b] for r in members for b in r.vectors):
+                split_pairs.append((mode.name, mode.split))
+        elif of_own_blocks and room_of_own_blocks > 0 and not too_high:
+            beyond_list.append(mode)
+        elif all(r.value <= complete_to[b] for r in members for b in r.vectors):
             above.append(mode)
         room -= mode.multiplicity
-        own_room -= mode.multiplicity if own else 0
-    return tuple(listed), tuple(beyond), tuple(above), unusual, every
+        room_of_own_blocks -= mode.multiplicity if of_own_blocks else 0
+    return tuple(listed), tuple(beyond_list), tuple(above), split_pairs, family_frequencies
+
+
+def _sound(body: Body, mode: Mode, parts: list[Part]) -> Mode:
+    """Return the mode unless rounding may move the frequency by more than ``WRONG``, else raise a
+    SolidgearError that names the cause; `parts` are those that the mode was found in.
+    """
+    if mode.error > WRONG:
+        doubt = (
+            f"modes: rounding may move {mode.name} ({mode.frequency_hz:.6g} Hz) "
+            f"by {100 * mode.error:.2g} %"
+        )
+        if _by_springs(mode, parts) > mode.error / 2:
+            raise SolidgearError(
+                f"{doubt}: bearings resist it by the difference of far larger stiffnesses that "
+                "couple, and its sixteen digits are not enough; give the bearing a stiffness that "
+                "is clearly positive in every direction, or zero"
+            )
+        highest = (
+            max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
+        )
+        raise SolidgearError(
+            f"{doubt}: the smallest cell of the {body.fidelity} body is so stiff that the "
+            f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser "
+            "mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
+        )
+    return mode
+
+
+def _by_springs(mode: Mode, parts: list[Part]) -> float:
+    """Return the share of the relative error of a frequency that comes from the rounding of the
+    bearings' stiffness.
+    """
+    value, lost = (2 * np.pi * mode.frequency_hz) ** 2, 0.0
+    for part in parts:
+        supported = part.supported
+        for vectors in mode.vectors:
+            if not set(vectors) & set(supported.group):
+                continue
+            pieces = [
+                vectors.get(b, np.zeros(k.size)) for b, k in zip(supported.group, supported.blocks)
+            ]
+            u = np.concatenate(pieces)
+            lost = max(lost, float(supported.spring_rounding(u[:, None])[0]))
+    return lost / (2 * value)

@@ -13,7 +13,7 @@ Family = TypeVar("Family", bound=Hashable)
 
 
 def best_assignment(gain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and columns of a matrix in pairs of the largest sum, as many as there can be.
+    """Return rows and columns of a matrix in pairs of the largest sum, as many as there can be.
 
     Examples
     --------
@@ -25,18 +25,13 @@ def best_assignment(gain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return min_weight_full_bipartite_matching(sp.csr_matrix(gain - gain.min() + 1), maximize=True)
 
 
-def shared_out(
+def shared_families(
     rows: Mapping[Family, np.ndarray], size: list[float]
 ) -> Iterator[tuple[int, Family, np.ndarray]]:
-    """Members of a space with a family each, as often as the space holds it, and the mixture of all
-    members that is what of one is of that family; none where a coarse mesh does not tell.
-
-    Parameters
-    ----------
-    rows : dict of family to (k, ...) ndarray
-        What of each member is of a family; the squared norm of a row is its share.
-    size : list of float
-        Squared norms of the members with all families.
+    """Yield members of a space with a family each, as often as the space holds it, and the mixture
+    of all members that is the part of one in that family; none where a coarse mesh does not decide.
+    The rows (k, ...) hold the part of each member in a family, with the share of it as squared
+    norm; `size` those of the members with all families.
     """
     spaces, places, gain = {}, [], []
     for family, row in rows.items():

@@ -1,7 +1,7 @@
-"""Ritz values on the stiffness itself, how wrong they can be, and the steps that mend them.
+"""Ritz values on the stiffness itself, their error bounds, and the steps that correct them.
 
 An eigensolver that works with a computed inverse of ``A = K + L L' + sigma M`` finds the eigenpairs
-of what rounding has made of it. Here nothing of a value comes from that inverse: energies are taken
+of a matrix changed by rounding. Here no part of a value comes from that inverse: energies are taken
 from K and from the springs L, with rigid motions split off first, so that no large stiffness has to
 cancel. The residual ``r = K u + L L'u - lambda M u`` is measured where it bounds the error: with
 ``rho = |A^-1 r|_A / |u|_A`` an eigenvalue of ``A, M`` lies within ``rho`` of ``mu = lambda +
@@ -39,22 +39,22 @@ class Refined:
     vectors: np.ndarray  #: (n, k) mass-orthonormal
     #: (k,) ``|A^-1 r|_A / |u|_A``, brought from the shifted to the true eigenvalue
     residual: np.ndarray
-    #: (k,) bound on the relative error of each value: what the residual allows, and the rounding of
+    #: (k,) bound on the relative error of each value: by the residual, and by the rounding of
     #: its energy
     error: np.ndarray
     noise: np.ndarray  #: (k,) the second part of it
     steps: int  #: corrections that were made
 
     def worst(self, needed: int) -> float:
-        """Largest error of so many of the lowest pairs, rounding left out: no step would mend
-        that.
+        """Return the largest error of the `needed` lowest pairs, rounding left out: no step would
+        mend that.
         """
         return float((self.error - self.noise)[:needed].max(initial=0.0))
 
 
 @dataclass
 class _Pairs:
-    """Ritz pairs with their residual forces, and the rounding of each energy."""
+    """Ritz pairs with residual forces, and the rounding of each energy."""
 
     value: np.ndarray
     u: np.ndarray
@@ -63,34 +63,26 @@ class _Pairs:
 
 
 def refine(supported: Supported, vectors: np.ndarray, value: np.ndarray, needed: int) -> Refined:
-    """Ritz pairs of a supported body in a space that is close to invariant, corrected until they
-    are right.
-
-    Parameters
-    ----------
-    vectors : (n, k) ndarray
-        Mass-orthonormal shapes.
-    value : (k,) ndarray
-        Their eigenvalues, roughly, ascending, rad^2/s^2.
-    needed : int
-        How many of the lowest must be right; the others are there to see gaps.
+    """Correct Ritz pairs of a supported body, in a space that is close to invariant, until the
+    `needed` lowest are accurate; the others are there for the gaps. `vectors` (n, k) are
+    mass-orthonormal shapes and `value` (k,) their eigenvalues, roughly, ascending, rad^2/s^2.
     """
     carried = supported.mass_rigid.T @ vectors
     elastic = np.append(columns(carried, carried) <= 1 - SOFT, True)
     # The lowest, as far as they are nearly rigid: the shift may drown their eigenvalues.  One above
     # an elastic mode is not in that danger.
     count = int(np.argmax(elastic))
-    found = _corrected(supported, vectors, value, needed, count)
+    refined = _corrected(supported, vectors, value, needed, count)
     if count:
-        rigid, rest = found.vectors[:, :count], found.vectors[:, count:]
-        if np.abs(rigid.T @ supported.mass(rest)).max(initial=0.0) > ASKEW:
-            found = _corrected(supported, vectors, value, needed, 0)
-    return found
+        rigid, elastic_modes = refined.vectors[:, :count], refined.vectors[:, count:]
+        if np.abs(rigid.T @ supported.mass(elastic_modes)).max(initial=0.0) > ASKEW:
+            refined = _corrected(supported, vectors, value, needed, 0)
+    return refined
 
 
 def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
-    """Ritz pairs, the first ``count`` of them as nearly rigid modes, with corrections until they
-    are right or rounding is all that is left.
+    """Correct Ritz pairs, the first ``count`` of them as nearly rigid modes, until they are
+    accurate or only rounding is left.
     """
     best: Refined | None = None
     last: Refined | None = None
@@ -121,12 +113,12 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
                 return best  # a correction that is nothing but rounding
         vectors, forces = np.hstack([slow.u, quick.u]), np.hstack([slow.force, quick.force])
         correction = supported.inverse(forces)
-        found = _judged(supported, value, vectors, forces, correction, rounding, step)
-        coarse = EXTENDED and not fine and found.noise[:needed].max(initial=0.0) > COARSE
-        if best is not None and not coarse and found.worst(needed) > 0.5 * best.worst(needed):
-            return min(found, best, key=lambda x: x.worst(needed))
-        best = found
-        wrong = found.error - found.noise >= ENOUGH
+        refined = _judged(supported, value, vectors, forces, correction, rounding, step)
+        coarse = EXTENDED and not fine and refined.noise[:needed].max(initial=0.0) > COARSE
+        if best is not None and not coarse and refined.worst(needed) > 0.5 * best.worst(needed):
+            return min(refined, best, key=lambda x: x.worst(needed))
+        best = refined
+        wrong = refined.error - refined.noise >= ENOUGH
         if not coarse and not wrong[:needed].any():
             break
         if coarse:
@@ -136,68 +128,65 @@ def _corrected(supported, vectors, value, needed: int, count: int) -> Refined:
     return result
 
 
-def _modes(supported, stiffness, u, value, correction, forces, below) -> _Pairs:
-    """Rayleigh and Ritz in the span of shapes and their corrections, of which the modes below are
-    taken out.
-    """
+def _modes(supported, stiffness, u, value, correction, forces, soft) -> _Pairs:
+    """Solve Rayleigh and Ritz in the span of shapes and their corrections, without the soft modes."""
     mass = supported.mass
     count = u.shape[1]
     if not count:
         return _Pairs(np.zeros(0), u, u, np.zeros(0))
     basis, loads = u, mass(u) * (value + supported.shift)
     if correction.shape[1]:
-        fresh, turn = _outside(correction, np.hstack([below, u]), mass)
+        fresh, turn = _outside(correction, np.hstack([soft, u]), mass)
         basis, loads = np.hstack([u, fresh]), np.hstack([loads, forces @ turn])
     heavy = mass(basis)
     gram = basis.T @ heavy
     w, v = np.linalg.eigh((gram + gram.T) / 2)
     turn = v / np.sqrt(w)
-    rest = supported.without_rigid(supported.without_rigid(basis))
-    pull = stiffness(rest)
+    elastic = supported.without_rigid(supported.without_rigid(basis))
+    pull = stiffness(elastic)
     stretch = supported.stretch(basis, loads)
-    energy = (turn.T @ (rest.T @ pull + stretch.T @ stretch) @ turn).astype(float)
+    energy = (turn.T @ (elastic.T @ pull + stretch.T @ stretch) @ turn).astype(float)
     w, v = np.linalg.eigh((energy + energy.T) / 2)
     turn = turn @ v[:, :count]
-    u, rest, pull, stretch, heavy = (
+    u, elastic, pull, stretch, heavy = (
         basis @ turn,
-        rest @ turn,
+        elastic @ turn,
         pull @ turn,
         stretch @ turn,
         heavy @ turn,
     )
     # The small problem gives its eigenvalues to the rounding of the largest; quotients give each to
     # its own.
-    value = (columns(rest, pull) + columns(stretch, stretch)) / columns(u, heavy)
+    value = (columns(elastic, pull) + columns(stretch, stretch)) / columns(u, heavy)
     force = pull + supported.load @ stretch - heavy * value
     return _Pairs(
-        value.astype(float), u, force.astype(float), _rounding(supported, u, rest, stretch)
+        value.astype(float), u, force.astype(float), _rounding(supported, u, elastic, stretch)
     )
 
 
-def _outside(x, known, mass):
-    """Mass-orthonormal columns of what of ``x`` lies outside mass-orthonormal ones, and the
+def _outside(x, base, mass):
+    """Return mass-orthonormal columns of the part of ``x`` outside mass-orthonormal ones, and the
     coefficients of ``x`` in them, roughly.
 
-    Columns that are the rounding of what they lost are left out.
+    Columns that are the rounding of larger ones are left out.
     """
-    heavy = mass(known)
-    before = np.sqrt(columns(x, mass(x)))
+    heavy = mass(base)
+    length = np.sqrt(columns(x, mass(x)))
     out, scale = x, np.ones(x.shape[1])
     for _ in range(3):
-        out = out - known @ (heavy.T @ out)
+        out = out - base @ (heavy.T @ out)
         size = np.sqrt(columns(out, mass(out)))
         scale = scale * np.where(size > 0, size, np.inf)
         out = out / np.where(size > 0, size, np.inf)
-    keep = scale > 1e-8 * before
+    keep = scale > 1e-8 * length
     w, v = np.linalg.eigh(out[:, keep].T @ mass(out[:, keep]))
-    turn = np.zeros((x.shape[1], int((w > 1e-6).sum())))
-    turn[keep] = v[:, w > 1e-6] / np.sqrt(w[w > 1e-6]) / scale[keep, None]
-    return out @ (turn * scale[:, None]) if keep.any() else out[:, :0], turn
+    coefficients = np.zeros((x.shape[1], int((w > 1e-6).sum())))
+    coefficients[keep] = v[:, w > 1e-6] / np.sqrt(w[w > 1e-6]) / scale[keep, None]
+    return out @ (coefficients * scale[:, None]) if keep.any() else out[:, :0], coefficients
 
 
 def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
-    """Ritz pairs of nearly rigid modes in the span of the rigid motions and of what is elastic in
-    them.
+    """Solve nearly rigid modes in the span of the rigid motions and of their elastic parts.
 
     Splitting the rigid part off exactly leaves no large stiffness to cancel: ``K`` sees the elastic
     remainder only.
@@ -206,26 +195,26 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
     if not count:
         return _Pairs(np.zeros(0), u, u, np.zeros(0))
     mass = supported.mass
-    held = supported.rigid
+    rigid = supported.rigid
     if supported.free.shape[1]:
-        held = supported.purge(held)
-        w, v = np.linalg.eigh(held.T @ mass(held))
-        held = held @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
-    rest = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
-    size = np.sqrt(columns(rest, mass(rest)))
+        rigid = supported.purge(rigid)
+        w, v = np.linalg.eigh(rigid.T @ mass(rigid))
+        rigid = rigid @ (v[:, w > 1e-10] / np.sqrt(w[w > 1e-10]))
+    remainder = supported.without_rigid(supported.without_rigid(np.hstack([u, correction])))
+    size = np.sqrt(columns(remainder, mass(remainder)))
     # below that a remainder of a shape is rounding
     keep = size > 1e-9 * np.append(np.ones(count), np.full(correction.shape[1], 1e-3))
-    rest = rest[:, keep] / size[keep]
-    w, v = np.linalg.eigh(rest.T @ mass(rest))
-    good = w > 1e-12
-    rest = rest @ (v[:, good] / np.sqrt(w[good]))
-    pull = stiffness(rest)
-    energy = (rest.T @ pull).astype(float)
+    remainder = remainder[:, keep] / size[keep]
+    w, v = np.linalg.eigh(remainder.T @ mass(remainder))
+    independent = w > 1e-12
+    remainder = remainder @ (v[:, independent] / np.sqrt(w[independent]))
+    pull = stiffness(remainder)
+    energy = (remainder.T @ pull).astype(float)
     w, v = np.linalg.eigh((energy + energy.T) / 2)
-    r = held.shape[1]
+    r = rigid.shape[1]
     elastic = np.zeros((len(w), r + len(w)))
     elastic[:, r:] = (v * np.sqrt(np.maximum(w, 0.0))).T
-    basis = np.hstack([held, rest])
+    basis = np.hstack([rigid, remainder])
     # Singular values of a root keep twice the digits of a soft direction that eigenvalues of its
     # Gram matrix would.
     root = np.vstack([supported.load.T @ basis, elastic])
@@ -235,46 +224,52 @@ def _soft_modes(supported, stiffness, u, correction) -> _Pairs:
     u = basis @ turn
     stretch = supported.load.T @ u
     force = pull @ turn[r:] + supported.load @ stretch - mass(u) * value
-    return _Pairs(value, u, force.astype(float), _rounding(supported, u, rest @ turn[r:], stretch))
+    return _Pairs(
+        value, u, force.astype(float), _rounding(supported, u, remainder @ turn[r:], stretch)
+    )
 
 
-def _rounding(supported, u, rest, stretch):
-    """Rounding of each energy by products and by the matrix itself, rad^2/s^2 (held to dense
+def _rounding(supported, u, elastic, stretch):
+    """Return the rounding of each energy by products and by the matrix, rad^2/s^2 (held to dense
     solutions by validation/campaign/cases/modes.py).
     """
-    own = np.linalg.norm(supported.diagonal[:, None] * rest**2, axis=0)
+    products = np.linalg.norm(supported.diagonal[:, None] * elastic**2, axis=0)
     # A stretch that came from the load (see Supported.stretch) is good to the digits that the
     # motion of its seat would have had at the least.
     lost = np.minimum(EPS * supported.spread(u), EPS / ROUNDED * np.abs(stretch))
-    return EPS * 4 * own + 2 * np.linalg.norm(stretch * lost, axis=0) + supported.spring_rounding(u)
+    return (
+        EPS * 4 * products
+        + 2 * np.linalg.norm(stretch * lost, axis=0)
+        + supported.spring_rounding(u)
+    )
 
 
-def _judged(supported, value, u, force, back, rounding, step) -> Refined:
-    """Error of each pair from the residuals of all, in the norm of the inverse."""
+def _judged(supported, value, u, force, correction, rounding, step) -> Refined:
+    """Compute the error of each pair from the residuals of all, in the norm of the inverse."""
     mu = value + supported.shift
-    rho = np.sqrt(np.maximum(columns(force, back), 0.0) / mu)
-    back_to = np.divide(mu, value, out=np.full_like(mu, np.inf), where=value > 0)
+    rho = np.sqrt(np.maximum(columns(force, correction), 0.0) / mu)
+    to_true_value = np.divide(mu, value, out=np.full_like(mu, np.inf), where=value > 0)
     noise = np.divide(rounding, value, out=np.full_like(mu, np.inf), where=value > 0)
-    error = np.minimum(rho, _quadratic(mu, rho)) * back_to
-    return Refined(value, u, rho * back_to, error + noise, noise, step)
+    error = np.minimum(rho, _quadratic(mu, rho)) * to_true_value
+    return Refined(value, u, rho * to_true_value, error + noise, noise, step)
 
 
 def _quadratic(mu, rho):
-    """``sum rho^2 / gap`` over the cluster around each value for which that is least; infinite
-    where that depends on eigenvalues above.
+    """Return ``sum rho^2 / gap`` over the cluster around each value for which that is least;
+    infinite where that depends on eigenvalues above.
     """
     out = np.full(len(mu), np.inf)
     for i in range(len(mu)):
         a = b = i
         total = rho[i] ** 2
         while b + 1 < len(mu):
-            left, right = (mu[a] - mu[a - 1] if a else np.inf), mu[b + 1] - mu[b]
-            gap = min(left, right, mu[i]) / mu[i]
+            gap_below, gap_above = (mu[a] - mu[a - 1] if a else np.inf), mu[b + 1] - mu[b]
+            gap = min(gap_below, gap_above, mu[i]) / mu[i]
             # Neighbours are known to within their own residual.
             gap -= rho[b + 1] + (rho[a - 1] if a else 0.0)
             if gap > 0:
                 out[i] = min(out[i], total / gap)
-            if left <= right:
+            if gap_below <= gap_above:
                 a -= 1
                 total += rho[a] ** 2
             else:

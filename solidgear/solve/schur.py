@@ -11,9 +11,9 @@ from solidgear.solve.backends.matrix import FactorError
 
 
 def bordered(matrix, border, factor, corner_of):
-    """Factor the inner part of a matrix by `factor`, the Schur complement of its border, unknowns at the
-    end, by `corner_of` (:func:`definite_corner` or :func:`any_corner`); None where one of both gives
-    none.
+    """Factor the inner part of a matrix by `factor` and the Schur complement of the border,
+    unknowns at the end, by `corner_of` (:func:`definite_corner` or :func:`any_corner`); None where
+    one of both gives none.
     """
     n = matrix.shape[0] - border
     if n == 0:  # a shaft that rigid seats hold from end to end: nothing but border
@@ -24,10 +24,10 @@ def bordered(matrix, border, factor, corner_of):
     edge = matrix[:n, n:].toarray()
     through = inner.solve(edge)
     corner = matrix[n:, n:].toarray() - edge.T @ through
-    found = corner_of((corner + corner.T) / 2)
-    if found is None:
+    inverse_and_count = corner_of((corner + corner.T) / 2)
+    if inverse_and_count is None:
         return None
-    through_corner, negative = found
+    through_corner, negative = inverse_and_count
 
     def solve(rhs):
         top = inner.solve(rhs[:n])
@@ -41,7 +41,7 @@ def bordered(matrix, border, factor, corner_of):
 
 
 def definite_corner(corner):
-    """Inverse of a positive definite Schur complement, and that none of its eigenvalues is negative."""
+    """Return the inverse of a positive definite Schur complement, and zero negative eigenvalues."""
     try:
         factor = sla.cho_factor(corner)
     except np.linalg.LinAlgError as error:
@@ -50,7 +50,9 @@ def definite_corner(corner):
 
 
 def any_corner(corner):
-    """Inverse and number of negative eigenvalues of a Schur complement; None if it is singular."""
+    """Return the inverse and the number of negative eigenvalues of a Schur complement; None if it
+    is singular.
+    """
     # Rows of a border differ in unit (forces, moments): scaled, so that small ones are not taken
     # for rounding.
     scale = 1 / np.sqrt(np.maximum(np.abs(corner).max(axis=1), np.finfo(float).tiny))

@@ -26,46 +26,41 @@ class Factored:
 
 
 def factors(body: Body) -> list[Factor]:
-    """One factor of ``K + sigma M`` per block, which twins share, kept with the body.
-
-    Raises
-    ------
-    FactorError
-        As :func:`~solidgear.solve.factor.factorise`.
-    NoRoom
-        If they will not fit into memory together, with the ways out that the body knows.
+    """Return one factor of ``K + sigma M`` per block, which twins share, kept with the body;
+    FactorError as :func:`~solidgear.solve.factor.factorise`, NoRoom if they will not fit into
+    memory together, with the ways out that the body knows.
     """
     return body.cache.get(Factored, lambda: _factored(body)).of_block
 
 
 def plans(body: Body, factoring: Factoring) -> dict[int, Planned]:
-    """Factors of a body that are not made yet, analysed in full, by the identity of the stiffness,
+    """Analyse the factors of a body in full without making them, by the identity of the stiffness,
     which twins share.
     """
-    found: dict[int, Planned] = {}
+    by_stiffness: dict[int, Planned] = {}
     for block in body.blocks:
         key = id(block.stiffness)
-        if key not in found:
-            found[key] = _plan(block, SHIFT * body.scale, factoring)
-    return found
+        if key not in by_stiffness:
+            by_stiffness[key] = _plan(block, SHIFT * body.scale, factoring)
+    return by_stiffness
 
 
 def needed_mb(body: Body, factoring: Factoring) -> float:
-    """Memory that the factors of a body would take, by analysis, MB."""
+    """Return the memory that the factors of a body would take, by analysis, MB."""
     return sum(plan.estimate_mb for plan in plans(body, factoring).values())
 
 
 def _factored(body: Body) -> Factored:
     free = available_mb()
-    found = plans(body, body.factoring)
+    analysed = plans(body, body.factoring)
     try:
-        made = dict(zip(found, factored([*found.values()], free)))
+        factors_made = dict(zip(analysed, factored([*analysed.values()], free)))
     except NoRoom as error:
-        found.clear()  # ways out are analysed in their place
+        analysed.clear()  # ways out are analysed in their place
         if body.remedies is None:
             raise
         raise body.remedies(body, error) from None
-    return Factored([made[id(block.stiffness)] for block in body.blocks])
+    return Factored([factors_made[id(block.stiffness)] for block in body.blocks])
 
 
 def _plan(block: Block, shift: float, factoring: Factoring) -> Planned:

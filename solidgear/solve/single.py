@@ -2,9 +2,9 @@
 
 A factor in single precision takes half the memory. It is a preconditioner: conjugate gradients on
 the matrix itself (in the flexible form of Polak and Ribiere, since rounding makes the factor not
-quite symmetric; Notay 2000, SIAM J. Sci. Comput. 22, 1444) shrink the error by a hundred or more from
-step to step, until the rounding of the product with the matrix is all that is left. That is where
-a factor in double precision ends too.
+quite symmetric; Notay 2000, SIAM J. Sci. Comput. 22, 1444) shrink the error by a hundred or more
+from step to step, until only the rounding of the product with the matrix is left. A factor in
+double precision ends there too.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import numpy as np
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.inertia_relief import Linear, columns, ratio
 
-#: what a factor in double precision leaves in the energy norm on solids of 50,000 to 150,000 unknowns
+#: error of a factor in double precision in the energy norm on solids of 50,000 to 150,000 unknowns
 #: (2e-12 to 6e-12)
 ENOUGH = 5e-12
-#: what may be left where rounding ends the steps earlier, as it does with a double factor
+#: error allowed where rounding ends the steps earlier, as it does with a double factor
 LEAST = 1e-7
 #: more steps than a factor that is worth the name takes
 MOST = 25
@@ -27,14 +27,7 @@ MOST = 25
 
 @dataclass
 class Refining:
-    """A rough inverse made exact.
-
-    Parameters
-    ----------
-    product : callable
-        ``A u`` in double precision.
-    rough : callable
-        ``A^-1 f``, roughly.
+    """A rough inverse made exact: by ``A u`` in double precision and ``A^-1 f``, roughly.
 
     Examples
     --------
@@ -51,42 +44,36 @@ class Refining:
     left: float = field(default=0.0, init=False)
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solution for one (n,) or several (n, k) right-hand sides.
-
-        Raises
-        ------
-        FactorError
-            If corrections do not get smaller.
-        """
+        """Solve for one (n,) or several (n, k) right-hand sides."""
         if rhs.ndim == 1:
             return self.solve(rhs[:, None])[:, 0]
         x, step = np.zeros(rhs.shape), np.zeros(rhs.shape)
-        left, before = np.array(rhs, float), np.zeros(rhs.shape)
+        residual, before = np.array(rhs, float), np.zeros(rhs.shape)
         size = np.zeros(rhs.shape[1])
         energy, last = size, np.inf
         for count in range(MOST):
-            z = self._scaled(left)
-            fresh = columns(z, left)
+            z = self._scaled(residual)
+            fresh = columns(z, residual)
             step = z + step * np.maximum(ratio(fresh - columns(z, before), size), 0.0)
             pull = self.product(step)
-            along = ratio(columns(step, left), columns(step, pull))
-            gain = along * columns(step, left)
+            along = ratio(columns(step, residual), columns(step, pull))
+            gain = along * columns(step, residual)
             x += step * along
-            before, left, size = left, left - pull * along, fresh
+            before, residual, size = residual, residual - pull * along, fresh
             energy = energy + gain
             share = float(np.sqrt(ratio(np.abs(gain), energy).max(initial=0.0)))
-            # what this step was short of is to it as it was to the one before
-            missing = share if count == 0 else share * min(1.0, share / last)
-            if missing < ENOUGH or (count and share > 0.5 * last):
+            # errors of steps fall by a constant factor
+            error_left = share if count == 0 else share * min(1.0, share / last)
+            if error_left < ENOUGH or (count and share > 0.5 * last):
                 break
             last = share
-        if not missing < LEAST:
+        if not error_left < LEAST:
             raise FactorError(
                 "the factor in single precision is too far from the matrix: a correction is "
                 f"{share:.0e} of the solution after {count + 1} steps; use precision = double, or a "
                 "coarser mesh"
             )
-        self.steps, self.left = max(self.steps, count), max(self.left, missing)
+        self.steps, self.left = max(self.steps, count), max(self.left, error_left)
         return x
 
     def _scaled(self, rhs: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ import numpy as np
 
 from solidgear.body import FURTHER, Body, Supports
 from solidgear.body.model import SINE
-from solidgear.solve.circumference import Circumference, of_body
+from solidgear.solve.circumference import Circumference, circumference_of
 from solidgear.solve.modes import Mode
 
 #: unknowns of one shape by block
@@ -31,20 +31,17 @@ Vectors = Mapping[int, np.ndarray]
 
 
 def couplings(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.ndarray | None:
-    """G between shapes of unit mass, masses on ports included.
-
-    Returns
-    -------
-    (k, k) ndarray or None
-        Antisymmetric; None of a body whose model does not tell it, such as a sector.
+    """Compute the antisymmetric (k, k) couplings G between shapes of unit mass, masses on ports
+    included; None for a body whose model does not give them, such as a sector.
     """
     if not body.mesh.get("axis", True):
         return None
-    fitted = of_body(body)
-    if fitted is not None:
-        profiles = [fitted[0](fitted[1](shape))[0] for shape in shapes]
+    fit_and_motion = circumference_of(body)
+    if fit_and_motion is not None:
+        fit, displacements = fit_and_motion
+        profiles = [fit(displacements(shape))[0] for shape in shapes]
         heavy = [sum(v @ (body.block(b).mass @ v) for b, v in s.items()) for s in shapes]
-        out = _around(fitted[0], profiles, np.array(heavy))
+        out = _around(fit, profiles, np.array(heavy))
     elif any(block.swirl is not None for block in body.blocks):
         out = np.zeros((len(shapes), len(shapes)))
         for cosine, sine in _twins(body, shapes):
@@ -57,16 +54,8 @@ def couplings(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.n
 
 
 def opened(frequency: np.ndarray, coupling: np.ndarray, turns: float) -> np.ndarray:
-    """(k,) frequencies, Hz, by which spin parts each shape from the one that it is coupled with most.
-
-    Parameters
-    ----------
-    frequency : (k,) ndarray
-        At rest, Hz.
-    coupling : (k, k) ndarray
-        Of :func:`couplings`.
-    turns : float
-        Of the shaft in a second.
+    """Return (k,) frequencies, Hz, by which spin of so many turns a second parts each shape from
+    the one that it is coupled with most, by the frequencies at rest, Hz, and the :func:`couplings`.
 
     Examples
     --------
@@ -80,23 +69,23 @@ def opened(frequency: np.ndarray, coupling: np.ndarray, turns: float) -> np.ndar
 def spin_openings(
     body: Body, supports: Supports, modes: Sequence[Mode], turns: float
 ) -> dict[str, float]:
-    """Frequencies, Hz, by which spin opens each of some elastic modes to either side, by name; empty of
-    a body whose model does not tell it.
+    """Return the frequencies, Hz, by which spin opens each of some elastic modes to either side, by
+    name; empty for a body whose model does not give them.
     """
     elastic = [mode for mode in modes if mode.frequency_hz > 0]
     shapes = [(mode, shape) for mode in elastic for shape in whole_shapes(mode)]
     coupling = couplings(body, supports, [shape for _, shape in shapes])
     if coupling is None:
         return {}
-    by = opened(np.array([mode.frequency_hz for mode, _ in shapes]), coupling, turns)
+    openings = opened(np.array([mode.frequency_hz for mode, _ in shapes]), coupling, turns)
     out: dict[str, float] = {}
-    for (mode, _), hz in zip(shapes, by):
+    for (mode, _), hz in zip(shapes, openings):
         out[str(mode.name)] = max(float(hz), out.get(str(mode.name), 0.0))
     return out
 
 
 def whole_shapes(mode: Mode) -> list[Vectors]:
-    """Shapes of a mode; one that stands for its twin too with that twin."""
+    """Return the shapes of a mode, with the twin where one shape stands for both."""
     shapes: list[Vectors] = list(mode.vectors)
     if len(shapes) < mode.multiplicity:
         shapes += [{b - FURTHER + SINE: v for b, v in shape.items()} for shape in mode.vectors]
@@ -104,7 +93,7 @@ def whole_shapes(mode: Mode) -> list[Vectors]:
 
 
 def _twins(body: Body, shapes: Sequence[Vectors]) -> Iterator[tuple[int, int]]:
-    """Blocks and those a quarter of a wave further round."""
+    """Yield blocks and those a quarter of a wave further round."""
     yield from ((b.mirror[0], k) for k, b in enumerate(body.blocks) if b.mirror is not None)
     further = {b for shape in shapes for b in shape if FURTHER <= b < SINE}
     yield from ((b, b - FURTHER + SINE) for b in sorted(further))
@@ -115,41 +104,46 @@ def _columns(shapes: Sequence[Vectors], block: int) -> list[np.ndarray | None]:
 
 
 def _antisymmetric(cosine: list, sine: list, swirl) -> np.ndarray:
-    """G of shapes by their unknowns on a block and on its twin; None where there are none."""
+    """Return G of shapes by their unknowns on a block and on the twin block; None where there are
+    none.
+    """
     out = np.zeros((len(cosine), len(cosine)))
-    own = [k for k, vector in enumerate(cosine) if vector is not None]
-    other = [k for k, vector in enumerate(sine) if vector is not None]
-    if own and other:
-        moved = swirl(np.column_stack([sine[k] for k in other]))
-        out[np.ix_(own, other)] = np.column_stack([cosine[k] for k in own]).T @ moved
+    cosine_shapes = [k for k, vector in enumerate(cosine) if vector is not None]
+    sine_shapes = [k for k, vector in enumerate(sine) if vector is not None]
+    if cosine_shapes and sine_shapes:
+        moved = swirl(np.column_stack([sine[k] for k in sine_shapes]))
+        out[np.ix_(cosine_shapes, sine_shapes)] = (
+            np.column_stack([cosine[k] for k in cosine_shapes]).T @ moved
+        )
     return out - out.T
 
 
 def _around(fit: Circumference, profiles: Sequence[np.ndarray], heavy: np.ndarray) -> np.ndarray:
-    """G of shapes of a 3D mesh by their amplitudes around the axis, and the modal mass of each.
+    """Return G of shapes of a 3D mesh by their amplitudes around the axis, and the modal mass of
+    each.
 
-    ``u_z + i u_x`` holds ``(R + i T) / 2`` of n + 1 turns and ``(R* + i T*) / 2`` of 1 - n for radial
-    and tangential amplitudes R and T of n waves. Each shape is taken as the waves that it has most of:
-    cells around the axis see a little of others in it.
+    ``u_z + i u_x`` holds ``(R + i T) / 2`` of n + 1 turns and ``(R* + i T*) / 2`` of 1 - n for
+    radial and tangential amplitudes R and T of n waves. Each shape is taken as the waves that it
+    has most of: cells around the axis see a little of others in it.
     """
     count = len(profiles)
-    every = np.array(profiles).reshape(count, fit.waves + 1, -1, 3)
-    share = (np.abs(every) ** 2).sum(axis=(2, 3))
-    most = share.argmax(axis=1)
+    amplitudes = np.array(profiles).reshape(count, fit.waves + 1, -1, 3)
+    share = (np.abs(amplitudes) ** 2).sum(axis=(2, 3))
+    largest = share.argmax(axis=1)
     out = np.zeros((count, count))
-    for n in set(most) - {0}:
-        own = np.flatnonzero(most == n)
-        radial, tangential, axial = np.moveaxis(every[own, n], 2, 0)
+    for n in set(largest) - {0}:
+        members = np.flatnonzero(largest == n)
+        radial, tangential, axial = np.moveaxis(amplitudes[members, n], 2, 0)
         forward, backward = radial + 1j * tangential, (radial - 1j * tangential).conj()
         parts = ((n + 1) / 2, forward), ((1 - n) / 2, backward), (n, axial)
         coupled = -sum(turns * (part.conj() @ part.T).imag for turns, part in parts)
-        size = np.sqrt(heavy[own] / share[own, n])
-        out[np.ix_(own, own)] = np.outer(size, size) * (coupled - coupled.T) / 2
+        size = np.sqrt(heavy[members] / share[members, n])
+        out[np.ix_(members, members)] = np.outer(size, size) * (coupled - coupled.T) / 2
     return out
 
 
 def _of_masses(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.ndarray:
-    """G of rigid masses on ports, which tilt as one: half their polar inertia."""
+    """Return G of rigid masses on ports, which tilt as one: half their polar inertia."""
     if supports.inertia is None:
         return np.zeros((len(shapes), len(shapes)))
     rows = supports.rows(body)

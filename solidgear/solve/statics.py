@@ -35,22 +35,22 @@ from solidgear.solve.shifted import factors
 if TYPE_CHECKING:
     from solidgear.body.supports import Holding
 
-# Relative error of a compliance where refinement tells none, and that of a stiffness above which
+# Relative error of a compliance where refinement gives none, and that of a stiffness above which
 # two points count as one.
 ROUNDING, APART = 1e-14, 1e-4
 # Of the geometric mean of two diagonal entries: a coupling that is none.
 LAST_DIGIT = 1e-15
-# Relative error of the energy of fields that local problems look at.
+# Relative error of the energy of fields for local problems.
 SOLVED = 1e-26
 
 
 @dataclass(frozen=True)
 class Flexibility:
-    """Inertia-relief flexibility of a free body at its ports."""
+    """Inertia-relief flexibility of a free body at the ports."""
 
     matrix: np.ndarray  #: (6 p, 6 p) symmetric positive semidefinite, SI
     asymmetry: float  #: relative asymmetry of the computed matrix before it was symmetrised
-    #: estimated relative error that refinement left: the square of what the displacements miss
+    #: estimated relative error that refinement left: the square of that of the displacements
     residual: float
     backend: str
     #: elastic displacements under unit loads on the ports, by planar blocks
@@ -58,38 +58,29 @@ class Flexibility:
 
 
 def flexibility(body: Body, tolerance: float = 1e-12) -> Flexibility:
-    """Flexibility of the free body at all its ports (inertia relief), kept with the body; by
-    :func:`solidgear.solve.inertia_relief.elastic_fields`.
-
-    Parameters
-    ----------
-    tolerance : float
-        Relative error of the energy at which refinement stops.
-
-    Raises
-    ------
-    SolidgearError
-        If the static solution is not finite.
+    """Return the flexibility of the free body at all ports (inertia relief), kept with the body; by
+    :func:`solidgear.solve.inertia_relief.elastic_fields` to a relative error of the energy of
+    `tolerance`. SolidgearError if the solution is not finite.
     """
     return body.cache.get(Flexibility, lambda: _flexibility(body, tolerance))
 
 
-def of_twin(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:
-    """Part of a (..., 6 p, 6 p) matrix of all ports that a block with a mirror has: that of its
-    original, in the other plane.
+def twin_matrix(body: Body, block: Block, matrix: np.ndarray) -> np.ndarray:
+    """Return the part of a (..., 6 p, 6 p) matrix of all ports that belongs to a block with a
+    mirror: that of the original block, in the other plane.
     """
     assert block.mirror is not None
     original, signs = block.mirror
-    own, turn = body.rows(body.blocks[original]), np.tile(signs, len(body.ports))
-    return matrix[..., own[:, None], own] * np.outer(turn, turn)
+    rows, turn = body.rows(body.blocks[original]), np.tile(signs, len(body.ports))
+    return matrix[..., rows[:, None], rows] * np.outer(turn, turn)
 
 
 def port_fields(
     body: Body, tolerance: float
 ) -> Iterator[tuple[int, np.ndarray, np.ndarray, float]]:
-    """Elastic displacements of the free body under unit loads on its ports, block by block: of those
-    that repeat no other, the index, the displacements, the work that loads do on them, as computed,
-    and the relative error of it that is left.
+    """Yield elastic displacements of the free body under unit loads on the ports, block by block:
+    of those that repeat no other, the index, the displacements, the work that loads do on them, as
+    computed, and the relative error of it.
     """
     for index, (block, factor) in enumerate(zip(body.blocks, factors(body))):
         if not block.components or block.mirror is not None:
@@ -97,7 +88,7 @@ def port_fields(
         k = block.stiffness
         load, u, missing = relieved_fields(block, factor.solve, block.ports.T.toarray(), tolerance)
         # Clapeyron: 2 u'f - u'Ku is stationary at the solution; each pair of loads misses the
-        # product of what both displacements miss.
+        # product of the errors of both displacements.
         work = u.T @ load
         yield index, u, work + work.T - u.T @ (k @ u), missing
 
@@ -119,11 +110,11 @@ def _flexibility(body: Body, tolerance: float) -> Flexibility:
         out[np.ix_(rows, rows)] = (f_block + f_block.T) / 2
         if block.planar:
             fields[index] = u
-    backends = [f.said for b, f in zip(body.blocks, factors(body)) if b.components]
+    backends = [f.label for b, f in zip(body.blocks, factors(body)) if b.components]
     for block in body.blocks:
         if block.mirror is not None:
             rows = body.rows(block)
-            out[np.ix_(rows, rows)] = of_twin(body, block, out)
+            out[np.ix_(rows, rows)] = twin_matrix(body, block, out)
     if not np.all(np.isfinite(out)):
         raise SolidgearError(f"the static solution of the {body.fidelity} body is not finite")
     return Flexibility(out, asymmetry, residual, "+".join(sorted(set(backends))), fields)
@@ -183,67 +174,72 @@ def condense(body, supports, port, attachment=None):
     names = (port,) if isinstance(port, str) else tuple(port)
     if not names or len(set(names)) < len(names):
         raise SolidgearError(f"condense: port = {show(names)}; name each port once, at least one")
-    alike = attachment is None or isinstance(attachment, str)
-    kinds = (attachment,) * len(names) if alike else tuple(attachment)
+    one_kind = attachment is None or isinstance(attachment, str)
+    kinds = (attachment,) * len(names) if one_kind else tuple(attachment)
     supports = as_supports(supports)
     flex = flexibility(body)
     indices = [body.port_index(name, kind) for name, kind in zip(names, kinds)]
-    here = np.concatenate([6 * index + np.arange(6) for index in indices])
-    there = supports.rows(body)
-    p_l = body.rigid_ports[here]
+    rows = np.concatenate([6 * index + np.arange(6) for index in indices])
+    bearing_rows = supports.rows(body)
+    p_l = body.rigid_ports[rows]
     free = supports.unresisted(body)
-    k = np.zeros((len(here), len(here)))
+    k = np.zeros((len(rows), len(rows)))
     c = np.full_like(k, np.nan)
     evidence = {"asymmetry": flex.asymmetry, "residual": flex.residual, "backend": flex.backend}
-    if free.shape[1] < 6 or len(names) > 1:  # what is wholly free is stiff between its ports
-        full = _full_compliance(body, supports, flex, here, there, free)
+    if free.shape[1] < 6 or len(names) > 1:  # a wholly free body is stiff between its ports
+        full = _full_compliance(body, supports, flex, rows, bearing_rows, free)
         loads = _allowed_loads(p_l @ free, body.length)
         small = loads.T @ full @ loads
         small = (small + small.T) / 2
-        left = 0.0 if len(names) == 1 else _inverted(small, flex.residual)
-        k = loads @ _spd_solve(small, loads.T) if left < APART else np.full_like(k, np.nan)
-        k = _apart((k + k.T) / 2)
-        on = _still(p_l @ free, body.length)
+        inversion_error = 0.0 if len(names) == 1 else _inversion_error(small, flex.residual)
+        k = np.full_like(k, np.nan)
+        if inversion_error < APART:
+            k = loads @ _spd_solve(small, loads.T)
+            k = _without_rounding((k + k.T) / 2)
+        fixed = _still(p_l @ free, body.length)
         if len(names) > 1:
-            evidence["stiffness_error"] = left
-        c[np.ix_(on, on)] = _apart(((full + full.T) / 2)[np.ix_(on, on)])
+            evidence["stiffness_error"] = inversion_error
+        c[np.ix_(fixed, fixed)] = _without_rounding(((full + full.T) / 2)[np.ix_(fixed, fixed)])
     tied = tuple(body.ports[index].attachment for index in indices)
     if isinstance(port, str):
         return Condensed(port, tied[0], k, c, p_l @ free, evidence)
     return Coupled(names, tied, k, c, p_l @ free, evidence)
 
 
-def _full_compliance(body, supports, flex, here, there, free) -> np.ndarray:
-    """Motions of ports under loads on them; loads that do work on free motions are meant to be
-    left out.
+def _full_compliance(body, supports, flex, rows, bearing_rows, free) -> np.ndarray:
+    """Compute motions of ports under loads on them; loads that do work on free motions must be left
+    out by the caller.
     """
-    f_ll = flex.matrix[np.ix_(here, here)]
-    p_l, root = body.rigid_ports[here], supports.root
+    f_ll = flex.matrix[np.ix_(rows, rows)]
+    p_l, root = body.rigid_ports[rows], supports.root
     if not root.shape[1]:
         return f_ll
-    f_lb, f_bb = flex.matrix[np.ix_(here, there)], flex.matrix[np.ix_(there, there)]
-    p_b = body.rigid_ports[there]
+    f_lb = flex.matrix[np.ix_(rows, bearing_rows)]
+    f_bb = flex.matrix[np.ix_(bearing_rows, bearing_rows)]
+    p_b = body.rigid_ports[bearing_rows]
     # S = N'N and H = (N P_b)'(N P_b); with the stiffest springs first both N and its QR factor
     # keep the digits of the softest.
     inner = np.eye(root.shape[1]) + root.T @ f_bb @ root
     n = _half_solve(inner, root.T)
-    held = _complement(free, body.length)
+    resisted = _complement(free, body.length)
     reach = n @ f_lb.T
-    rigid = n @ p_b @ held
-    x = (p_l @ held - reach.T @ rigid).T
+    rigid = n @ p_b @ resisted
+    x = (p_l @ resisted - reach.T @ rigid).T
     swing = _half_inverse(rigid, x)
     return f_ll - reach.T @ reach + swing.T @ swing
 
 
-def _apart(found: np.ndarray) -> np.ndarray:
-    """The same without what rounding couples: less than a last digit of both diagonal entries."""
-    size = np.sqrt(np.abs(np.diag(found)))
-    return np.where(np.abs(found) <= LAST_DIGIT * np.outer(size, size), 0.0, found)
+def _without_rounding(matrix: np.ndarray) -> np.ndarray:
+    """Return a matrix without couplings that are rounding: less than a last digit of both diagonal
+    entries.
+    """
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    return np.where(np.abs(matrix) <= LAST_DIGIT * np.outer(size, size), 0.0, matrix)
 
 
-def _inverted(small: np.ndarray, residual: float) -> float:
-    """Relative error that the inverse of a compliance has: of two points that move as one it is
-    nothing but error.
+def _inversion_error(small: np.ndarray, residual: float) -> float:
+    """Return the relative error of the inverse of a compliance; of two points that move as one the
+    inverse is only error.
     """
     size = np.sqrt(np.maximum(np.diag(small), 0.0))  # of a motion without any, rounding
     if not len(size) or not np.all(size > 0):
@@ -253,7 +249,7 @@ def _inverted(small: np.ndarray, residual: float) -> float:
 
 
 def _half_solve(a, b):
-    """``C^-1 b`` with ``C C' = a`` positive definite, ``C`` lower triangular."""
+    """Return ``C^-1 b`` with ``C C' = a`` positive definite, ``C`` lower triangular."""
     d = 1 / np.sqrt(np.diag(a))
     try:
         c = np.linalg.cholesky(a * np.outer(d, d))
@@ -265,8 +261,8 @@ def _half_solve(a, b):
 
 
 def _half_inverse(n, b):
-    """``R^-T b`` with ``R`` the triangular factor of ``n``: its Gram matrix is ``b' (n'n)^-1 b``,
-    without forming ``n'n``.
+    """Return ``R^-T b`` with ``R`` the triangular factor of ``n``: the Gram matrix of it is ``b'
+    (n'n)^-1 b``, without forming ``n'n``.
 
     The rows of ``n`` must fall in size: Householder's reflections then lose nothing of the small
     ones (Cox and Higham 1998).
@@ -284,7 +280,7 @@ def _half_inverse(n, b):
 
 
 def _spd_solve(a, b):
-    """Solve with a positive definite matrix after bringing its diagonal to one."""
+    """Solve with a positive definite matrix, scaled to a diagonal of ones."""
     d = 1 / np.sqrt(np.diag(a))
     try:
         factor = sla.cho_factor(a * np.outer(d, d))
@@ -296,27 +292,31 @@ def _spd_solve(a, b):
 
 
 def _complement(null: np.ndarray, length: float) -> np.ndarray:
-    """Basis of the rigid motions that springs resist (any complement will do)."""
-    return _sizes(null, length) * _without(null, length)
+    """Return a basis of the rigid motions that springs resist (any complement will do)."""
+    return _sizes(null, length) * _scaled_complement(null, length)
 
 
 def _allowed_loads(null: np.ndarray, length: float) -> np.ndarray:
-    """Basis of the loads that do no work on free motions of ports."""
-    return _without(null, length) / _sizes(null, length)
+    """Return a basis of the loads that do no work on free motions of ports."""
+    return _scaled_complement(null, length) / _sizes(null, length)
 
 
-def _without(null: np.ndarray, length: float) -> np.ndarray:
-    """Orthonormal complement of motions, made comparable; coordinate axes where possible."""
+def _scaled_complement(null: np.ndarray, length: float) -> np.ndarray:
+    """Return the orthonormal complement of motions, made comparable; coordinate axes where
+    possible.
+    """
     q, _ = np.linalg.qr(null / _sizes(null, length), mode="complete")
     return separated(q[:, null.shape[1] :])
 
 
 def _still(null: np.ndarray, length: float) -> np.ndarray:
-    """Mask of the components of ports that no free motion moves."""
+    """Return the mask of the components of ports that no free motion moves."""
     q, _ = np.linalg.qr(null / _sizes(null, length))
     return np.abs(q).max(axis=1, initial=0.0) < 1e-9
 
 
 def _sizes(motions: np.ndarray, length: float) -> np.ndarray:
-    """Column of what makes components comparable: one, and one over the length of rotations."""
+    """Return the column that makes components comparable: one, and one over the length for
+    rotations.
+    """
     return np.tile([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length], len(motions) // 6)[:, None]

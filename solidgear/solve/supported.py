@@ -16,7 +16,6 @@ import scipy.linalg as sla
 
 from solidgear.body import Body, Supports, component_rows
 from solidgear.solve.inertia_relief import elastic_fields
-from solidgear.solve.mass_update import MassUpdate
 from solidgear.solve.shifted import SHIFT, factors
 from solidgear.springs import root_of
 
@@ -31,30 +30,9 @@ FAST = 1e18
 
 
 class Supported:
-    """Operators of a group of blocks on their bearings.
-
-    Parameters
-    ----------
-    spring : (6 m, 6 m) ndarray
-        Stiffness of the supports, perhaps without negligible couplings (see :func:`solidgear.solve.coupling.decoupled`).
-    group : list of int
-        Blocks, as given by :func:`groups`.
-
-    Attributes
-    ----------
-    size : int
-    scale : float
-        Lowest elastic eigenvalue of the free body, roughly, rad^2/s^2.
-    shift : float
-        The operator inverted is ``K + springs + shift M``, rad^2/s^2.
-    free : (n, k) ndarray
-        Mass-orthonormal rigid motions that no spring resists; they are taken out of every inverse.
-    rigid : (n, r) ndarray
-        Mass-orthonormal rigid motions, resisted or not.
-    load : (n, r) ndarray
-        ``load @ load.T`` is the stiffness of the springs.
-    heavy : (n, q) ndarray
-        ``heavy @ heavy.T`` is the mass of what moves with the ports.
+    """Operators of a group of blocks on bearings of stiffness `spring` (6 m, 6 m), perhaps without
+    negligible couplings (:func:`solidgear.solve.coupling.decoupled`); `group` holds the indices of
+    the blocks (:func:`solidgear.solve.coupling.groups`).
     """
 
     def __init__(self, body: Body, supports: Supports, spring: np.ndarray, group: list[int]):
@@ -63,17 +41,23 @@ class Supported:
         self._factors = [factors(body)[b] for b in group]
         self._cuts = np.cumsum([0] + [b.size for b in self.blocks])
         self.size = int(self._cuts[-1])
-        self.scale, self.shift = body.scale, SHIFT * body.scale
+        #: lowest elastic eigenvalue of the free body, roughly, rad^2/s^2
+        self.scale = body.scale
+        #: the operator inverted is ``K + springs + shift M``, rad^2/s^2
+        self.shift = SHIFT * body.scale
         self._spring, self._seats = self._on_seats(body, supports, spring)
+        #: (n, q) root of the mass that moves with the ports, ``heavy @ heavy.T``
         self.heavy = np.zeros((self.size, 0))
-        self._alone: MassUpdate | None = None
+        self._mass_update: _MassUpdate | None = None
         masses = self._root_on_ports(body, supports, supports.masses)
         if masses.shape[1]:
-            self._alone = MassUpdate(self, masses)
+            self._mass_update = _MassUpdate(self, masses)
             self.heavy = masses
+        #: (n, r) mass-orthonormal rigid motions, resisted or not
         self.rigid = self.orthonormal_rigid()
         self.mass_rigid = self.mass(self.rigid)
         null = supports.unresisted(body)
+        #: (n, k) mass-orthonormal rigid motions that no spring resists, taken out of every inverse
         self.free = np.vstack(
             [
                 b.rigid @ null[list(b.components)]
@@ -88,6 +72,7 @@ class Supported:
             keep = w > 1e-10 * w.max()
             self.free = self.free @ (v[:, keep] / np.sqrt(w[keep]))
         self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
+        #: (n, r) root of the stiffness of the springs, ``load @ load.T``
         self.load = self._root_on_ports(body, supports, spring)
         self._fast = False
         if self.load.shape[1]:
@@ -96,38 +81,38 @@ class Supported:
             self._inner = sla.lu_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
     def _on_seats(self, body, supports, matrix) -> tuple[np.ndarray, list]:
-        """A matrix of the ports on the components of the group, and for every block the rows of
-        those ports.
+        """Return a matrix of the ports on the components of the group, and for every block the rows
+        of those ports.
         """
         m = len(supports.ports)
         components = [list(b.components) for b in self.blocks]
         place = np.concatenate([component_rows(range(m), cs) for cs in components])
-        own = matrix[np.ix_(place, place)]
+        on_group = matrix[np.ix_(place, place)]
         if not place.size:
-            return own, []
+            return on_group, []
         wanted = supports.attachments or (None,) * m
         index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
         seats = []
         for block, cs in zip(self.blocks, components):
-            at = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
-            seats.append(block.ports[at])
-        return own, seats
+            rows = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
+            seats.append(block.ports[rows])
+        return on_group, seats
 
     def _root_on_ports(self, body, supports, matrix) -> np.ndarray:
-        """(n, r) root of a matrix of the ports, in the unknowns of the group."""
-        own, seats = self._on_seats(body, supports, matrix)
+        """Return the (n, r) root of a matrix of the ports, in the unknowns of the group."""
+        on_group, seats = self._on_seats(body, supports, matrix)
         if not seats:
             return np.zeros((self.size, 0))
-        root = root_of(own)
+        root = root_of(on_group)
         cuts = np.cumsum([0] + [seat.shape[0] for seat in seats])
         return np.vstack([seat.T @ root[a:b] for seat, a, b in zip(seats, cuts, cuts[1:])])
 
     def spring_rounding(self, u: np.ndarray) -> np.ndarray:
-        """(k,) energy of (n, k) shapes that the last digit of the stiffness entries of the springs
-        stands for, N m.
+        """Return the (k,) energy of (n, k) shapes that the last digit of the stiffness entries of
+        the springs stands for, N m.
 
-        A coupled bearing may be far softer in one direction than any of its entries: what it
-        resists there is a difference of large numbers.
+        A coupled bearing may be far softer in one direction than any entry of the stiffness: the
+        resistance there is a difference of large numbers.
         """
         if not self._seats:
             return np.zeros(u.shape[1])
@@ -143,59 +128,63 @@ class Supported:
         return "+".join(sorted({f.backend for f in self._factors}))
 
     def on_ranks(self, wanted: int, tolerance: float) -> tuple[np.ndarray, np.ndarray] | None:
-        """Lowest eigenpairs of ``K + springs + shift M`` by the engine that holds the factor; None
-        where there is none, or where it lacks a part of the group or masses on its ports.
+        """Find the lowest eigenpairs of ``K + springs + shift M`` by the engine that holds the
+        factor; None where there is none, or where it lacks a part of the group or masses on ports.
         """
-        held = self._factors[0].ranks
-        if held is None or len(self.blocks) > 1 or self.heavy.shape[1]:
+        ranks = self._factors[0].ranks
+        if ranks is None or len(self.blocks) > 1 or self.heavy.shape[1]:
             return None
         inner = np.zeros((0, 0))
         through = self.load
         if self.load.shape[1]:
             through = self._through
             inner = np.eye(self.load.shape[1]) + self.load.T @ through
-        return held.modes(wanted, self.load, through, inner, self.free, tolerance)
+        return ranks.modes(wanted, self.load, through, inner, self.free, tolerance)
 
     def parts(self, x: np.ndarray) -> list[np.ndarray]:
-        """Rows of (n, ...) ``x``, block by block."""
+        """Return the rows of (n, ...) ``x``, block by block."""
         return [x[a:b] for a, b in zip(self._cuts, self._cuts[1:])]
 
     def _per_block(self, f: Callable[[int, np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
         # one block is the common case, and large vectors are not copied for it
-        found = [f(i, part) for i, part in enumerate(self.parts(x))]
-        return found[0] if len(found) == 1 else np.concatenate(found)
+        results = [f(i, part) for i, part in enumerate(self.parts(x))]
+        return results[0] if len(results) == 1 else np.concatenate(results)
 
     def _free_inverse(self, x: np.ndarray) -> np.ndarray:
-        """``(K + shift M)^-1 x``.
+        """Return ``(K + shift M)^-1 x``.
 
-        Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is left
-        with the rest.
+        Rigid motions answer with 1 / shift exactly, and the factor, which would round that, is
+        applied to the rest only.
         """
         carried = self.rigid.T @ x
         balanced = x - self.mass_rigid @ carried
-        y = self.factored(balanced) if self._alone is None else self._alone.inverse(balanced)
+        y = (
+            self.factored(balanced)
+            if self._mass_update is None
+            else self._mass_update.inverse(balanced)
+        )
         return self.without_rigid(y) + self.rigid @ (carried / self.shift)
 
     def factored(self, x: np.ndarray) -> np.ndarray:
-        """Solution by the factors of the blocks, which know nothing of masses on ports."""
+        """Solve by the factors of the blocks, without masses on ports."""
         return self._per_block(lambda i, part: self._factors[i].solve(part), x)
 
     def without_rigid(self, u: np.ndarray) -> np.ndarray:
-        """(n, k) displacements less their rigid part in the mass norm."""
+        """Return (n, k) displacements less their rigid part in the mass norm."""
         return u - self.rigid @ (self.mass_rigid.T @ u)
 
     def mass(self, x: np.ndarray) -> np.ndarray:
-        """``M x`` of (n, k) displacements, masses on ports included."""
-        own = self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
-        return own + self.heavy @ (self.heavy.T @ x) if self.heavy.shape[1] else own
+        """Return ``M x`` of (n, k) displacements, masses on ports included."""
+        of_blocks = self._per_block(lambda i, part: self.blocks[i].mass @ part, x)
+        return of_blocks + self.heavy @ (self.heavy.T @ x) if self.heavy.shape[1] else of_blocks
 
     def elastic(self, x: np.ndarray) -> np.ndarray:
-        """``K x`` of the free body, of (n, k) displacements."""
+        """Return ``K x`` of the free body, of (n, k) displacements."""
         return self._per_block(lambda i, part: self.blocks[i].stiffness @ part, x)
 
     def elastic_extended(self, x: np.ndarray) -> np.ndarray:
-        """The same in extended precision, for shapes whose energy is small beside what its terms
-        are.
+        """Return ``K x`` in extended precision, for shapes whose energy is small beside the terms
+        of it.
         """
         return self._per_block(
             lambda i, part: (
@@ -205,12 +194,12 @@ class Supported:
         )
 
     def purge(self, x: np.ndarray) -> np.ndarray:
-        """(n, k) displacements without unresisted rigid motions."""
+        """Return (n, k) displacements without unresisted rigid motions."""
         return x - self.free @ (self._mass_free.T @ x) if self.free.shape[1] else x
 
     def inverse(self, x: np.ndarray) -> np.ndarray:
-        """Displacements ``(K + springs + shift M)^-1 x`` under (n, k) loads, without unresisted
-        rigid motions.
+        """Return displacements ``(K + springs + shift M)^-1 x`` under (n, k) loads, without
+        unresisted rigid motions.
         """
         y = self._quick_inverse(x)
         if self.inaccuracy <= REFINED:
@@ -218,17 +207,17 @@ class Supported:
         return y + self._quick_inverse(x - self.forward(y, self._reaction(x)))
 
     def _reaction(self, x: np.ndarray) -> np.ndarray | None:
-        """(r, k) stretch of springs that stand for constraints, from the loads; None where it is
-        better taken from the motions.
+        """Return the (r, k) stretch of springs that stand for constraints, from the loads; None
+        where the motions give a better one.
         """
         if not self._fast:
             return None
         return sla.lu_solve(self._inner, self._through.T @ self._without_free(x))
 
     def forward(self, u: np.ndarray, stretch: np.ndarray | None = None) -> np.ndarray:
-        """``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K resists by
-        rounding only, is kept from it. The (r, k) stretch of the springs may be known better than
-        from ``u``.
+        """Return ``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K
+        resists by rounding only, is kept from it. The (r, k) stretch of the springs may be known
+        better than from ``u``.
         """
         return (
             self.elastic(self.without_rigid(u))
@@ -238,8 +227,8 @@ class Supported:
 
     @cached_property
     def inaccuracy(self) -> float:
-        """Relative error of the inverse in its own norm, measured by what one step of refinement
-        changes, on loads of random masses and springs.
+        """Relative error of the inverse in its own norm, measured by the change of one step of
+        refinement, on loads of random masses and springs.
         """
         if EPS * self.highest < REFINED * self.shift:
             return 0.0  # no rounding could be seen
@@ -253,14 +242,14 @@ class Supported:
         if stretch is None:
             stretch = self.load.T @ y
         pull = self.forward(y, np.zeros_like(stretch))
-        left = x - pull - self.load @ stretch
-        changed = np.abs(np.einsum("ij,ij->j", left, self._quick_inverse(left)))
-        # the work of the loads, told by what it has strained: a seat that is clamped does not move
+        residual = x - pull - self.load @ stretch
+        changed = np.abs(np.einsum("ij,ij->j", residual, self._quick_inverse(residual)))
+        # the work of the loads, by the strain energy: a seat that is clamped does not move
         strained = np.einsum("ij,ij->j", y, pull) + np.einsum("ij,ij->j", stretch, stretch)
         return float(np.sqrt(changed / strained).max())
 
     def _without_free(self, x: np.ndarray) -> np.ndarray:
-        """(n, k) loads less those that unresisted rigid motions carry."""
+        """Return (n, k) loads less those that unresisted rigid motions carry."""
         return x - self._mass_free @ (self.free.T @ x) if self.free.shape[1] else x
 
     def _quick_inverse(self, x: np.ndarray) -> np.ndarray:
@@ -287,11 +276,11 @@ class Supported:
         return float((stiff[heavy > 0] / heavy[heavy > 0]).max())
 
     def stretch(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """(r, k) stretch ``L'u`` of the springs, the root of their energy, of (n, k) displacements under
-        loads ``(K + springs + shift M) u``, roughly.
+        """Return the (r, k) stretch ``L'u`` of the springs, the root of their energy, of (n, k)
+        displacements under loads ``(K + springs + shift M) u``, roughly.
 
-        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it comes
-        from the load instead.
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
+        comes from the load instead.
         """
         out = self.load.T @ u
         if self.load.shape[1]:
@@ -301,8 +290,8 @@ class Supported:
         return out
 
     def spread(self, u: np.ndarray) -> np.ndarray:
-        """(r, k) stretch of the springs by motions as large as the largest of each shape: what
-        rounding of ``u`` is to be compared with.
+        """Return the (r, k) stretch of the springs by motions as large as the largest of each
+        shape: the scale of the rounding of ``u``.
 
         The motion of a seat that is held fast is small, but it was computed beside large ones and
         carries their rounding.
@@ -310,11 +299,11 @@ class Supported:
         return np.abs(self.load).sum(axis=0)[:, None] * np.abs(u).max(axis=0, initial=0.0)
 
     def rigid_motions(self) -> np.ndarray:
-        """(n, r) rigid motions of the group, one column per component, resisted or not."""
+        """Return (n, r) rigid motions of the group, one column per component, resisted or not."""
         return sla.block_diag(*(b.rigid for b in self.blocks))
 
     def orthonormal_rigid(self) -> np.ndarray:
-        """(n, r) rigid motions, mass-orthonormal."""
+        """Return (n, r) rigid motions, mass-orthonormal."""
         rigid = self.rigid_motions()
         # A block of a body whose seats are all one rigid piece may move less than its components
         # say.
@@ -327,38 +316,59 @@ class Supported:
         return rigid
 
     def split(self, x: np.ndarray) -> dict[int, np.ndarray]:
-        """A vector (n,) of the group as block index -> vector."""
+        """Return a vector (n,) of the group as block index -> vector."""
         return {b: x[a:c] for b, a, c in zip(self.group, self._cuts, self._cuts[1:])}
 
     def static(self, load: np.ndarray) -> np.ndarray:
-        """(n, k) static displacements under loads, springs included.
+        """Return (n, k) static displacements under loads, springs included; unresisted rigid
+        motions must do no work on the loads.
 
-        The elastic and the rigid part are found apart, as in :mod:`solidgear.solve.statics`, so
-        that springs may be as soft or as stiff as they like. With ``s = load_b' u`` the root of the
-        spring energy, E the inertia-relief fields and R the rigid motions, ``u = E_f - E_b s + R
-        a`` and equilibrium ``R'(f - load_b s) = 0``.
-
-        Parameters
-        ----------
-        load : (n, k) ndarray
-            Unresisted rigid motions must do no work on it.
+        The elastic and the rigid part are found separately, as in :mod:`solidgear.solve.statics`,
+        so that springs may be as soft or as stiff as they like. With ``s = load_b' u`` the root of
+        the spring energy, E the inertia-relief fields and R the rigid motions, ``u = E_f - E_b s +
+        R a`` and equilibrium ``R'(f - load_b s) = 0``.
         """
         rigid = self.rigid_motions()
         # Rotations are about 1/length of translations in size: equal columns keep the small systems
         # well scaled.
         rigid = rigid / np.linalg.norm(rigid, axis=0)
         e_f, e_b = self._relieved(load, rigid), self._relieved(self.load, rigid)
-        held = self.load.T @ rigid
+        resisted = self.load.T @ rigid
         inner = sla.cho_factor(np.eye(self.load.shape[1]) + self.load.T @ e_b)
-        h = held.T @ sla.cho_solve(inner, held)
-        reached = sla.cho_solve(inner, self.load.T @ e_f)
+        h = resisted.T @ sla.cho_solve(inner, resisted)
+        stretch_by_loads = sla.cho_solve(inner, self.load.T @ e_f)
         # Unresisted motions make h singular; they get nothing.
-        a = np.linalg.pinv(h, rcond=1e-13, hermitian=True) @ (rigid.T @ load - held.T @ reached)
-        s = reached + sla.cho_solve(inner, held @ a)
+        a = np.linalg.pinv(h, rcond=1e-13, hermitian=True) @ (
+            rigid.T @ load - resisted.T @ stretch_by_loads
+        )
+        s = stretch_by_loads + sla.cho_solve(inner, resisted @ a)
         return self.purge(e_f - e_b @ s + rigid @ a)
 
     def _relieved(self, load, rigid, tolerance: float = 1e-24):
-        """Elastic displacements of the free body under loads balanced by their own inertia."""
+        """Return elastic displacements of the free body under loads balanced by inertia."""
         return elastic_fields(self._free_inverse, self.mass, self.elastic, rigid, load, tolerance)[
             1
         ]
+
+
+class _MassUpdate:
+    """Inverse of ``K + shift (M + J J')`` of a free body with rigid masses J (n, q) on the ports, by
+    the inverse of the body alone.
+    """
+
+    def __init__(self, supported: Supported, heavy: np.ndarray):
+        self._supported, self._heavy = supported, heavy
+        rigid = supported.orthonormal_rigid()
+        mass_rigid = supported.mass(rigid)
+        carried = rigid.T @ heavy
+        # the shift times the motion under a unit load at a mass: rigid motions without rounding
+        elastic = supported.factored(heavy - mass_rigid @ carried)
+        elastic = elastic - rigid @ (mass_rigid.T @ elastic)
+        self._through = supported.shift * elastic + rigid @ carried
+        small = np.eye(heavy.shape[1]) + heavy.T @ self._through
+        self._inner = sla.cho_factor((small + small.T) / 2)
+
+    def inverse(self, x: np.ndarray) -> np.ndarray:
+        """Return displacements under (n, k) loads that no rigid motion does work on."""
+        y = self._supported.factored(x)
+        return y - self._through @ sla.cho_solve(self._inner, self._heavy.T @ y)

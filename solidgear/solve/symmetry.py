@@ -5,13 +5,13 @@ reflection is an orthogonal matrix P of one entry a row, P P = I, and ``P A = A 
 are symmetric and antisymmetric to each plane do not meet in A. On an orthonormal basis T of every
 such kind A falls into pieces ``T' A T``, and ``A^-1 = sum T (T' A T)^-1 T'`` (Bossavit 1986,
 "Symmetry, groups, and boundary value problems"). Two planes leave four pieces of a quarter of the
-unknowns: a quarter of the arithmetic of a factorisation of a 3D solid, and less than half of its
+unknowns: a quarter of the arithmetic of a factorisation of a 3D solid, and less than half of the
 entries. Where the plane x = z between them is a mirror as well it makes one of the two kinds of
 bending into the other: T of the second is P T of the first, their pieces are one matrix, and one
 factor serves both.
 
-Only the factor is folded. The body, its shapes and everything that is judged stay on all of the
-mesh, so that what is solved is still checked against the whole matrix.
+Only the factor is folded. The body, the shapes and all judgements stay on all of the mesh, so that
+every solution is still checked against the whole matrix.
 """
 
 from __future__ import annotations
@@ -33,36 +33,23 @@ ALIKE = 1e-11
 
 
 def planned_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> Planned | None:
-    """Analyse a symmetric positive definite matrix by its pieces.
+    """Analyse a symmetric positive definite matrix of a solid, given with both triangles, by the
+    pieces of it; None where there is no reflection, or one does not leave the matrix as it is.
+    FactorError as :func:`~solidgear.solve.factor.planned`.
 
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        Of a solid; both triangles given.
-    reflections : sequence of (partner, sign)
-        Each its own inverse; the first two in either order the same, a third one that turns the
-        first into the second.
-
-    Returns
-    -------
-    Planned or None
-        None where there is no reflection, or one does not leave the matrix as it is.
-
-    Raises
-    ------
-    FactorError
-        As :func:`~solidgear.solve.factor.planned`.
+    Each reflection (partner, sign) is its own inverse; the first two give the same in either order,
+    a third one turns the first into the second.
 
     Examples
     --------
     Three equal masses in a row, which the mirror turns end for end:
 
     >>> matrix = sp.csr_matrix(np.array([[3.0, -1.0, 0.0], [-1.0, 3.0, -1.0], [0.0, -1.0, 3.0]]))
-    >>> found = planned_by_symmetry(matrix, [(np.array([2, 1, 0]), np.ones(3))]).make()
-    >>> bool(np.allclose(matrix @ found.solve(np.arange(3.0)), np.arange(3.0)))
+    >>> factor = planned_by_symmetry(matrix, [(np.array([2, 1, 0]), np.ones(3))]).make()
+    >>> bool(np.allclose(matrix @ factor.solve(np.arange(3.0)), np.arange(3.0)))
     True
     """
-    if not reflections or not _alike(matrix, reflections):
+    if not reflections or not _leave_unchanged(matrix, reflections):
         return None
     backend, reason = choice(matrix.shape[0], matrix.nnz)
     kinds = symmetric_bases(matrix.shape[0], reflections[:2])
@@ -71,38 +58,38 @@ def planned_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]
         twin = kind[::-1] if len(reflections) == 3 and kind[0] != kind[-1] else None
         if twin is not None and kind < twin:
             continue  # solved beside the other one
-        both = [fold] if twin is None else [fold, _seen(fold, reflections[2])]
-        # All columns of K T are as symmetric as those of T: one row of each orbit tells the others.
+        folds = [fold] if twin is None else [fold, _mirrored(fold, reflections[2])]
+        # All columns of K T are as symmetric as those of T: one row of each orbit gives the others.
         first, size = _first_of(fold)
         small = (sp.diags(np.sqrt(size)) @ matrix[first]) @ fold
         small.sort_indices()
-        pieces.append((both, [f.T.tocsr() for f in both], planned(small, backend)))
+        pieces.append((folds, [f.T.tocsr() for f in folds], planned(small, backend)))
     estimate = sum(plan.estimate_mb for *_, plan in pieces)
 
     def make():
-        made = [(both, back, plan.make()) for both, back, plan in pieces]
+        factored = [(folds, back, plan.make()) for folds, back, plan in pieces]
         return Factor(
-            made[0][2].backend,
-            f"{reason}; in {len(made)} pieces by mirror planes",
-            _solver(made),
+            factored[0][2].backend,
+            f"{reason}; in {len(factored)} pieces by mirror planes",
+            _solver(factored),
             estimate,
-            _total(factor.nnz for *_, factor in made),
+            _total(factor.nnz for *_, factor in factored),
         )
 
     return Planned(matrix.shape[0], backend, estimate, make)
 
 
 def _solver(pieces):
-    """Solutions from those of all pieces."""
+    """Combine the solutions of all pieces."""
 
     def solve(rhs):
         columns = rhs.reshape(len(rhs), -1)
         width = columns.shape[1]
         out = np.zeros_like(columns, dtype=float)
-        for both, back, factor in pieces:
-            found = factor.solve(np.hstack([b @ columns for b in back]))
-            for i, fold in enumerate(both):
-                out += fold @ found[:, i * width : (i + 1) * width]
+        for folds, back, factor in pieces:
+            solution = factor.solve(np.hstack([b @ columns for b in back]))
+            for i, fold in enumerate(folds):
+                out += fold @ solution[:, i * width : (i + 1) * width]
         return out.reshape(rhs.shape)
 
     return solve
@@ -111,66 +98,70 @@ def _solver(pieces):
 def symmetric_bases(
     n: int, reflections: Sequence[Reflection]
 ) -> dict[tuple[float, ...], sp.csr_matrix]:
-    """Orthonormal bases (n, p) of the motions that are symmetric or antisymmetric to every plane, by the
-    parity in each: at most one entry a row, and together as many columns as there are unknowns.
+    """Return orthonormal bases (n, p) of the motions that are symmetric or antisymmetric to every
+    plane, by the parity in each: at most one entry a row, and together as many columns as there are
+    unknowns.
     """
-    here = np.arange(n)
-    # what every product of reflections makes of an unknown: its place, its sign
-    places, signs = [here], [np.ones(n)]
+    unknowns = np.arange(n)
+    # place and sign of every unknown under all products of reflections
+    places, signs = [unknowns], [np.ones(n)]
     for partner, sign in reflections:
         places += [place[partner] for place in places]
         signs += [turn[partner] * sign for turn in signs]
-    first = np.min(places, axis=0) == here
-    found = {}
+    first = np.min(places, axis=0) == unknowns
+    bases = {}
     for kind in itertools.product((1.0, -1.0), repeat=len(reflections)):
         parity = [1.0]
-        for one in kind:
-            parity += [one * p for p in parity]
+        for plane_parity in kind:
+            parity += [plane_parity * p for p in parity]
         # a motion on a plane that is turned into its opposite is none of this kind
         turned = [p * s for p, s in zip(parity, signs)]
-        kept = first & np.all(
-            [(place != here) | (t > 0) for place, t in zip(places, turned)], axis=0
+        included = first & np.all(
+            [(place != unknowns) | (t > 0) for place, t in zip(places, turned)], axis=0
         )
-        start = np.flatnonzero(kept)
+        start = np.flatnonzero(included)
         if not len(start):
             continue
         column = np.arange(len(start))
         # unknowns on a plane are met more than once, each time with the same sign
         weight = np.zeros(n)
-        at = np.zeros(n, int)
+        column_of = np.zeros(n, int)
         for place, t in zip(places, turned):
-            weight[place[start]], at[place[start]] = t[start], column
+            weight[place[start]], column_of[place[start]] = t[start], column
         rows = np.flatnonzero(weight)
-        size = np.bincount(at[rows], minlength=len(start))
-        entries = weight[rows] / np.sqrt(size[at[rows]])
-        found[kind] = sp.csr_matrix((entries, (rows, at[rows])), shape=(n, len(start)))
-    return found
+        size = np.bincount(column_of[rows], minlength=len(start))
+        entries = weight[rows] / np.sqrt(size[column_of[rows]])
+        bases[kind] = sp.csr_matrix((entries, (rows, column_of[rows])), shape=(n, len(start)))
+    return bases
 
 
-def _seen(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:
-    """A basis in the mirror."""
+def _mirrored(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:
+    """Mirror a basis."""
     partner, sign = reflection
     return (sp.diags(sign) @ fold[partner]).tocsr()
 
 
 def _first_of(fold: sp.csr_matrix) -> tuple[np.ndarray, np.ndarray]:
-    """First unknown of every column, and how many unknowns the column has."""
+    """Return the first unknown of every column, and how many unknowns the column has."""
     columns = fold.tocsc()
     return columns.indices[columns.indptr[:-1]], np.diff(columns.indptr)
 
 
-def _alike(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> bool:
-    """True where every reflection leaves a matrix as it is, to rounding."""
+def _leave_unchanged(matrix: sp.csr_matrix, reflections: Sequence[Reflection]) -> bool:
+    """Return whether every reflection leaves a matrix as it is, to rounding."""
     probe = np.random.default_rng(0).standard_normal(matrix.shape[0])
-    seen = matrix @ np.column_stack([probe, *(s * probe[p] for p, s in reflections)])
-    # row by row: what stands beside large entries is not lost in their sum
+    products = matrix @ np.column_stack([probe, *(s * probe[p] for p, s in reflections)])
+    # row by row: small entries are not lost in the sum of large ones
     size = np.sqrt(np.add.reduceat(matrix.data**2, matrix.indptr[:-1]))
     return all(
-        (np.abs(there - sign * seen[partner, 0]) <= ALIKE * np.maximum(size, size[partner])).all()
-        for there, (partner, sign) in zip(seen.T[1:], reflections)
+        (
+            np.abs(mirrored - sign * products[partner, 0])
+            <= ALIKE * np.maximum(size, size[partner])
+        ).all()
+        for mirrored, (partner, sign) in zip(products.T[1:], reflections)
     )
 
 
 def _total(numbers):
-    known = list(numbers)
-    return None if None in known else sum(known)
+    counts = list(numbers)
+    return None if None in counts else sum(counts)

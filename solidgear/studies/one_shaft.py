@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from solidgear.body import Body, as_supports
 from solidgear.judge.quantities import Values, size
 from solidgear.judge.settle import Settled, bars_of_modes, settle
-from solidgear.judge.solving import answered
+from solidgear.judge.solving import answer_of_body
 from solidgear.quantity import QUANTITIES, Quantity
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.differences import ROUNDING
@@ -72,7 +72,7 @@ def one_shaft(
     settled = settle(scene, tol, points=points, before=before, progress=say)
     body = settled.body
     say("statics and modes")
-    solution = answered(
+    solution = answer_of_body(
         body,
         as_supports(scene),
         [scene.port.name, *points],

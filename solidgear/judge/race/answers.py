@@ -1,7 +1,7 @@
-"""Answers of the rows of a chart of error against cost, that of the automatic choice among them.
+"""Answers of the rows of a chart of error against cost, the automatic choice among them.
 
-What the automatic choice costs is the whole climb, every mesh that was tried included; what the other
-lines cost is one mesh, of which nobody has shown that it will do.
+The cost of the automatic choice is the whole climb, every mesh that was tried included; that of the
+other rows is one mesh, which nobody has shown to be sufficient.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.errors import SolidgearError
-from solidgear.judge.answer import climbed
-from solidgear.judge.climb import Climb
+from solidgear.judge.answer import solve_cheapest
 from solidgear.judge.lumped import preferred, sources
+from solidgear.judge.question import FamilySolver, build_families
 from solidgear.judge.race.cases import AUTO
+from solidgear.judge.refinement import Refinement
 from solidgear.judge.solving import Answer, Statics, solve
 from solidgear.ladder.model import LUMPED
 from solidgear.ladder.registry import LADDER
@@ -31,12 +32,8 @@ if TYPE_CHECKING:
 
 
 def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:
-    """Answer of one model, or of the automatic choice.
-
-    Raises
-    ------
-    SolidgearError
-        Where the model cannot be made.
+    """Return the answer of one model, or of the automatic choice; SolidgearError where the model
+    cannot be made.
     """
     if model == AUTO:
         return _automatic(scene, options["tol"])
@@ -46,44 +43,50 @@ def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:
 
 
 def _lumped(scene: Scene, options: dict, n: int) -> Answer:
-    """The lumped model rests on the best beam, and has a first bending of its own."""
-    found = solve(scene, sources()[0], n, **options)
-    _, made = synthesise(found.body, scene, scene.port.name, found.modes)
-    chosen = preferred(made)
-    hertz = None if chosen is None else made[chosen].frequency_hz
+    """Answer with the lumped model on the best beam, by its first bending."""
+    beam_answer = solve(scene, sources()[0], n, **options)
+    _, variants = synthesise(beam_answer.body, scene, scene.port.name, beam_answer.modes)
+    chosen = preferred(variants)
+    hertz = None if chosen is None else variants[chosen].frequency_hz
     if hertz is None:
         raise SolidgearError(
             "no lumped mass is positive and has the first bending mode as its first"
         )
-    return replace(found, quantities=found.quantities | {FIRST_BENDING: hertz})
+    return replace(beam_answer, quantities=beam_answer.quantities | {FIRST_BENDING: hertz})
 
 
 def _automatic(scene: Scene, tol: float) -> Answer:
-    climb, _ = climbed(scene, tol, QUANTITIES, _Charted, lambda _: None)
-    assert climb.largest is not None and climb.modes is not None  # everything was asked
-    values = {v.quantity: v.value for v in climb.values()}
-    return Answer(climb.largest, Statics(_together(climb)), climb.modes, values)
-
-
-class _Charted(Climb):
-    """A climb that keeps the largest body it solved: the last one may be that of a small question,
-    torsion alone, and a chart over unknowns would take its size for that of the whole answer.
+    """Answer with the automatic choice, with the largest body of it: the last one may be that of a
+    small question, torsion alone, and a chart over unknowns would take its size for that of the
+    whole answer.
     """
-
     largest: Body | None = None
 
-    def _body(self, level: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
-        body = super()._body(level, families)
-        if self.largest is None or body.size > self.largest.size:
-            self.largest = body
-        return body
+    def solver_of(refinement: Refinement) -> FamilySolver:
+        nonlocal largest
+        largest = None  # of this model
+
+        def build_body(options: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+            nonlocal largest
+            body = build_families(scene, refinement.model, options, families)
+            if largest is None or body.size > largest.size:
+                largest = body
+            return body
+
+        return FamilySolver(refinement, build_body)
+
+    solver, _ = solve_cheapest(scene, tol, QUANTITIES, lambda _: None, solver_of)
+    assert largest is not None and solver.modes is not None  # all quantities were wanted
+    values = {v.quantity: v.value for v in solver.refinement.values()}
+    return Answer(largest, Statics(_together(solver)), solver.modes, values)
 
 
-def _together(climb: Climb) -> Condensed:
-    """Compliance of all families, each of the finest mesh that was solved for it."""
-    coarse, *finer = climb.compliances.items()
+def _together(solver: FamilySolver) -> Condensed:
+    """Return the compliance of all families, each on the finest mesh that was solved for it."""
+    coarse, *finer = solver.compliances.items()
     compliance = coarse[1].compliance.copy()
-    for families, found in finer:
-        own = [c for family in families for c in FAMILIES[family]]
-        compliance[np.ix_(own, own)] = found.compliance[np.ix_(own, own)]
+    for families, condensed in finer:
+        components = [c for family in families for c in FAMILIES[family]]
+        entries = np.ix_(components, components)
+        compliance[entries] = condensed.compliance[entries]
     return replace(coarse[1], compliance=compliance)

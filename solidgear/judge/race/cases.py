@@ -1,6 +1,4 @@
-"""The cases of a chart of error against cost, and what a process pays once before the first of
-them.
-"""
+"""Cases of a chart of error against cost, and the start-up cost of a process before the first one."""
 
 from __future__ import annotations
 
@@ -27,9 +25,9 @@ SETUP = 120.0
 
 
 def plan(scene: Scene, full: bool = False) -> list[Row]:
-    """Series of every family, uniform and graded, level by level, and the automatic choice by its
-    tolerances; of a model that does not fit the scene one row that says why. With more levels when full,
-    up to solids of several hundred thousand unknowns.
+    """List series of every family, uniform and graded, level by level, and the automatic choice by
+    tolerances; of a model that does not fit the scene one row with the reason. With more levels
+    when full, up to solids of several hundred thousand unknowns.
     """
     rows = [
         Row(family, label, level, model.name, options)
@@ -40,9 +38,9 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
     ]
     unfit = ((model, model.unfit(scene)) for model in LADDER if model.concerns(scene))
     rows += [
-        Row(model.family, model.heading, 1, model.name, {}, "failed", why)
-        for model, why in unfit
-        if why
+        Row(model.family, model.heading, 1, model.name, {}, "failed", reason)
+        for model, reason in unfit
+        if reason
     ]
     rows += [
         Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
@@ -79,8 +77,8 @@ print(json.dumps(seconds))
 
 
 def setup_seconds() -> dict[str, float]:
-    """Seconds that a fresh interpreter pays once before the first model, by what for; empty where
-    none can be started.
+    """Measure the seconds that a fresh interpreter pays once before the first model, by purpose;
+    empty where none can be started.
     """
     try:
         with subprocess.Popen(

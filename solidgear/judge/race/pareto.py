@@ -1,7 +1,7 @@
 """Error against cost: discretisations of one scene, and those that no other beats in both.
 
-The error is that against the model that judges the scene, refined; its own error bar is the floor:
-what lies below it is not resolved.
+The error is that against the model that judges the scene, refined; the error bar of that model is
+the floor: no smaller error is resolved.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from solidgear.machine.environment import environment
 from solidgear.quantity import C_ZZ, FIRST_BENDING
 
-#: what is charted, as named in `quantities`
+#: charted quantities, as named in `quantities`
 CHARTED = (C_ZZ, FIRST_BENDING)
 #: the family and the series of the automatic choice
 AUTOMATIC = "automatic"
@@ -23,7 +23,7 @@ AUTOMATIC = "automatic"
 
 @dataclass
 class Row:
-    """One discretisation and its result."""
+    """One discretisation and the result."""
 
     family: str  #: lumped, beam, harmonic, tetrahedra or hexahedra
     series: str  #: cases of ever higher cost belong to one series, such as ``HEX20 graded``
@@ -41,8 +41,8 @@ class Row:
     values: dict[str, float] = field(default_factory=dict)
     errors: dict[str, float] = field(default_factory=dict)
     like_for_like: dict[str, float] = field(default_factory=dict)
-    #: processor seconds of every run, which a budget counts; not written
-    taken: list[float] = field(default_factory=list, compare=False)
+    #: s of processor time of every run, which a budget counts; not written
+    processor_seconds: list[float] = field(default_factory=list, compare=False)
 
     @property
     def seconds(self) -> float | None:
@@ -52,14 +52,14 @@ class Row:
 
 @dataclass
 class Race:
-    """Rows, and what they are measured against."""
+    """Rows of a chart of error against cost, and their reference."""
 
     scene: dict
     #: ``model`` (its title), ``options``, ``unknowns``, ``seconds``, and by quantity ``values``,
     #: ``bands`` and ``like_for_like``
     reference: dict
     rows: list[Row]
-    setup: dict[str, float]  #: seconds a process pays once, by what for
+    setup: dict[str, float]  #: seconds a process pays once, by purpose
     #: runs, modes: runs asked for; elastic shapes that every model is asked for
     runs: int
     modes: int
@@ -69,38 +69,40 @@ class Race:
     environment: dict = field(default_factory=environment)
 
     def error(self, row: Row, quantity: str) -> float | None:
-        """Error of a row, never below the bar of the reference; None where the row has none."""
-        found = row.errors.get(quantity)
-        return (
-            None
-            if row.status != "ok" or found is None
-            else max(found, self.reference["bands"][quantity])
-        )
+        """Return the error of a row, never below the error bar of the reference; None where the row
+        has none.
+        """
+        error = row.errors.get(quantity)
+        if row.status != "ok" or error is None:
+            return None
+        return max(error, self.reference["bands"][quantity])
 
     def sure_error(self, row: Row, quantity: str) -> float | None:
-        """The largest of the error a user makes, the one like for like, and those of finer levels
-        of the series.
+        """Return the largest of the error a user makes, the one like for like, and those of finer
+        levels of the series.
 
         A cancellation of errors earns no place on the front: neither a tie that makes up for a
-        beam's stiffness, nor a coarse mesh whose error changes sign and so beats its own
-        refinements.
+        beam's stiffness, nor a coarse mesh whose error changes sign and so beats finer ones of the
+        same series.
         """
-        found = self.error(row, quantity)
-        if found is None:
+        error = self.error(row, quantity)
+        if error is None:
             return None
         finer = [
             self.error(r, quantity) or 0.0
             for r in self.rows
             if r.series == row.series and r.level > row.level
         ]
-        return max(found, row.like_for_like.get(quantity, 0.0), *finer)
+        return max(error, row.like_for_like.get(quantity, 0.0), *finer)
 
     def resolved(self, row: Row, quantity: str) -> bool:
-        """Tell whether the error of a row lies above the error bar of the reference."""
+        """Return whether the error of a row lies above the error bar of the reference."""
         return row.errors.get(quantity, 0.0) > self.reference["bands"][quantity]
 
     def front(self, quantity: str, cost: str = "seconds") -> list[Row]:
-        """Rows on the Pareto front of a quantity over ``seconds`` or ``unknowns``, cheapest first."""
+        """Return the rows on the Pareto front of a quantity over ``seconds`` or ``unknowns``,
+        cheapest first.
+        """
         places = front(
             [getattr(row, cost) for row in self.rows],
             [self.sure_error(row, quantity) for row in self.rows],
@@ -109,18 +111,19 @@ class Race:
 
 
 def front(cost: Sequence[float | None], error: Sequence[float | None]) -> list[int]:
-    """Places of the points that no other beats: none is at least as good in both and better in one.
+    """Return the places of the points that no other beats: none is at least as good in both and
+    better in one.
 
-    In ascending order of cost; points with None or NaN take no part, and of equal ones the first stands
-    for all.
+    In ascending order of cost; points with None or NaN take no part, and the first of equal ones
+    counts.
     """
-    known = [
+    points = [
         (c, e, k)
         for k, (c, e) in enumerate(zip(cost, error))
         if c is not None and e is not None and np.isfinite(c) and np.isfinite(e)
     ]
     out, best = [], np.inf
-    for _, e, k in sorted(known):
+    for _, e, k in sorted(points):
         if e < best:
             out.append(k)
             best = e

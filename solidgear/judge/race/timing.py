@@ -1,8 +1,8 @@
 """Many discretisations of one scene, solved and timed in turns.
 
 A time runs from the scene in memory to both answers, compliance at the lumped point and modes, on a
-new body; what a process pays once (imports, first use of gmsh and MKL) is measured apart, and each
-kind of model runs once unmeasured before.
+new body; costs that a process pays once (imports, first use of gmsh and MKL) are measured
+separately, and each kind of model runs once unmeasured before.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from solidgear.machine.meter import processor_seconds
 from solidgear.quantity import Quantity
 
 log = logging.getLogger(__name__)
-#: relative error bar of the reference, below what tells models apart; one of a millionth
+#: relative error bar of the reference, below the gaps between models; one of a millionth
 #: takes minutes on a shaft of ten edges
 SURE, FULL_SURE = 3e-4, 1e-6
 #: s of processor time for the points, the same number of them on a busy machine as on an idle one;
@@ -51,54 +51,59 @@ def race(
     progress: Callable[[str], None] = lambda _: None,
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
-    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all alike; after
-    Ctrl-C with what there was, ``complete`` False.
+    """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all equally;
+    rows (:func:`solidgear.judge.race.cases.plan`) are filled in. After Ctrl-C the finished runs are
+    returned, with ``complete`` False.
 
     Parameters
     ----------
-    rows : list of Row
-        Such as :func:`solidgear.judge.race.cases.plan` makes; they are filled in.
     runs : int
         Of each case; cases above 8 s of processor time get at most three, above 20 s one.
     budget : float
-        Seconds of processor time for the rows; the reference takes what it takes.  A level that would
-        not fit in with all its runs, the first of a series with one, is left out, but for beams and
-        lumped models, and the cheapest case where none else has an answer.
+        Seconds of processor time for the rows; the reference is not limited. A level that would not
+        fit in with all its runs, the first of a series with one, is left out, but for beams and
+        lumped models, and the cheapest case where no other has an answer.
     sure : float, optional
         Relative error bar that the reference is refined to; 3e-4 by default.
     setup : dict of str to float, optional
-        What a process pays once, for the record.
+        Start-up costs of a process, for the record.
     keep : callable
-        Given the race after every run, for writing it down.
+        Called with the race after every run, for writing it down.
 
     Raises
     ------
     SolidgearError
-        If the reference fails or has none of the charted quantities with a bar, or no row has an
-        answer.
+        If the reference fails or has none of the charted quantities with an error bar, or no row
+        has an answer.
     """
     start = time.perf_counter()
     n = max(scene.ask.modes, 10)
-    against, compliance = _reference(scene, sure or SURE, n, progress)
-    found = Race(
-        json.loads(json.dumps(scene.as_dict())), against, rows, setup or {}, runs, n, budget
+    reference, compliance = _reference(scene, sure or SURE, n, progress)
+    result = Race(
+        scene=json.loads(json.dumps(scene.as_dict())),
+        reference=reference,
+        rows=rows,
+        setup=setup or {},
+        runs=runs,
+        modes=n,
+        budget=budget,
     )
 
     began = processor_seconds()
 
     def spent() -> float:
-        found.seconds = time.perf_counter() - start
+        result.seconds = time.perf_counter() - start
         return processor_seconds() - began
 
     def timed(row: Row, turn: int) -> None:
         progress(f"run {turn + 1} of {runs}: {row.series}, level {row.level}")
-        _run(scene, row, n, against, compliance)
+        _run(scene, row, n, reference, compliance)
         spent()
-        keep(found)
+        keep(result)
 
     try:
-        first = _warm_up(scene, found, n, progress, spent)
-        while waiting := [row for row in found.rows if row.status == "waiting"]:
+        first = _warm_up(scene, result, n, progress, spent)
+        while waiting := [row for row in result.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
             row = min(
@@ -107,36 +112,38 @@ def race(
                     for r in waiting
                     if not any(w.series == r.series and w.level < r.level for w in waiting)
                 ),
-                key=lambda r: _guess(r, found, first),
+                key=lambda r: _guess(r, result, first),
             )
-            _admit(row, found, first, spent())
+            _admit(row, result, first, spent())
             if row.status == "waiting":
                 timed(row, 0)
         for turn in range(1, runs):
-            for row in found.rows:
-                if row.status != "ok" or len(row.taken) >= _most_runs(row.taken[0], runs):
+            for row in result.rows:
+                if row.status != "ok" or len(row.processor_seconds) >= _most_runs(
+                    row.processor_seconds[0], runs
+                ):
                     continue
-                if spent() + row.taken[0] > budget:
+                if spent() + row.processor_seconds[0] > budget:
                     _note(row, f"the budget of {budget:g} s ended after run {len(row.samples)}")
                 else:
                     timed(row, turn)
     except KeyboardInterrupt:
-        found.complete = False
+        result.complete = False
         progress("interrupted; keeping what is there")
-        for row in found.rows:
+        for row in result.rows:
             if row.status == "waiting":
                 row.status, row.reason = "left out", "interrupted"
     spent()
-    keep(found)
-    if found.complete and not any(row.status == "ok" for row in found.rows):
-        why = next((row.reason for row in found.rows), "no case was given")
-        raise SolidgearError(f"nothing to chart: no case has an answer; the first: {why}")
-    return found
+    keep(result)
+    if result.complete and not any(row.status == "ok" for row in result.rows):
+        reason = next((row.reason for row in result.rows), "no case was given")
+        raise SolidgearError(f"nothing to chart: no case has an answer; the first: {reason}")
+    return result
 
 
 def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
-    """Largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists in both; None
-    if there are none.
+    """Return the largest ``|dC_ij| / sqrt(C_ii C_jj)`` over the motions that something resists in
+    both; None if there are none.
     """
     keep = np.isfinite(np.diag(compliance)) & np.isfinite(np.diag(reference))
     if not keep.any():
@@ -147,14 +154,16 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
 
 
 def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
-    """Record of the model that judges the scene, refined to an error bar, and its compliance."""
+    """Solve the model that judges the scene, refined to an error bar; return the record and the
+    compliance.
+    """
     progress(f"reference: refined to an error bar of {sure:g}")
-    made = settle(scene, sure, progress=progress)
-    model = LADDER[made.rung]
+    settled = settle(scene, sure, progress=progress)
+    model = LADDER[settled.rung]
     start = time.perf_counter()
-    found = answer(scene, model.name, made.options, n)
-    seconds, values = time.perf_counter() - start, found.quantities
-    have = [q for q in CHARTED if q in values and math.isfinite(made.bars.get(q, math.inf))]
+    reference_answer = answer(scene, model.name, settled.options, n)
+    seconds, values = time.perf_counter() - start, reference_answer.quantities
+    have = [q for q in CHARTED if q in values and math.isfinite(settled.bars.get(q, math.inf))]
     if not have:
         raise SolidgearError(
             f"nothing to chart: the reference, the {model.title}, tells neither "
@@ -164,29 +173,29 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
     like: dict[Quantity, float] = {}
     if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
         progress("reference with section ties")
-        like = answer(scene.with_attachment("section"), model.name, made.options, n).quantities
+        like = answer(scene.with_attachment("section"), model.name, settled.options, n).quantities
     record = {
         "model": model.title,
-        "options": json.loads(json.dumps(made.options)),
-        "setting": made.setting,
-        "unknowns": found.body.size,
+        "options": json.loads(json.dumps(settled.options)),
+        "setting": settled.setting,
+        "unknowns": reference_answer.body.size,
         "seconds": seconds,
         "values": {q: values[q] for q in have},
-        "bands": {q: made.bars[q] for q in have},
+        "bands": {q: settled.bars[q] for q in have},
         "like_for_like": {q: like[q] for q in have if q in like},
     }
-    return record, found.statics.main.compliance
+    return record, reference_answer.statics.main.compliance
 
 
-def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None:
-    """One more run of a row; the first fills in its numbers."""
+def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> None:
+    """Run a row once more; the first run fills in the numbers."""
     gc.collect()
     start, began = time.perf_counter(), processor_seconds()
     try:
-        found = answer(scene, row.model, row.options, n)
+        result = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
-        row.status, row.reason = "failed", _why(error)
+        row.status, row.reason = "failed", _failure(error)
         log.info(
             "%s, level %d: %s",
             row.series,
@@ -196,34 +205,32 @@ def _run(scene, row: Row, n: int, against: dict, compliance: np.ndarray) -> None
         )
         return
     row.samples.append(time.perf_counter() - start)
-    row.taken.append(processor_seconds() - began)
+    row.processor_seconds.append(processor_seconds() - began)
     if row.status == "ok":
         return
-    row.status, values = "ok", found.quantities
-    row.unknowns = 6 if row.family == LUMPED else found.body.size
-    row.values = {q: values[q] for q in against["values"] if q in values}
-    row.errors = {q: abs(v / against["values"][q] - 1) for q, v in row.values.items()}
-    if row.family in CHEAP and against["like_for_like"]:
+    row.status, values = "ok", result.quantities
+    row.unknowns = 6 if row.family == LUMPED else result.body.size
+    row.values = {q: values[q] for q in reference["values"] if q in values}
+    row.errors = {q: abs(v / reference["values"][q] - 1) for q, v in row.values.items()}
+    if row.family in CHEAP and reference["like_for_like"]:
         like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
-            q: abs(like[q] / v - 1) for q, v in against["like_for_like"].items() if q in like
+            q: abs(like[q] / v - 1) for q, v in reference["like_for_like"].items() if q in like
         }
-    missing = [q for q in against["values"] if q not in values]
+    missing = [q for q in reference["values"] if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
-    whole = scaled_error(found.statics.main.compliance, compliance)
-    if whole is not None:
-        row.errors["C 6x6"] = whole
+    compliance_error = scaled_error(result.statics.main.compliance, compliance)
+    if compliance_error is not None:
+        row.errors["C 6x6"] = compliance_error
 
 
-def _why(error: Exception) -> str:
+def _failure(error: Exception) -> str:
     if isinstance(error, SolidgearError):
         return str(error)
-    return (
-        "not enough memory"
-        if isinstance(error, MemoryError)
-        else f"{type(error).__name__}: {error}"
-    )
+    if isinstance(error, MemoryError):
+        return "not enough memory"
+    return f"{type(error).__name__}: {error}"
 
 
 def _note(row: Row, text: str) -> None:
@@ -236,16 +243,17 @@ def _kind(row: Row) -> tuple:
 
 
 def _warm_up(
-    scene, found: Race, n: int, progress, spent: Callable[[], float]
+    scene, chart: Race, n: int, progress, spent: Callable[[], float]
 ) -> dict[tuple, float]:
-    """The first case of every kind once, outside the rows: first calls pay for imports and caches;
-    processor seconds by kind, infinite for those that half the budget does not reach.
+    """Run the first case of every kind once, outside the rows: first calls pay for imports and
+    caches; return processor seconds by kind, infinite for those that half the budget does not
+    reach.
     """
     first: dict[tuple, float] = {}
-    for row in found.rows:
+    for row in chart.rows:
         if row.status != "waiting" or _kind(row) in first:
             continue
-        if row.family not in CHEAP and spent() > found.budget / 2:
+        if row.family not in CHEAP and spent() > chart.budget / 2:
             first[_kind(row)] = math.inf
             continue
         progress(f"warm-up: {row.series}")
@@ -258,42 +266,43 @@ def _warm_up(
     return first
 
 
-def _guess(row: Row, found: Race, first: dict[tuple, float]) -> float:
-    """Processor seconds of one run of a row, from the levels before it in its series; the first level costs
-    what the warm-up of its kind did.
+def _guess(row: Row, chart: Race, first: dict[tuple, float]) -> float:
+    """Estimate the processor seconds of one run of a row, from the levels before it in the series;
+    the first level costs as much as the warm-up of that kind did.
     """
     times = [
-        r.taken[0]
-        for r in found.rows
+        r.processor_seconds[0]
+        for r in chart.rows
         if r.series == row.series and r.level < row.level and r.status == "ok"
     ]
     growth = min(max(times[-1] / times[-2], 1.5), 10.0) if len(times) > 1 else GROWTH
     return times[-1] * growth if times else first.get(_kind(row), 0.0)
 
 
-def _admit(row: Row, found: Race, first: dict[tuple, float], spent: float) -> None:
-    """Leave a row out if the budget would not hold it beside all runs of all admitted rows; the
-    cheapest is kept where none else has an answer.
+def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> None:
+    """Leave a row out if the budget would not suffice for it beside all runs of all admitted rows;
+    the cheapest is kept where no other has an answer.
     """
     if any(
-        r.status == "left out" for r in found.rows if r.series == row.series and r.level < row.level
+        r.status == "left out" for r in chart.rows if r.series == row.series and r.level < row.level
     ):
         row.status, row.reason = "left out", "the level before it was left out"
         return
-    cheap = any(r.family in CHEAP and r.status == "waiting" for r in found.rows)
-    if row.family in CHEAP or not (cheap or any(r.status == "ok" for r in found.rows)):
+    cheap = any(r.family in CHEAP and r.status == "waiting" for r in chart.rows)
+    if row.family in CHEAP or not (cheap or any(r.status == "ok" for r in chart.rows)):
         return
-    guess = _guess(row, found, first)
+    guess = _guess(row, chart, first)
     owed = sum(
-        r.taken[0] * (_most_runs(r.taken[0], found.runs) - len(r.taken))
-        for r in found.rows
+        r.processor_seconds[0]
+        * (_most_runs(r.processor_seconds[0], chart.runs) - len(r.processor_seconds))
+        for r in chart.rows
         if r.status == "ok"
     )
-    # a series with one point, run once, tells more than further runs of others
-    runs = 1 if row.level == 1 else _most_runs(guess, found.runs)
-    if spent + owed + guess * runs > found.budget:
+    # a series with one point, run once, is worth more than further runs of others
+    runs = 1 if row.level == 1 else _most_runs(guess, chart.runs)
+    if spent + owed + guess * runs > chart.budget:
         row.status = "left out"
-        row.reason = f"the budget of {found.budget:g} s would not hold it" + (
+        row.reason = f"the budget of {chart.budget:g} s would not hold it" + (
             f" (about {guess:.2g} s a run)" if math.isfinite(guess) else ""
         )
 

@@ -38,7 +38,7 @@ INSTALL = {
 
 @lru_cache
 def missing(name: str) -> str:
-    """Empty if a back end can be used, else the reason why not.
+    """Return the reason why a back end cannot be used, empty if it can.
 
     Examples
     --------

@@ -40,5 +40,5 @@ class Cholmod:
         del self.lower  # the factor does not need it
 
     def solve(self, rhs):
-        """Solution for one (n,) or several (n, k) right-hand sides."""
+        """Solve for one (n,) or several (n, k) right-hand sides."""
         return np.ascontiguousarray(self.symbolic(np.asarray(rhs, dtype=float)))

@@ -1,4 +1,4 @@
-"""Steps that every back end takes with a matrix: its upper triangle, its size, and how a factor
+"""Steps that every back end takes with a matrix: the upper triangle, the size, and how a factor
 fails.
 """
 
@@ -15,18 +15,9 @@ class FactorError(SolidgearError):
 
 
 def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """Upper triangle with the diagonal (five to ten times faster than ``scipy.sparse.triu``).
-
-    Its arrays are those of the lower triangle by columns as well.
-
-    Parameters
-    ----------
-    matrix : (n, n) sparse
-        CSR with sorted rows.
-
-    Returns
-    -------
-    (n, n) sparse
+    """Return the upper triangle with the diagonal of a CSR matrix with sorted rows (five to ten
+    times faster than ``scipy.sparse.triu``); the arrays are those of the lower triangle by columns
+    as well.
 
     Examples
     --------
@@ -45,5 +36,5 @@ def upper_triangle(matrix: sp.csr_matrix) -> sp.csr_matrix:
 
 
 def size_mb(matrix):
-    """Memory of a sparse matrix, MB of 2**20 bytes."""
+    """Return the memory of a sparse matrix, MB of 2**20 bytes."""
     return (matrix.data.nbytes + matrix.indices.nbytes + matrix.indptr.nbytes) / 2**20

@@ -1,6 +1,6 @@
-"""Memory of a factor by back ends that cannot say it themselves, and before there is a matrix.
+"""Memory of a factor by back ends that do not report it, and before there is a matrix.
 
-Nested dissection of a mesh in three dimensions leaves a factor of the order of the square of its
+Nested dissection of a mesh in three dimensions leaves a factor of the order of the square of the
 largest separator. That holds ``n^(2/3)`` unknowns, times the cube root of the entries of a row,
 since separators are as thick as an element: fill goes with ``(n nnz)^(2/3)``. On planar meshes of
 orders 1 to 12 memory was seen to go with ``n nnz^(1/4)``.
@@ -19,15 +19,15 @@ PLANAR = 57.0
 
 
 def law(name: str, unknowns: float, entries: float, planar: bool = False) -> float:
-    """Peak memory of factoring a matrix by a back end, about, MB: by its rows, the entries of both
-    triangles, and whether it comes from a 1D or 2D mesh.
+    """Estimate the peak memory of factoring a matrix by a back end, MB: by the rows, the entries of
+    both triangles, and whether it comes from a 1D or 2D mesh.
 
     Examples
     --------
     Of one shape, factors of solids grow with the power 4/3 of their unknowns:
 
-    >>> one, eight = (law("superlu", n, 80 * n) for n in (10_000, 80_000))
-    >>> round(eight / one, 6)
+    >>> small, large = (law("superlu", n, 80 * n) for n in (10_000, 80_000))
+    >>> round(large / small, 6)
     16.0
     """
     if planar:

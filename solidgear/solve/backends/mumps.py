@@ -39,7 +39,7 @@ class Mumps:
             raise FactorError(f"MUMPS could not factor the system matrix ({error})") from error
 
     def factor(self):
-        """Factor; :class:`FactorError` if the matrix is not what it should be."""
+        """Factor; :class:`FactorError` if the matrix cannot be factored."""
         self._try(
             self.context.factor,
             reuse_analysis=True,
@@ -59,12 +59,10 @@ class Mumps:
     @property
     def negative(self) -> int | None:
         """Negative pivots (INFOG(12) of the users' guide); None if tiny ones were replaced."""
-        return (
-            None
-            if self.context.factor_stats.tiny_pivots
-            else int(self.context.mumps_instance.infog[12])
-        )
+        if self.context.factor_stats.tiny_pivots:
+            return None
+        return int(self.context.mumps_instance.infog[12])
 
     def solve(self, rhs):
-        """Solution for one (n,) or several (n, k) right-hand sides."""
+        """Solve for one (n,) or several (n, k) right-hand sides."""
         return np.ascontiguousarray(self.context.solve(np.asarray(rhs, dtype=float)))

@@ -21,14 +21,14 @@ from solidgear.solve.backends.matrix import FactorError, size_mb, upper_triangle
 
 @lru_cache(maxsize=1)
 def _mkl():
-    """The library.
+    """Load the library, once.
 
-    Its threads sleep as soon as a call is over, unless the environment has it otherwise: by default
-    they spin for 0.2 s, which with both of two cores busy made ten modes of a 3D solid take 1.3
-    times as long (two runs in turn: 1.36, 1.34).
+    The threads of it sleep as soon as a call is over, unless the environment has it otherwise: by
+    default they spin for 0.2 s, which with both of two cores busy made ten modes of a 3D solid take
+    1.3 times as long (two runs in turn: 1.36, 1.34).
 
     pypardiso searches the whole environment for the library at every construction (1 s and more);
-    the installed package ``mkl`` knows where its library is, and asking once is enough.
+    the installed package ``mkl`` knows where the library is, and asking once is enough.
     """
     os.environ.setdefault("KMP_BLOCKTIME", "0")  # read when the library is loaded
     installed = None if os.environ.get("PYPARDISO_MKL_RT") else _installed_mkl()
@@ -40,7 +40,7 @@ def _mkl():
 
 
 def _installed_mkl():
-    """The library in the package ``mkl``, or None."""
+    """Find the library in the package ``mkl``; None if it is not installed."""
     try:
         inside = files("mkl") or ()
     except PackageNotFoundError:
@@ -50,7 +50,7 @@ def _installed_mkl():
 
 @lru_cache(maxsize=1)
 def _mkl_pardiso():
-    """The C function, on no more threads than there are processors for it."""
+    """Return the C function, on no more threads than there are processors for it."""
     library = _mkl()
     function = library["pardiso"]  # a handle of our own, without pypardiso's argument types
     function.restype = None
@@ -78,7 +78,7 @@ def _int(value):
 UNUSED = np.zeros(1)
 
 
-#: bytes by the entry of the matrix that an out-of-core factor keeps of itself in memory; PARDISO tells
+#: bytes by the entry of the matrix that an out-of-core factor keeps of itself in memory; PARDISO gives
 #: it (iparm 63) only of the factorisation that is not used here: 16.0 and 16.4 on two solids
 KEPT = 16.0
 
@@ -166,7 +166,7 @@ class Pardiso:
             self.core_mb = 2 * numeric / 1024 + 100
         self.estimate_mb = max(symbolic_peak, symbolic + numeric) / 1024 + size_mb(self.upper)
 
-    #: MB that an out-of-core factor may hold in memory; told after the analysis, by PARDISO
+    #: MB that an out-of-core factor may hold in memory; given by PARDISO after the analysis
     core_mb = 2000.0
 
     def _call(self, phase, rhs=UNUSED, x=UNUSED, columns=1):
@@ -192,7 +192,7 @@ class Pardiso:
             )
 
     def factor(self):
-        """Factor; :class:`FactorError` if the matrix is not what it should be."""
+        """Factor; :class:`FactorError` if the matrix cannot be factored."""
         self._call(22)
 
     @property
@@ -211,7 +211,7 @@ class Pardiso:
         return negative if not perturbed and positive + negative == self.n else None
 
     def solve(self, rhs):
-        """Solution for one (n,) or several (n, k) right-hand sides; `FactorError` for NaN."""
+        """Solve for one (n,) or several (n, k) right-hand sides; `FactorError` for NaN."""
         rhs = np.asfortranarray(rhs, dtype=self.number)
         x = np.empty_like(rhs)
         if rhs.size:
@@ -252,15 +252,15 @@ SPREAD = 1.2
 
 
 def _node_order(matrix, components: int = 3) -> np.ndarray | None:
-    """Fill-reducing order of a solid from the graph of its nodes, or None if unknowns do not come
-    in threes.
+    """Find a fill-reducing order of a solid from the graph of the nodes, or None if unknowns do not
+    come in threes.
 
     The three motions of a node have the same neighbours: ordering nodes gives the same fill for a
     ninth of the graph, and the analysis takes 0.3 s instead of 1.0 s on 93,000 unknowns. Only the
     cost depends on it, so the test may be a loose one.
     """
-    n, rest = divmod(matrix.shape[0], components)
-    if rest or n < 1000:
+    n, remainder = divmod(matrix.shape[0], components)
+    if remainder or n < 1000:
         return None
     length = np.diff(matrix.indptr).reshape(n, components)
     # entries that happen to be zero may be missing
@@ -300,7 +300,7 @@ def _node_order(matrix, components: int = 3) -> np.ndarray | None:
 
 
 def _folder(owner: Pardiso) -> str:
-    """A folder for the files of one factor, which goes with it; where it is follows ``TMPDIR``."""
+    """Make a folder for the files of one factor, deleted with it; where it is follows ``TMPDIR``."""
     folder = tempfile.mkdtemp(prefix="solidgear-factor-")
     weakref.finalize(owner, shutil.rmtree, folder, ignore_errors=True)
     return folder
@@ -308,8 +308,8 @@ def _folder(owner: Pardiso) -> str:
 
 @contextmanager
 def _files_in(folder: str | None, core_mb: float) -> Iterator[None]:
-    """PARDISO is told by the environment where its files go, and how much memory it may take
-    beside them.
+    """Set the environment variables by which PARDISO finds the folder of its files and the memory
+    that it may take beside them.
     """
     if folder is None:
         yield

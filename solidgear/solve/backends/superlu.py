@@ -42,7 +42,7 @@ class SuperLU:
         self.estimate_mb = copies * share * law("superlu", matrix.shape[0], matrix.nnz, planar)
 
     def factor(self):
-        """Factor; :class:`FactorError` if memory ends, or the matrix is not what it should be."""
+        """Factor; :class:`FactorError` if memory ends, or the matrix cannot be factored."""
         n = self.matrix.shape[0]
         try:
             self._lu = Made(
@@ -82,5 +82,5 @@ class SuperLU:
         return int(np.count_nonzero(lu.U.diagonal() < 0))
 
     def solve(self, rhs):
-        """Solution for one (n,) or several (n, k) right-hand sides."""
+        """Solve for one (n,) or several (n, k) right-hand sides."""
         return self._lu.value.solve(np.asarray(rhs, dtype=self.number))

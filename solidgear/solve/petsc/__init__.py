@@ -38,23 +38,25 @@ PROBE = "import worker; worker.libraries()"
 
 
 def python() -> str:
-    """The interpreter that PETSc belongs to."""
+    """Return the interpreter that PETSc belongs to."""
     return os.environ.get("SOLIDGEAR_PETSC_PYTHON") or "/usr/bin/python3"
 
 
 def launcher() -> list[str]:
-    """Command that starts ranks: ``SOLIDGEAR_MPIRUN``, such as ``mpirun --hostfile hosts``."""
+    """Return the command that starts ranks: ``SOLIDGEAR_MPIRUN``, such as ``mpirun --hostfile
+    hosts``.
+    """
     return shlex.split(os.environ.get("SOLIDGEAR_MPIRUN") or "mpirun")
 
 
-def elsewhere() -> bool:
-    """True where ranks may run on other machines, so that their memory is not this one's."""
+def on_other_machines() -> bool:
+    """Return whether ranks may run on other machines, so that their memory is not that of this one."""
     return bool(os.environ.get("SOLIDGEAR_MPIRUN"))
 
 
 @lru_cache(maxsize=1)
 def missing() -> str:
-    """Empty if PETSc can be used, else the reason why not."""
+    """Return the reason why PETSc cannot be used, empty if it can."""
     if shutil.which(launcher()[0]) is None:
         return f"{launcher()[0]} is not there"
     if shutil.which(python()) is None:
@@ -66,7 +68,7 @@ def missing() -> str:
 
 
 def _environment() -> dict[str, str]:
-    """Of the ranks: one thread each, and none of this interpreter's paths."""
+    """Return the environment of the ranks: one thread each, and none of this interpreter's paths."""
     out = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "VIRTUAL_ENV"))}
     out |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     out["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
@@ -79,37 +81,20 @@ def _environment() -> dict[str, str]:
 
 
 class Ranks:
-    """A matrix factored on some ranks, which wait for right-hand sides.
+    """A matrix (n, n) factored on some ranks, which wait for right-hand sides; FactorError if PETSc
+    is not there or ends.
 
-    Parameters
-    ----------
-    matrix, mass : (n, n) sparse
-        Positive definite; the mass is for modes.
-    rigid : (n, r) ndarray
-        Rigid motions: what multigrid must know of the matrix.
-    factoring : Factoring
-        Engine and ranks.
-    nodal : bool
-        Whether unknowns come in threes, node by node.
-
-    Attributes
-    ----------
-    peak_mb : float
-        Most memory of all ranks together so far.
-    steps : int
-        Most iterations of a solution; 0 for a direct factor.
-
-    Raises
-    ------
-    FactorError
-        If PETSc is not there or ends.
+    The mass is for modes, the rigid motions (n, r) are for multigrid; `nodal` says that unknowns
+    come in threes, node by node.
     """
 
     def __init__(self, matrix, mass, rigid: np.ndarray, factoring: Factoring, nodal: bool):
-        why = missing()
-        if why:
-            raise FactorError(f"engine = {factoring.engine} was asked for but {why}: {INSTALL}")
-        self.n, self.steps, self.peak_mb, self._number = matrix.shape[0], 0, 0.0, 0
+        reason = missing()
+        if reason:
+            raise FactorError(f"engine = {factoring.engine} was asked for but {reason}: {INSTALL}")
+        self.n, self._number = matrix.shape[0], 0
+        self.steps = 0  #: most iterations of a solution; 0 for a direct factor
+        self.peak_mb = 0.0  #: most memory of all ranks together so far, MB
         self.direct = factoring.engine == "petsc"
         self.folder = Path(tempfile.mkdtemp(prefix="solidgear-petsc-"))
         weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
@@ -133,37 +118,37 @@ class Ranks:
             np.save(self.folder / f"{name}_{part}.npy", getattr(matrix, part))
 
     def _wait(self) -> dict:
-        done = self.folder / f"{self._number}.done"
-        while not done.exists():
-            if self._process.poll() is not None and not done.exists():
+        done_file = self.folder / f"{self._number}.done"
+        while not done_file.exists():
+            if self._process.poll() is not None and not done_file.exists():
                 self._log.seek(0)
                 lines = [x.strip() for x in self._log.read().splitlines() if "Error" in x]
                 raise FactorError(
                     f"PETSc ended without an answer: {(lines or ['killed'])[-1][:200]}"
                 )
             time.sleep(0.002)
-        answer = json.loads(done.read_text())
+        answer = json.loads(done_file.read_text())
         self.peak_mb = max(self.peak_mb, answer["peak_mb"])
         self.steps = max(self.steps, answer.get("steps", 0))
         return answer
 
-    def _ask(self, what: str, columns: int, arrays: dict[str, np.ndarray], **more) -> tuple:
+    def _ask(self, task: str, columns: int, arrays: dict[str, np.ndarray], **more) -> tuple:
         self._number += 1
         for name, array in arrays.items():
             np.save(self.folder / f"{self._number}_{name}.npy", array)
         out = self.folder / f"{self._number}_out.npy"
         np.lib.format.open_memmap(out, "w+", float, (self.n, columns)).flush()
         order = self.folder / "order.tmp"
-        order.write_text(json.dumps({"what": what, **more}))
+        order.write_text(json.dumps({"what": task, **more}))
         order.rename(self.folder / f"{self._number}.json")
         answer = self._wait()
-        found = np.load(out)
+        result = np.load(out)
         for path in self.folder.glob(f"{self._number}_*.npy"):
             path.unlink()
-        return found, answer
+        return result, answer
 
     def solve(self, rhs: np.ndarray) -> np.ndarray:
-        """Solution for one (n,) or several (n, k) right-hand sides."""
+        """Solve for one (n,) or several (n, k) right-hand sides."""
         if rhs.ndim == 1:
             return self.solve(rhs[:, None])[:, 0]
         if not rhs.shape[1]:
@@ -173,25 +158,13 @@ class Ranks:
     def modes(
         self, wanted: int, load, through, inner, free, tolerance: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Lowest eigenpairs of the matrix with springs, by SLEPc's Krylov-Schur.
+        """Find the lowest eigenpairs of the matrix with springs, by SLEPc's Krylov-Schur: (k,)
+        values, ascending, of the shifted matrix, fewer than wanted if it did not converge, and (n,
+        k) mass-orthonormal vectors.
 
-        Parameters
-        ----------
-        wanted : int
-        load, through : (n, r) ndarray
-            Root of the springs, and the solution for it.
-        inner : (r, r) ndarray
-            ``I + load' through``.
-        free : (n, k) ndarray
-            What is kept out: rigid motions that nothing resists.
-        tolerance : float
-
-        Returns
-        -------
-        value : (k,) ndarray
-            Ascending, of the shifted matrix; fewer than wanted if it did not converge.
-        vectors : (n, k) ndarray
-            Mass-orthonormal.
+        `load` and `through` (n, r) are the root of the springs and the solution for it, `inner` (r,
+        r) is ``I + load' through``, `free` (n, k) are rigid motions that nothing resists, to be
+        excluded.
         """
         if self._mass is not None:
             self._save("m", self._mass.tocsr())
@@ -209,9 +182,11 @@ OF_A_RANK, MULTIGRID = 90.0, 440.0
 
 
 def needed_mb(unknowns: float, entries: float, factoring: Factoring) -> float:
-    """Memory of all ranks, about, as far as it is of this machine, and of the files' copies here."""
+    """Estimate the memory of all ranks, as far as it is of this machine, and of the files' copies
+    here, MB.
+    """
     copies = 24.0 * entries / MB
-    if elsewhere():
+    if on_other_machines():
         return copies
     direct = factoring.engine == "petsc"
     factor = law("mumps", unknowns, entries) if direct else MULTIGRID * entries / MB
@@ -219,24 +194,22 @@ def needed_mb(unknowns: float, entries: float, factoring: Factoring) -> float:
 
 
 def plan_on_ranks(block: Block, matrix: sp.csr_matrix, factoring: Factoring) -> Planned:
-    """The factor of the shifted stiffness of a block by an engine of its own, which has no
-    analysis apart.
-    """
+    """Plan the factor of the shifted stiffness of a block by PETSc, which has no separate analysis."""
     name = "mumps" if factoring.engine == "petsc" else "gamg-cg"
     nodal = isinstance(block.mass, ScalarMass)
 
-    def made(inner: sp.csr_matrix) -> Factor:
-        whole = inner.shape[0] == block.size
+    def factor(inner: sp.csr_matrix) -> Factor:
+        is_whole = inner.shape[0] == block.size
         ranks = Ranks(
-            inner, block.mass if whole else None, block.rigid[: inner.shape[0]], factoring, nodal
+            inner, block.mass if is_whole else None, block.rigid[: inner.shape[0]], factoring, nodal
         )
-        held = ranks if whole and ranks.direct else None
-        return Factor(name, FORCED, ranks.solve, factoring=factoring, ranks=held)
+        direct_ranks = ranks if is_whole and ranks.direct else None
+        return Factor(name, FORCED, ranks.solve, factoring=factoring, ranks=direct_ranks)
 
     def make() -> Factor:
         if not block.border:
-            return made(matrix)
-        return bordered(matrix, block.border, made, definite_corner)
+            return factor(matrix)
+        return bordered(matrix, block.border, factor, definite_corner)
 
     n = matrix.shape[0]
     return Planned(n, name, needed_mb(n, matrix.nnz, factoring), make)

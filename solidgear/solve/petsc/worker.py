@@ -28,7 +28,7 @@ CLOSE = 1e-11
 
 
 def libraries():
-    """``PETSc`` and ``SLEPc``, initialised."""
+    """Return ``PETSc`` and ``SLEPc``, initialised."""
     for pattern in DEBIAN:
         sys.path.extend(sorted(glob.glob(pattern)))
     import slepc4py
@@ -57,7 +57,7 @@ class Rank:
         return os.path.join(self.folder, name)
 
     def rows(self, name):
-        """Own rows of an array in a file."""
+        """Return this rank's rows of an array in a file."""
         return np.load(self.path(name), mmap_mode="r")[self.lo : self.hi]
 
     def matrix(self, name):
@@ -67,9 +67,9 @@ class Rank:
         if rank + 1 == size:
             hi = self.n
         indptr = np.load(self.path(f"{name}_indptr.npy"), mmap_mode="r")[lo : hi + 1]
-        own = slice(int(indptr[0]), int(indptr[-1]))
+        entries = slice(int(indptr[0]), int(indptr[-1]))
         indices, data = (
-            np.array(np.load(self.path(f"{name}_{part}.npy"), mmap_mode="r")[own])
+            np.array(np.load(self.path(f"{name}_{part}.npy"), mmap_mode="r")[entries])
             for part in ("indices", "data")
         )
         local = (indptr - indptr[0]).astype(self.petsc.IntType)
@@ -115,7 +115,7 @@ class Rank:
         return out
 
     def solve(self, number, ask):
-        """Solutions for some right-hand sides."""
+        """Solve for some right-hand sides."""
         rhs = self.rows(f"{number}_in.npy")
         steps = 0
         if self.task["method"] == "mumps":
@@ -145,11 +145,11 @@ class Rank:
         return {"steps": steps}
 
     def write(self, name, rows):
-        """Own rows into an array in a file."""
+        """Write this rank's rows into an array in a file."""
         np.load(self.path(name), mmap_mode="r+")[self.lo : self.hi] = rows
 
     def modes(self, number, ask):
-        """Lowest modes of the matrix with springs by Krylov-Schur on the inverse at hand."""
+        """Find the lowest modes of the matrix with springs by Krylov-Schur on the inverse at hand."""
         mass = self.matrix("m")
         load = [self.vector(c) for c in self.rows(f"{number}_load.npy").T]
         through = [self.vector(c) for c in self.rows(f"{number}_through.npy").T]
@@ -196,26 +196,26 @@ class Rank:
         if free:
             eps.setDeflationSpace(free)
         eps.solve()
-        found = min(eps.getConverged(), ask["wanted"])
+        count = min(eps.getConverged(), ask["wanted"])
         shape, values = self.a.createVecRight(), []
         out = np.zeros((self.hi - self.lo, ask["wanted"]))
-        for k in range(found):
+        for k in range(count):
             values.append(eps.getEigenpair(k, shape).real)
             out[:, k] = shape.getArray()
         self.write(f"{number}_out.npy", out)
         return {"values": values, "steps": eps.getIterationNumber()}
 
     def peak_mb(self):
-        """Most memory that all ranks took, MB."""
-        own = open("/proc/self/status").read().split("VmHWM:")[1].split()[0]
+        """Return the most memory that all ranks took, MB."""
+        rank_kb = open("/proc/self/status").read().split("VmHWM:")[1].split()[0]
         v = self.petsc.Vec().createMPI((1, None), comm=self.comm)
-        v.setValue(self.comm.getRank(), int(own) / 1024)
+        v.setValue(self.comm.getRank(), int(rank_kb) / 1024)
         v.assemble()
         return v.sum()
 
 
 def main(folder):
-    """Serve until told to stop."""
+    """Serve until a request to stop."""
     rank = Rank(folder)
     number, serving = 0, True
     while serving:

@@ -61,7 +61,7 @@ def beam_against_solid(probe: Probe) -> Notices:
         quantity = in_words(name, probe.main)
         text = (
             f"{quantity} of the {LADDER[model].title} is {ratio} that of a "
-            f"light harmonic solid {TIES[worst.attachment]}{sure(worst.band)}"
+            f"light harmonic solid {TIES[worst.attachment]}{sure(worst.bar)}"
         )
         if kind == deviations.BEYOND:
             yield Notice(

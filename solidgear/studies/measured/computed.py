@@ -19,7 +19,7 @@ from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.rules import MOST_MODES
 from solidgear.scene.shaft import without_axis
-from solidgear.solve.adjoint import of_mode
+from solidgear.solve.adjoint import mode_form
 from solidgear.solve.modes import Mode, ModeSet, modes
 from solidgear.studies.change import BarredMode
 from solidgear.studies.sweep.bench import surface
@@ -67,7 +67,7 @@ class Computed:
         own = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
         own, out = own[range(count), range(count)], []
         for mode in self.modes:
-            states = [state for state, _ in of_mode(self.body, supports, mode).pairs]
+            states = [state for state, _ in mode_form(self.body, supports, mode).pairs]
             held = np.array([state.motions[there].reshape(count, 6) for state in states])
             energy = np.einsum("spi,pij,spj->p", held, own, held) / len(states)
             out.append(np.linalg.norm(known * energy) / (2 * np.pi * mode.frequency_hz) ** 2)

@@ -16,7 +16,7 @@ from solidgear.machine.threads import pinned
 from solidgear.scene import Scene
 from solidgear.scene.paths import Tables, replace_entry
 from solidgear.scene.toml_file import parse
-from solidgear.solve.adjoint import of_mode
+from solidgear.solve.adjoint import mode_form
 from solidgear.studies.loading import scene_of
 from solidgear.studies.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.studies.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -309,7 +309,7 @@ class _Study:
     def derivatives(self, computed: Computed) -> np.ndarray:
         """(modes, entries) derivatives of logarithms."""
         scene, body = computed.scene, computed.body
-        forms = [of_mode(body, as_supports(scene), mode) for mode in computed.modes]
+        forms = [mode_form(body, as_supports(scene), mode) for mode in computed.modes]
         by = Derivatives(scene, body, forms, computed.rung, computed.options).by
         columns = np.column_stack([by(low, high, 2 * STEP) for low, high in self.around()])
         return columns / np.array([mode.frequency_hz for mode in computed.modes])[:, None]

@@ -18,7 +18,7 @@ from solidgear.models.harmonic.derivative import HarmonicAdjoint
 from solidgear.models.harmonic.motion import Motion
 from solidgear.scene import STEEL, Scene
 from solidgear.scene.coned import coned
-from solidgear.solve.adjoint import Form, of_bodies, of_supports
+from solidgear.solve.adjoint import Form, change_by_bodies, change_by_supports
 from solidgear.studies.sweep.bench import surface
 
 #: of how far nodes move between two meshes, that the one between may lie beside their middle
@@ -53,7 +53,7 @@ class Derivatives:
         out = np.zeros(len(self.forms))
         if _springs(low) != _springs(high):
             one, two = as_supports(low), as_supports(high)
-            out += [of_supports(form, self.there, one, two) / step for form in self.forms]
+            out += [change_by_supports(form, self.there, one, two) / step for form in self.forms]
         return out if surface(low) == surface(high) else out + self._shaft(low, high, step)
 
     def _shaft(self, low: Scene, high: Scene, step: float) -> np.ndarray:
@@ -70,7 +70,7 @@ class Derivatives:
         one, two = (build(scene, self.model, **self.options) for scene in (low, high))
         if moves:
             _follows(one, self.body, two)
-        return np.array([of_bodies(form, one, two) for form in self.forms]) / step
+        return np.array([change_by_bodies(form, one, two) for form in self.forms]) / step
 
     @cached_property
     def _straight(self) -> bool:

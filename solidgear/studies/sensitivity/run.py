@@ -20,7 +20,7 @@ from solidgear.quantity import Quantity
 from solidgear.scene import Scene
 from solidgear.scene.paths import label_of
 from solidgear.scene.toml_file import parse
-from solidgear.solve.adjoint import Form, of_entry, of_mode
+from solidgear.solve.adjoint import Form, entry_form, mode_form
 from solidgear.solve.modes import modes
 from solidgear.studies.loading import load
 from solidgear.studies.sensitivity.derivatives import Derivatives
@@ -282,13 +282,15 @@ class Derived:
                     names = listed(list(map(str, shapes.names)))
                     raise SolidgearError(f"{wanted}: no such mode was found; there are {names}")
                 self.values.append(mode.frequency_hz)
-                self.forms.append(of_mode(self.body, self.supports, mode))
+                self.forms.append(mode_form(self.body, self.supports, mode))
                 self.pairs.append(mode.multiplicity > 1)
                 continue
             points = wanted.points_among([p.name for p in scene.ports])
             if len(points) > 1:
                 raise SolidgearError(f"{wanted}: terms between points have no derivatives here")
-            value, form = of_entry(self.body, self.supports, wanted, (*points, scene.port.name)[0])
+            value, form = entry_form(
+                self.body, self.supports, wanted, (*points, scene.port.name)[0]
+            )
             self.values.append(value)
             self.forms.append(form)
             self.pairs.append(False)

@@ -41,7 +41,7 @@ from solidgear.body import Supports, component_rows
 from solidgear.body.mode_names import numbered
 from solidgear.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.solve.coupling import decoupled, groups
-from solidgear.solve.naming import ALIKE, alike
+from solidgear.solve.naming import ALIKE, quarter_turn_change
 from solidgear.springs import root_of
 
 #: As in `solidgear.solve.modes.modes`: relative change of an eigenvalue below which couplings
@@ -294,7 +294,7 @@ def _paired(reduced: Reduced, supports: Supports) -> Callable[[str], bool]:
     """Tells whether symmetry promises twins to a family, as
     :meth:`solidgear.solve.naming.Names.pairs` has it.
     """
-    whole, bends = len(reduced.blocks) == 1, alike(supports) <= ALIKE
+    whole, bends = len(reduced.blocks) == 1, quarter_turn_change(supports) <= ALIKE
 
     def promised(family: str) -> bool:
         return reduced.round and (

@@ -10,7 +10,7 @@ from typing import Any
 
 from solidgear.body import Body, as_supports
 from solidgear.judge.settle import Settled
-from solidgear.judge.solving import answered
+from solidgear.judge.solving import answer_of_body
 from solidgear.ladder import build
 from solidgear.ladder.registry import LADDER
 from solidgear.models.limits import number
@@ -107,7 +107,7 @@ class SceneTask(FileTask):
         """Numbers of one model on the mesh that was asked for, without bars."""
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
-        found = answered(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        found = answer_of_body(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
         mass, exact = mass_of(scene, body)
         out: dict[str, Any] = {
             "model": self.model,

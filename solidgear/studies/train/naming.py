@@ -18,7 +18,7 @@ import numpy as np
 from solidgear.body import Body
 from solidgear.frames import shift
 from solidgear.scene.train_housing import HOUSING
-from solidgear.solve.circumference import of_body
+from solidgear.solve.circumference import circumference_of
 from solidgear.solve.families import FAMILIES
 from solidgear.studies.train.housing import shares_of
 from solidgear.studies.train.local import waves_of
@@ -87,7 +87,7 @@ def _diameters(body: Body, system: System, part: str, shapes, still: np.ndarray)
     does not tell.
     """
     out = np.full(shapes.shape[1], 2)
-    fitted = of_body(body)
+    fitted = circumference_of(body)
     if fitted is None:
         return out
     fit, displacements = fitted

@@ -28,7 +28,7 @@ import solidgear as sg
 from solidgear.body import as_supports
 from solidgear.judge.quantities import size
 from solidgear.judge.sequence_bars import RIGID_EDGE
-from solidgear.judge.solving import Answer, answered, solve
+from solidgear.judge.solving import Answer, answer_of_body, solve
 from solidgear.ladder.registry import LADDER
 from solidgear.meshing.corners import SHOULDER
 from solidgear.meshing.cuts import mirror_plane
@@ -87,7 +87,7 @@ def numbers(answer: Answer) -> dict[str, float]:
     """Compared numbers, with the first bending pair by plane, or by frequency where it has none."""
     found = answer.quantities
     # a name that is a toss-up means one mode here and another on the next mesh
-    tossed = {name for m in mixtures(answer.modes) for name in (m.name, m.other)}
+    tossed = {name for m in mixtures(answer.modes) for name in (m.name, m.partner)}
     out = {q: v for q, v in found.items() if not q.startswith("bending") and q not in tossed}
     by_plane = [answer.modes.named(f"bending {c} 1") for c in "zx"]
     if None in by_plane:
@@ -225,6 +225,6 @@ def _affordable(elements: Callable[[float], int], most: int) -> float:
 
 def _answered(build: Callable[[], Any], scene: sg.Scene) -> Answer:
     body = build()
-    found = answered(body, as_supports(scene), (scene.port.name,), n=8)
+    found = answer_of_body(body, as_supports(scene), (scene.port.name,), n=8)
     body.cache.clear()  # its factors
     return found

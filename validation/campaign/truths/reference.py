@@ -92,7 +92,7 @@ def solved(scene: Scene, body, **options) -> dict:
     """Statics at and between all points and modes of a body, as plain data."""
     supports = as_supports(scene)
     names = tuple(port.name for port in scene.ports)
-    statics = Statics.at(body, supports, names)
+    statics = Statics.at_points(body, supports, names)
     main, coupled = statics.main, statics.coupled
     found = modes(body, supports, max(scene.ask.modes, 10) + EXTRA_MODES, **options)
     return {
